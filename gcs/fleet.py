@@ -1,0 +1,460 @@
+"""The fleet picture as a reducer of bus messages: pure, time passed in.
+
+`now_ns` is the station's time: the wall instant of its start advanced by the monotonic clock, so that
+one integer serves for ages (it never jumps), for the game's t₀ and for the recording. Feed messages
+in order of arrival; the same stream gives the same picture.
+
+Most callers want `gcs.watch.Watch`, which adds alerts and commands to this.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, deque
+from math import inf
+
+from gcs import journal
+from gcs.picture import GameView, LogLine, Presence, TrackView, VehicleView
+from onboard.wire import swarm, topics
+from onboard.wire.swarm import Event, Health, Master, Message, Phase, Role, Severity, State
+
+NS = 1_000_000_000
+LOST_NS = 1 * NS  # silence from all sources after which a vehicle is lost
+DOUBLE_NS = 3 * NS  # a double id is reported until this long after its last sign
+TRAIL_STEP_NS = NS // 2
+TRAIL_LENGTH = 120
+LOG_LENGTH = 500
+TRACK_KEPT_NS = 30 * NS
+MOST_VEHICLES = 250  # MAVLink's system ids: nothing on the bus can make the picture grow without end
+
+
+class _Rate:
+    """Messages in the last whole second."""
+
+    __slots__ = ("count", "last", "start_ns")
+
+    def __init__(self, now_ns: int) -> None:
+        self.start_ns = now_ns
+        self.count = 0
+        self.last = -1.0
+
+    def tick(self, now_ns: int) -> None:
+        passed = now_ns - self.start_ns
+        if passed >= NS:
+            self.last = self.count * NS / passed
+            self.start_ns, self.count = now_ns, 0
+        self.count += 1
+
+    def value(self, now_ns: int) -> float:
+        """[Hz]; 0 after two silent seconds, and until a whole second has been seen."""
+        return max(0.0, self.last) if now_ns - self.start_ns < 2 * NS else 0.0
+
+
+class _Trail:
+    """Thinned positions, a bounded number of them."""
+
+    __slots__ = ("last_ns", "points", "taken")
+
+    def __init__(self) -> None:
+        self.points: deque[tuple[float, float, float]] = deque(maxlen=TRAIL_LENGTH)
+        self.last_ns = -TRAIL_STEP_NS
+        self.taken: tuple[tuple[float, float, float], ...] | None = ()
+
+    def add(self, position: tuple[float, float, float], now_ns: int) -> None:
+        if now_ns - self.last_ns >= TRAIL_STEP_NS:
+            self.points.append(position)
+            self.last_ns = now_ns
+            self.taken = None
+
+    def view(self) -> tuple[tuple[float, float, float], ...]:
+        if self.taken is None:
+            self.taken = tuple(self.points)
+        return self.taken
+
+
+class _Entry:
+    """What is known of one vehicle."""
+
+    def __init__(self, now_ns: int) -> None:
+        self.first_ns = 0
+        self.heard_ns: int | None = None
+        self.token = False
+        self.role: Role | None = None
+        self.state: State | None = None
+        self.state_ns = 0
+        self.decision: swarm.DecisionReport | None = None
+        self.decision_ns = 0
+        self.health: Health | None = None
+        self.health_ns = 0
+        self.rate = _Rate(now_ns)
+        self.trail = _Trail()
+        self.drops: Counter[str] = Counter()
+        self.schema_ns: int | None = None
+        self.nonce = 0
+        self.old_nonces: deque[int] = deque(maxlen=8)
+        self.double_ns: int | None = None
+        self.events: dict[int, set[int]] = {}  # numbers seen, by nonce
+        self.missed_events = 0
+
+
+class _Tracked:
+    """What is known of one track."""
+
+    def __init__(self, track: swarm.Track, now_ns: int) -> None:
+        self.track = track
+        self.heard_ns = now_ns
+        self.rate = _Rate(now_ns)
+        self.trail = _Trail()
+
+
+class Fleet:
+    """The picture's memory. `apply` messages, take values with `game`, `vehicles`, `tracks`."""
+
+    def __init__(self, game: str) -> None:
+        self.name = game
+        self.received = 0
+        self.drops: Counter[str] = Counter()
+        self.log: deque[LogLine] = deque(maxlen=LOG_LENGTH)
+        self._entries: dict[int, _Entry] = {}
+        self._tracks: dict[int, _Tracked] = {}
+        self._setup: swarm.Setup | None = None
+        self._phase: swarm.PhaseChange | None = None
+        self._outcome: swarm.Outcome | None = None
+        self._brief: swarm.EvaderBrief | None = None
+        self._master: Master | None = None
+        self._master_ns = 0
+        self._masters: dict[tuple[str, int], int] = {}
+        self._handlers = {
+            topics.SETUP: self._on_setup,
+            topics.PHASE: self._on_phase,
+            topics.OUTCOME: self._on_outcome,
+            topics.MASTER: self._on_master,
+            topics.EVADER_BRIEF: self._on_brief,
+        }
+
+    # ---- messages in
+
+    def apply(self, key: str, payload: bytes, now_ns: int) -> Message | None:
+        """Take one message in; what it was, or None where it was foreign or bad (then counted)."""
+        self.received += 1
+        parts = key.split("/")
+        if len(parts) < 4 or parts[0] != topics.ROOT or parts[1] != self.name:
+            self.drops["foreign"] += 1
+            return None
+        if parts[2] == "gcs":
+            return self._on_journal(parts[3], payload, now_ns)
+        topic = topics.topic_of(key)
+        if topic is None:
+            self.drops["foreign"] += 1
+            return None
+        general = self._handlers.get(topic)
+        if general is not None:
+            return general(payload, now_ns)
+        vehicle_id = topics.vehicle_of(key)
+        if vehicle_id is None or not 1 <= vehicle_id <= MOST_VEHICLES:
+            self.drops["foreign"] += 1
+            return None
+        if topic is topics.TRACK:
+            return self._on_track(vehicle_id, payload, now_ns)
+        if topic is topics.STATE:
+            return self._on_state(vehicle_id, payload, now_ns)
+        if topic is topics.DECISION:
+            return self._on_decision(vehicle_id, payload, now_ns)
+        if topic is topics.HEALTH:
+            return self._on_health(vehicle_id, payload, now_ns)
+        if topic is topics.EVENTS:
+            return self._on_event(vehicle_id, payload, now_ns)
+        self.drops["foreign"] += 1
+        return None
+
+    def _entry(self, vehicle_id: int, now_ns: int) -> _Entry:
+        entry = self._entries.get(vehicle_id)
+        if entry is None:
+            entry = self._entries[vehicle_id] = _Entry(now_ns)
+        return entry
+
+    def _bad(self, entry: _Entry, drops: Counter[str], now_ns: int) -> None:
+        self.drops.update(drops)
+        entry.drops.update(drops)
+        if drops["schema"]:
+            entry.schema_ns = now_ns
+
+    def _life(self, entry: _Entry, vehicle_id: int, nonce: int, now_ns: int) -> None:
+        """Any good message counts as life; the nonce tells processes of one id apart."""
+        if entry.heard_ns is None:
+            entry.first_ns = now_ns
+        entry.heard_ns = now_ns
+        if nonce == 0 or nonce == entry.nonce:
+            return
+        if nonce in entry.old_nonces:  # a restart never comes back to an old nonce: two of them speak
+            entry.double_ns = now_ns
+        elif entry.nonce:
+            self._say(now_ns, vehicle_id, Severity.WARNING, "restarted", "the agent was started again")
+        if entry.nonce and entry.nonce not in entry.old_nonces:
+            entry.old_nonces.append(entry.nonce)
+        entry.nonce = nonce
+
+    def _say(self, now_ns: int, vehicle_id: int, severity: Severity, kind: str, text: str) -> None:
+        self.log.append(LogLine(at_ns=now_ns, id=vehicle_id, severity=severity, kind=kind, text=text))
+
+    def _decoded(
+        self, codec: swarm.Codec[swarm.M], vehicle_id: int, payload: bytes, now_ns: int
+    ) -> tuple[_Entry, swarm.M] | None:
+        drops: Counter[str] = Counter()
+        message = codec.decode(payload, drops)
+        if message is not None and message.id != vehicle_id:  # type: ignore[attr-defined]
+            drops["wrong_id"] += 1
+            message = None
+        if message is None:
+            self._bad(self._entry(vehicle_id, now_ns), drops, now_ns)
+            return None
+        return self._entry(vehicle_id, now_ns), message
+
+    def _on_state(self, vehicle_id: int, payload: bytes, now_ns: int) -> Message | None:
+        found = self._decoded(swarm.STATE, vehicle_id, payload, now_ns)
+        if found is None:
+            return None
+        entry, state = found
+        self._life(entry, vehicle_id, state.nonce, now_ns)
+        entry.rate.tick(now_ns)
+        old = entry.state
+        if old is not None and state.stamp_ns < old.stamp_ns and state.nonce == old.nonce:
+            entry.drops["late"] += 1
+            return state
+        if old is not None and (old.armed, old.mode) != (state.armed, state.mode):
+            armed = "armed" if state.armed else "disarmed"
+            self._say(now_ns, vehicle_id, Severity.INFO, "mode", f"{state.mode}, {armed}")
+        entry.state, entry.state_ns, entry.role = state, now_ns, state.role
+        entry.trail.add(state.position, now_ns)
+        return state
+
+    def _on_decision(self, vehicle_id: int, payload: bytes, now_ns: int) -> Message | None:
+        found = self._decoded(swarm.DECISION, vehicle_id, payload, now_ns)
+        if found is None:
+            return None
+        entry, decision = found
+        self._life(entry, vehicle_id, 0, now_ns)
+        if entry.decision is not None and decision.stamp_ns < entry.decision.stamp_ns - NS:
+            entry.drops["late"] += 1
+            return decision
+        entry.decision, entry.decision_ns = decision, now_ns
+        return decision
+
+    def _on_health(self, vehicle_id: int, payload: bytes, now_ns: int) -> Message | None:
+        found = self._decoded(swarm.HEALTH, vehicle_id, payload, now_ns)
+        if found is None:
+            return None
+        entry, health = found
+        self._life(entry, vehicle_id, health.nonce, now_ns)
+        if entry.health is None or entry.health.stage != health.stage:
+            waits = f", lacks {', '.join(health.lacks)}" if health.lacks else ""
+            self._say(now_ns, vehicle_id, Severity.INFO, "stage", f"{health.stage}{waits}")
+        entry.health, entry.health_ns = health, now_ns
+        if entry.role is None:
+            entry.role = health.role
+        return health
+
+    def _on_event(self, vehicle_id: int, payload: bytes, now_ns: int) -> Message | None:
+        found = self._decoded(swarm.EVENT, vehicle_id, payload, now_ns)
+        if found is None:
+            return None
+        entry, event = found
+        self._life(entry, vehicle_id, 0, now_ns)
+        return event if self._new_event(entry, vehicle_id, event, now_ns) else None
+
+    def _new_event(self, entry: _Entry, vehicle_id: int, event: Event, now_ns: int) -> bool:
+        """Recovered events come twice or late: each is shown once; gaps are counted until they fill."""
+        seen = entry.events.get(event.nonce)
+        if seen is None:
+            if len(entry.events) >= 8:
+                entry.events.pop(next(iter(entry.events)))
+            seen = entry.events[event.nonce] = set()
+        if event.number in seen:
+            self.drops["duplicate"] += 1
+            return False
+        if seen and event.number < max(seen):
+            entry.missed_events -= 1
+        elif seen:
+            entry.missed_events += event.number - max(seen) - 1
+        seen.add(event.number)
+        if len(seen) > 2 * LOG_LENGTH:
+            seen.discard(min(seen))
+        self._say(now_ns, vehicle_id, event.severity, event.kind, event.text)
+        return True
+
+    def _on_track(self, track_id: int, payload: bytes, now_ns: int) -> Message | None:
+        track = swarm.TRACK.decode(payload, self.drops)
+        if track is None:
+            return None
+        if track.id != track_id:
+            self.drops["wrong_id"] += 1
+            return None
+        known = self._tracks.get(track_id)
+        if known is None:
+            known = self._tracks[track_id] = _Tracked(track, now_ns)
+        known.rate.tick(now_ns)
+        restarted = now_ns - known.heard_ns > NS  # a sensor may come back with another clock
+        if track.stamp_ns >= known.track.stamp_ns or restarted:
+            known.track = track
+            known.trail.add(track.position, now_ns)
+        known.heard_ns = now_ns
+        return track
+
+    def _on_setup(self, payload: bytes, now_ns: int) -> Message | None:
+        setup = swarm.SETUP.decode(payload, self.drops)
+        if setup is None:
+            return None
+        if self._setup is None or setup.scenario_hash != self._setup.scenario_hash:
+            who = f"{len(setup.roster)} vehicles, from {setup.master}"
+            self._say(now_ns, 0, Severity.INFO, "setup", f"game {setup.scenario}: {who}")
+        self._setup = setup
+        for member in setup.roster:
+            if 1 <= member.id <= MOST_VEHICLES:
+                entry = self._entry(member.id, now_ns)
+                if entry.state is None:
+                    entry.role = member.role
+        return setup
+
+    def _on_phase(self, payload: bytes, now_ns: int) -> Message | None:
+        phase = swarm.PHASE.decode(payload, self.drops)
+        if phase is None:
+            return None
+        if self._phase is None or self._phase.phase is not phase.phase:
+            reason = f": {phase.reason}" if phase.reason else ""
+            self._say(now_ns, 0, Severity.INFO, "phase", f"game {phase.phase.value}{reason}")
+        self._phase = phase
+        return phase
+
+    def _on_outcome(self, payload: bytes, now_ns: int) -> Message | None:
+        outcome = swarm.OUTCOME.decode(payload, self.drops)
+        if outcome is None:
+            return None
+        if self._outcome is None or outcome.stamp_ns != self._outcome.stamp_ns:
+            by = f" by {outcome.captor}" if outcome.captor else ""
+            reason = f": {outcome.reason}" if outcome.reason else ""
+            text = f"evader {outcome.verdict}{by} after {outcome.time:.1f} s{reason}"
+            self._say(now_ns, 0, Severity.INFO, "outcome", text)
+        self._outcome = outcome
+        return outcome
+
+    def _on_brief(self, payload: bytes, now_ns: int) -> Message | None:
+        brief = swarm.EVADER_BRIEF.decode(payload, self.drops)
+        self._brief = brief or self._brief
+        return brief
+
+    def _on_master(self, payload: bytes, now_ns: int) -> Message | None:
+        master = swarm.MASTER.decode(payload, self.drops)
+        if master is None:
+            return None
+        if self._master is None or (master.name, master.nonce) != (self._master.name, self._master.nonce):
+            self._masters = {who: at for who, at in self._masters.items() if now_ns - at < 2 * NS}
+            if len(self._masters) < 8:
+                self._masters[(master.name, master.nonce)] = now_ns
+        else:
+            self._masters[(master.name, master.nonce)] = now_ns
+        self._master, self._master_ns = master, now_ns
+        return master
+
+    def _on_journal(self, name: str, payload: bytes, now_ns: int) -> Message | None:
+        if name == "presence":
+            presence = journal.PRESENCE.decode(payload, self.drops)
+            if presence is not None:
+                self._on_token(presence, now_ns)
+            return presence
+        if name == "remark":
+            remark = journal.REMARK.decode(payload, self.drops)
+            if remark is not None:
+                self._say(now_ns, 0, remark.severity, remark.kind, remark.text)
+            return remark
+        if name == "sent":
+            return journal.SENT.decode(payload, self.drops)
+        if name == "replied":
+            return journal.REPLIED.decode(payload, self.drops)
+        if name == "acknowledged":
+            return journal.ACKNOWLEDGED.decode(payload, self.drops)
+        self.drops["foreign"] += 1
+        return None
+
+    def _on_token(self, presence: journal.Presence, now_ns: int) -> None:
+        vehicle_id = topics.vehicle_of(presence.key)
+        if vehicle_id is None or not 1 <= vehicle_id <= MOST_VEHICLES:
+            self.drops["foreign"] += 1
+            return
+        entry = self._entry(vehicle_id, now_ns)
+        entry.token = presence.alive
+        if presence.alive:
+            self._life(entry, vehicle_id, 0, now_ns)
+
+    # ---- values out
+
+    def game(self, now_ns: int) -> GameView:
+        """The game as its master tells it."""
+        phase = self._phase
+        over = phase is not None and phase.phase in (Phase.ENDED, Phase.RECOVERY)
+        outcome = self._outcome if over else None
+        if outcome is not None and phase is not None and outcome.stamp_ns < phase.t0_ns:
+            outcome = None  # cached from a game before this one
+        t0_ns = phase.t0_ns if phase else 0
+        alive = sum(now_ns - at < 2 * NS for at in self._masters.values())
+        return GameView(
+            name=self.name,
+            setup=self._setup,
+            phase=phase.phase if phase else None,
+            reason=phase.reason if phase else "",
+            t0_ns=t0_ns,
+            time_s=(now_ns - t0_ns) / NS if t0_ns else 0.0,
+            outcome=outcome,
+            target=self._brief.target if self._brief else None,
+            master=self._master,
+            master_age_s=_age(self._master_ns, now_ns, self._master is not None),
+            two_masters=alive > 1,
+        )
+
+    def vehicles(self, now_ns: int) -> tuple[VehicleView, ...]:
+        """Every vehicle heard or expected, by id."""
+        return tuple(self._view(i, self._entries[i], now_ns) for i in sorted(self._entries))
+
+    def _view(self, vehicle_id: int, entry: _Entry, now_ns: int) -> VehicleView:
+        if entry.heard_ns is None:
+            presence, age = Presence.EXPECTED, inf
+        else:
+            silent = now_ns - entry.heard_ns
+            presence = Presence.LOST if silent > LOST_NS else Presence.PRESENT
+            age = silent / NS
+        return VehicleView(
+            id=vehicle_id,
+            role=entry.role,
+            presence=presence,
+            age_s=age,
+            token=entry.token,
+            first_ns=entry.first_ns,
+            state=entry.state,
+            state_age_s=_age(entry.state_ns, now_ns, entry.state is not None),
+            decision=entry.decision,
+            decision_age_s=_age(entry.decision_ns, now_ns, entry.decision is not None),
+            health=entry.health,
+            health_age_s=_age(entry.health_ns, now_ns, entry.health is not None),
+            state_rate_hz=entry.rate.value(now_ns),
+            double_id=entry.double_ns is not None and now_ns - entry.double_ns < DOUBLE_NS,
+            dropped=tuple(sorted(entry.drops.items())),
+            schema_age_s=_age(entry.schema_ns or 0, now_ns, entry.schema_ns is not None),
+            missed_events=entry.missed_events,
+            trail=entry.trail.view(),
+        )
+
+    def tracks(self, now_ns: int) -> tuple[TrackView, ...]:
+        """Every track of the last half minute, by id."""
+        return tuple(
+            TrackView(
+                id=i,
+                track=t.track,
+                age_s=(now_ns - t.heard_ns) / NS,
+                rate_hz=t.rate.value(now_ns),
+                trail=t.trail.view(),
+            )
+            for i, t in sorted(self._tracks.items())
+            if now_ns - t.heard_ns < TRACK_KEPT_NS
+        )
+
+
+def _age(at_ns: int, now_ns: int, known: bool) -> float:
+    return (now_ns - at_ns) / NS if known else inf
