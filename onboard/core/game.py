@@ -1,0 +1,208 @@
+"""A game as values, and the kernel `advance`: decide, move, judge.
+
+The plane game, the compiled games and the bridge share it. The evader decides first; the
+pursuers then see its new heading (2.2).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import pi
+from typing import NamedTuple
+
+from onboard.core.cones import blocked_cones
+from onboard.core.each import each
+from onboard.core.evasion import EvaderView
+from onboard.core.knowledge import Decision
+from onboard.core.pursuit import PursuerView
+from onboard.core.referee import Score, judge, opening
+from onboard.core.states import Limits, Vehicle
+from onboard.core.vectors import Vec, along, scale
+
+
+class Params(NamedTuple):
+    """The game's parameters, in the paper's symbols."""
+
+    R: float  # capture radius (6) [m]
+    rho: float  # safety distance ρ (4) [m]
+    lambda_: float  # λ of (21)–(22)
+    beta: float  # β of (22)
+    epsilon: float  # ε_min of (5) [m]
+    dt: float  # time step [s]
+    horizon: float  # [s]
+    separation: float  # between pursuers [m]; 0 = off
+    planar: bool
+    has_target: bool
+    target: Vec  # g [m]
+    lookahead: float = 1.0  # of rule 6's alternative, by constant velocity [s]
+
+
+class Game(NamedTuple):
+    """A game at one instant."""
+
+    time: float  # since the start [s]
+    evader: Vehicle
+    pursuers: tuple[Vehicle, ...]
+    evader_limits: Limits
+    pursuer_limits: tuple[Limits, ...]
+    score: Score
+
+
+class Decisions(NamedTuple):
+    """What everybody decided in a step."""
+
+    evader: Decision
+    pursuers: tuple[Decision, ...]
+
+
+class Field(NamedTuple):
+    """What a pursuer's decision needs besides the pursuer itself."""
+
+    game: Game
+    evader: Vehicle
+    heading: Vec
+    params: Params
+    decide: Callable[[PursuerView], Decision]
+
+
+EvaderStrategy = Callable[[EvaderView], Decision]
+PursuerStrategy = Callable[[PursuerView], Decision]
+
+
+def position_of(vehicle: Vehicle, _index: int, _shared: float) -> Vec:
+    """Place of a vehicle (for `each`)."""
+    return vehicle.position
+
+
+def positions(vehicles: tuple[Vehicle, ...]) -> tuple[Vec, ...]:
+    """Places of all vehicles [m]."""
+    return each(position_of, vehicles, 0.0)
+
+
+def begin(
+    evader: Vehicle, pursuers: tuple[Vehicle, ...], evader_limits: Limits, pursuer_limits: tuple[Limits, ...]
+) -> Game:
+    """A game before its first step."""
+    return Game(
+        0.0, evader, pursuers, evader_limits, pursuer_limits, opening(evader.position, positions(pursuers))
+    )
+
+
+def evader_view(game: Game, params: Params) -> EvaderView:
+    """The situation as the evader sees it."""
+    return EvaderView(
+        game.evader,
+        game.evader_limits,
+        game.pursuers,
+        blocked_cones(game.evader, game.pursuers, params.rho),
+        params.has_target,
+        params.target,
+        params.R,
+        params.lambda_,
+        params.beta,
+        params.planar,
+    )
+
+
+def pursuer_view(
+    own: Vehicle, index: int, game: Game, evader: Vehicle, heading: Vec, params: Params
+) -> PursuerView:
+    """The situation as pursuer `index` sees it; the evader already has its new heading."""
+    has_mate = False
+    mate = own.position
+    if params.separation > 0.0:
+        nearest = 1e300
+        for other in range(len(game.pursuers)):
+            if other != index:
+                place = game.pursuers[other].position
+                x = place.x - own.position.x
+                y = place.y - own.position.y
+                z = place.z - own.position.z
+                square = x * x + y * y + z * z
+                if square < nearest:
+                    nearest = square
+                    mate = place
+                    has_mate = True
+    ahead = along(evader.position, heading, evader.speed * params.lookahead)
+    return PursuerView(
+        own,
+        game.pursuer_limits[index],
+        evader,
+        heading,
+        has_mate,
+        mate,
+        params.separation,
+        True,
+        ahead,
+        params.lookahead,
+        params.dt,
+        params.planar,
+    )
+
+
+def decide_one(own: Vehicle, index: int, field: Field) -> Decision:
+    """Pursuer `index`'s decision (for `each`)."""
+    view = pursuer_view(own, index, field.game, field.evader, field.heading, field.params)
+    return field.decide(view)
+
+
+def moved(vehicle: Vehicle, decision: Decision, dt: float) -> Vehicle:
+    """Simple motion (7)–(8) along the decided direction for `dt` seconds."""
+    velocity = scale(decision.direction, decision.speed)
+    return Vehicle(along(vehicle.position, velocity, dt), velocity, vehicle.speed)
+
+
+class Step(NamedTuple):
+    """Decisions to move by (for `each`)."""
+
+    decisions: tuple[Decision, ...]
+    dt: float
+
+
+def move_one(vehicle: Vehicle, index: int, step: Step) -> Vehicle:
+    """Pursuer `index` after the step (for `each`)."""
+    return moved(vehicle, step.decisions[index], step.dt)
+
+
+def decide(
+    game: Game, params: Params, decide_evader: EvaderStrategy, decide_pursuer: PursuerStrategy
+) -> Decisions:
+    """Everybody's decision: the evader first."""
+    own = decide_evader(evader_view(game, params))
+    turned = Vehicle(game.evader.position, scale(own.direction, own.speed), game.evader.speed)
+    field = Field(game, turned, own.direction, params, decide_pursuer)
+    return Decisions(own, each(decide_one, game.pursuers, field))
+
+
+def judged(before: Game, evader: Vehicle, pursuers: tuple[Vehicle, ...], params: Params) -> Game:
+    """The game after a step in which everybody moved straight to their new places."""
+    dt = params.dt
+    score = judge(
+        before.score,
+        before.time,
+        dt,
+        before.evader.position,
+        evader.position,
+        positions(before.pursuers),
+        positions(pursuers),
+        params.R,
+        params.rho,
+        params.has_target,
+        params.target,
+        params.epsilon,
+        params.horizon,
+    )
+    return Game(before.time + dt, evader, pursuers, before.evader_limits, before.pursuer_limits, score)
+
+
+def advance(
+    game: Game, params: Params, decide_evader: EvaderStrategy, decide_pursuer: PursuerStrategy
+) -> Game:
+    """One step of `params.dt` seconds: decide, move by (7)–(8), judge."""
+    decisions = decide(game, params, decide_evader, decide_pursuer)
+    evader = moved(game.evader, decisions.evader, params.dt)
+    pursuers = each(move_one, game.pursuers, Step(decisions.pursuers, params.dt))
+    return judged(game, evader, pursuers, params)
+
+
+FREE = Limits(0.0, 1e9, -pi / 2, pi / 2, -pi, pi)
