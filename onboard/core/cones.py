@@ -101,10 +101,8 @@ def free_ray(preferred: Vec, cones: tuple[Cone, ...]) -> Ray:
         y = preferred.y - pa * a.axis.y
         z = preferred.z - pa * a.axis.z
         n = sqrt(x * x + y * y + z * z)
-        if n <= TINY:  # on the axis: every point of the edge is as near
-            side = _perpendicular(a.axis)
-        else:
-            side = Vec(x / n, y / n, z / n)
+        # On the axis every point of the edge is as near: take any.
+        side = _perpendicular(a.axis) if n <= TINY else Vec(x / n, y / n, z / n)
         near = pa * a.cos + n * a.sin
         if near > best:
             u = unit(_blend(a.axis, a.cos, side, a.sin), preferred)

@@ -41,7 +41,7 @@ def _head(view: PursuerView, aim: Vec, rule: RuleId, time: float, miss: float) -
 
 
 def keep_off_mate(view: PursuerView) -> Decision:
-    """Figure 8b: a team mate nearer than the separation. Slide past it on the way to the evader, and outwards."""
+    """Figure 8b: a team mate is nearer than the separation: outwards, and past it towards the evader."""
     own = view.own
     apart = sub(own.position, view.mate)
     if not view.has_mate or dot(apart, apart) >= view.separation * view.separation:
@@ -84,7 +84,8 @@ def parallel(view: PursuerView) -> Decision:
     own = view.own
     ahead = within(view.heading, view.limits, view.planar)
     aim = along(own.position, ahead, own.speed)
-    return Decision(True, ahead, own.speed, RuleId.PARALLEL, aim, 1.0, distance(own.position, view.evader.position))
+    left = distance(own.position, view.evader.position)
+    return Decision(True, ahead, own.speed, RuleId.PARALLEL, aim, 1.0, left)
 
 
 def predicted_place(view: PursuerView) -> Decision:
@@ -208,7 +209,9 @@ def _comparison(rule: RuleId, then: str, apply: object) -> tuple[Rule[PursuerVie
 
 PURE = _comparison(RuleId.PURE_PURSUIT, "straight at the evader", pure_pursuit)
 BEARING = _comparison(RuleId.CONSTANT_BEARING, "on a collision triangle", constant_bearing)
-NAVIGATION = _comparison(RuleId.PROPORTIONAL_NAVIGATION, "turn at N times the sight line's rate", proportional_navigation)
+NAVIGATION = _comparison(
+    RuleId.PROPORTIONAL_NAVIGATION, "turn at N times the sight line's rate", proportional_navigation
+)
 
 pursuer = fold(PURSUER)
 pursuer_predictive = fold(PURSUER_PREDICTIVE)
