@@ -45,8 +45,12 @@ def test_timers_run_by_deadline_and_then_in_the_order_they_were_set(delays_ns: l
     async def main() -> list[tuple[int, int]]:
         loop, clock = asyncio.get_running_loop(), virtual_clock()
         ran: list[tuple[int, int]] = []
+
+        def note(index: int) -> None:
+            ran.append((clock.monotonic_ns(), index))
+
         for index, delay_ns in enumerate(delays_ns):
-            loop.call_later(delay_ns / NS, lambda i=index: ran.append((clock.monotonic_ns(), i)))
+            loop.call_later(delay_ns / NS, note, index)
         await asyncio.sleep(3.0)
         return ran
 
