@@ -1,0 +1,180 @@
+"""What all adapters share: the snapshot they read, the setpoint they are given, what they answer.
+
+An adapter is a plain sans-I/O class, one for each kind of autopilot. The agent calls
+
+    adapter.step(now, telemetry, setpoint)      # each control step, and at least every 80 ms
+
+and sends the messages it gets back, in order, at once; notes it publishes as events. All times are
+local monotonic seconds. An adapter never arms unless it was made with `may_arm`, enters the autopilot's
+guided mode only after `enter`, leaves it whenever told, and lets go at once and for good (until `enter`, or
+until the pilot selects the guided mode again) when the mode changes by another hand.
+"""
+
+from __future__ import annotations
+
+from enum import Enum
+from typing import NamedTuple, Protocol
+
+from onboard.core.vectors import ZERO, Vec
+from onboard.wire.mavlink import MavMessage
+from onboard.wire.modes import Kind
+from onboard.wire.values import UNKNOWN, CommandAck
+
+NEVER = float("-inf")  # the instant of something that has not happened
+
+
+class Telemetry(NamedTuple):
+    """What is known of the own vehicle at one instant; `*_at` are arrival times [s, monotonic].
+
+    `Observer.snapshot` makes it. A field is meaningful only when its `*_at` is not `NEVER`.
+    """
+
+    kind: Kind = Kind.UNKNOWN
+    mode: str = ""  # the autopilot's own word
+    armed: bool = False
+    heartbeat_at: float = NEVER
+    time_boot_s: float = 0.0  # the autopilot's clock at its newest stamped message
+    latitude_deg: float = 0.0
+    longitude_deg: float = 0.0
+    altitude_m: float = 0.0  # above mean sea level
+    above_home_m: float = 0.0
+    position: Vec = ZERO  # [m; NED, game frame], once the frame is known
+    placed: bool = False  # the game frame is known, so `position` counts
+    velocity: Vec = ZERO  # [m/s; ground, NED]
+    position_at: float = NEVER  # of place and velocity together
+    roll: float = 0.0  # [rad]
+    pitch: float = 0.0  # [rad, up]
+    yaw: float = 0.0  # [rad, north to east]
+    attitude_at: float = NEVER
+    airspeed: float = 0.0  # [m/s]
+    airspeed_at: float = NEVER
+    wind: Vec = ZERO  # [m/s; NED] of the air over ground
+    wind_at: float = NEVER
+    battery: float = UNKNOWN  # 0…1
+    voltage: float = UNKNOWN  # [V]
+    battery_at: float = NEVER
+    pre_arm_ok: bool = False
+    unhealthy: int = 0  # MAV_SYS_STATUS_SENSOR bits
+    status_at: float = NEVER
+    gps_fix: int = 0
+    satellites: int = -1
+    accuracy_m: float = UNKNOWN  # horizontal
+    gps_at: float = NEVER
+    ekf_ok: bool = False
+    ekf_at: float = NEVER
+    landed_state: int = 0  # 0 unknown, 1 on ground, 2 in air, 3 taking off, 4 landing
+    landed_at: float = NEVER
+    reboots: int = 0  # how often the autopilot's clock started again
+    link_quality: float = 1.0  # share of the autopilot's frames that arrived, lately
+
+
+class Setpoint(NamedTuple):
+    """A velocity that the supervisor let pass."""
+
+    velocity: Vec  # [m/s; relative to the air, NED]
+    wind: Vec = ZERO  # [m/s; NED] added for motion over ground; 0 for those who hold groundspeed
+
+
+class Envelope(NamedTuple):
+    """What the aircraft can do. The adapter's last word; the supervisor's limits are tighter."""
+
+    speed_min: float = 0.0  # [m/s; air]
+    speed_max: float = 15.0  # [m/s; air]
+    climb_max: float = 3.0  # [m/s]
+    sink_max: float = 2.0  # [m/s]
+    acceleration: float = 5.0  # [m/s²] change of a velocity target
+    bank_max: float = 0.785  # [rad]
+
+
+class Stage(Enum):
+    """Who flies, as far as the adapter knows."""
+
+    IDLE = "idle"  # not asked to control
+    ENTERING = "entering"  # asks for the guided mode
+    ACTIVE = "active"  # the autopilot reports the guided mode: setpoints count
+    LEAVING = "leaving"  # asks for a mode the autopilot can hold alone
+    LEFT = "left"  # it reports that mode
+    TAKEN = "taken"  # somebody else changed the mode: hands off
+
+
+class Way(Enum):
+    """How to leave."""
+
+    HOLD = "hold"
+    RETURN = "return"
+    LAND = "land"
+
+
+class Note(NamedTuple):
+    """Something a person should know: the agent publishes it as an event."""
+
+    severity: str  # info | warning | error
+    kind: str  # machine-readable
+    text: str
+
+
+class Step(NamedTuple):
+    """What one step wants done: messages to send, in order, and notes."""
+
+    messages: tuple[MavMessage, ...] = ()
+    notes: tuple[Note, ...] = ()
+
+
+class Refusal(NamedTuple):
+    """Why no adapter flies this autopilot."""
+
+    reason: str
+
+
+class Adapter(Protocol):
+    """One kind of autopilot: setpoints and intentions in, messages out."""
+
+    @property
+    def name(self) -> str:
+        """Its name in configuration: velocity | arduplane | arduplane-plain | mavsdk."""
+        ...
+
+    @property
+    def kind(self) -> Kind:
+        """The autopilot it was made for."""
+        ...
+
+    @property
+    def stage(self) -> Stage:
+        """Who flies."""
+        ...
+
+    @property
+    def holds_airspeed(self) -> bool:
+        """True where a constant speed means airspeed (planes); else groundspeed, and the wind is 0 to it."""
+        ...
+
+    @property
+    def guided_mode(self) -> str:
+        """The mode in which setpoints count, in the autopilot's words."""
+        ...
+
+    def enter(self, now: float) -> None:
+        """Ask for the guided mode until the heartbeat reports it. Also takes control back after TAKEN."""
+        ...
+
+    def leave(self, now: float, way: Way) -> None:
+        """End the setpoints and ask for a mode the autopilot can hold alone, until it reports it."""
+        ...
+
+    def end(self, now: float) -> None:
+        """End the stream of setpoints for want of a decision: silence where the autopilot then stops by
+        itself, a command to loiter where it would fly on."""
+        ...
+
+    def arm(self, now: float) -> bool:
+        """Ask for arming until the heartbeat reports it; False (and nothing sent) unless `may_arm`."""
+        ...
+
+    def acknowledge(self, now: float, ack: CommandAck) -> None:
+        """Hear the autopilot's answer to a command."""
+        ...
+
+    def step(self, now: float, telemetry: Telemetry, setpoint: Setpoint | None) -> Step:
+        """Messages due now. `setpoint` None: none is allowed now, and none is sent."""
+        ...
