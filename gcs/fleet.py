@@ -112,6 +112,7 @@ class Fleet:
     def __init__(self, game: str) -> None:
         self.name = game
         self.received = 0
+        self.bad_ns: int | None = None  # the last message that was foreign or bad
         self.drops: Counter[str] = Counter()
         self.log: deque[LogLine] = deque(maxlen=LOG_LENGTH)
         self._entries: dict[int, _Entry] = {}
@@ -135,7 +136,13 @@ class Fleet:
 
     def apply(self, key: str, payload: bytes, now_ns: int) -> Message | None:
         """Take one message in; what it was, or None where it was foreign or bad (then counted)."""
+        message = self._apply(key, payload, now_ns)
         self.received += 1
+        if message is None:
+            self.bad_ns = now_ns
+        return message
+
+    def _apply(self, key: str, payload: bytes, now_ns: int) -> Message | None:
         parts = key.split("/")
         if len(parts) < 4 or parts[0] != topics.ROOT or parts[1] != self.name:
             self.drops["foreign"] += 1
@@ -259,9 +266,10 @@ class Fleet:
             return None
         entry, event = found
         self._life(entry, vehicle_id, 0, now_ns)
-        return event if self._new_event(entry, vehicle_id, event, now_ns) else None
+        self._note_event(entry, vehicle_id, event, now_ns)
+        return event
 
-    def _new_event(self, entry: _Entry, vehicle_id: int, event: Event, now_ns: int) -> bool:
+    def _note_event(self, entry: _Entry, vehicle_id: int, event: Event, now_ns: int) -> None:
         """Recovered events come twice or late: each is shown once; gaps are counted until they fill."""
         seen = entry.events.get(event.nonce)
         if seen is None:
@@ -269,8 +277,8 @@ class Fleet:
                 entry.events.pop(next(iter(entry.events)))
             seen = entry.events[event.nonce] = set()
         if event.number in seen:
-            self.drops["duplicate"] += 1
-            return False
+            entry.drops["duplicate"] += 1
+            return
         if seen and event.number < max(seen):
             entry.missed_events -= 1
         elif seen:
@@ -279,7 +287,6 @@ class Fleet:
         if len(seen) > 2 * LOG_LENGTH:
             seen.discard(min(seen))
         self._say(now_ns, vehicle_id, event.severity, event.kind, event.text)
-        return True
 
     def _on_track(self, track_id: int, payload: bytes, now_ns: int) -> Message | None:
         track = swarm.TRACK.decode(payload, self.drops)
@@ -386,6 +393,10 @@ class Fleet:
 
     # ---- values out
 
+    def bad_age_s(self, now_ns: int) -> float:
+        """Since the last message that was foreign or bad [s]."""
+        return _age(self.bad_ns, now_ns)
+
     def game(self, now_ns: int) -> GameView:
         """The game as its master tells it."""
         phase = self._phase
@@ -436,7 +447,7 @@ class Fleet:
             state_rate_hz=entry.rate.value(now_ns),
             double_id=entry.double_ns is not None and now_ns - entry.double_ns < DOUBLE_NS,
             dropped=tuple(sorted(entry.drops.items())),
-            schema_age_s=_age(entry.schema_ns or 0, now_ns, entry.schema_ns is not None),
+            schema_age_s=_age(entry.schema_ns, now_ns),
             missed_events=entry.missed_events,
             trail=entry.trail.view(),
         )
@@ -456,5 +467,5 @@ class Fleet:
         )
 
 
-def _age(at_ns: int, now_ns: int, known: bool) -> float:
-    return (now_ns - at_ns) / NS if known else inf
+def _age(at_ns: int | None, now_ns: int, known: bool = True) -> float:
+    return (now_ns - at_ns) / NS if known and at_ns is not None else inf

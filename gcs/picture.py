@@ -162,12 +162,16 @@ class Leg(Value, frozen=True):
     """A command's way to one vehicle."""
 
     id: int
-    state: str  # waiting | accepted | pending | confirmed | refused | superseded | unconfirmed
+    state: str  # sent | accepted | pending | confirmed | refused | superseded | expired
     reason: str = ""
-    mode: str = ""
+    mode: str = ""  # of the autopilot, as the answer gives it
     obeyed: str = ""  # whom the agent obeys now
-    attempts: int = 0
     took_s: float = 0.0  # until the final answer, or so far
+
+    @property
+    def open(self) -> bool:
+        """No final answer yet."""
+        return self.state in ("sent", "accepted", "pending")
 
 
 class CommandView(Value, frozen=True):
@@ -190,6 +194,25 @@ class CommandView(Value, frozen=True):
         return tuple(leg.id for leg in self.legs if leg.state != "confirmed")
 
 
+class ProspectView(Value, frozen=True):
+    """What one pursuer can do against the evader's present heading."""
+
+    id: int
+    intercepts: bool
+    time_s: float  # until then, −1 = never
+    denies_target: bool
+
+
+class AssessmentView(Value, frozen=True):
+    """What the situation promises, by declared airspeeds and the last known positions."""
+
+    encircled: bool  # no free ray
+    gaps: tuple[tuple[float, float], ...]  # in the plane: start, width [rad], north to east
+    largest_gap: float  # in the plane: its width; in space: of the largest free cap [rad]
+    target_denied: bool
+    prospects: tuple[ProspectView, ...]
+
+
 class Picture(Value, frozen=True):
     """Everything, at one instant."""
 
@@ -202,7 +225,9 @@ class Picture(Value, frozen=True):
     log: tuple[LogLine, ...] = ()  # newest last
     commands: tuple[CommandView, ...] = ()  # newest last
     dropped: tuple[tuple[str, int], ...] = ()  # messages dropped here, by cause
+    bad_age_s: float = INF  # since the last of them
     received: int = 0
+    assessment: AssessmentView | None = None
 
     def vehicle(self, vehicle_id: int) -> VehicleView | None:
         """The vehicle of an id."""
