@@ -1,0 +1,130 @@
+"""Limits of speed, climb, turn and acceleration: the nearest demand that keeps them."""
+
+from __future__ import annotations
+
+from math import atan2, cos, isfinite, pi, sin, sqrt
+from typing import NamedTuple
+
+from onboard.core.safety.policy import Cause, Envelope
+from onboard.core.vectors import TINY, Vec, clamp
+
+TOLERANCE = 1e-6  # a clip below this relative size is rounding, not a clip
+
+
+class Clipped(NamedTuple):
+    """A velocity and the first limit that changed it (NONE where none did)."""
+
+    velocity: Vec  # [m/s]
+    cause: Cause
+
+
+def finite(v: Vec) -> bool:
+    """Whether all three components are numbers."""
+    return isfinite(v.x) and isfinite(v.y) and isfinite(v.z)
+
+
+def believable(position: Vec, velocity: Vec) -> bool:
+    """Whether a place lies within 10,000 km and a velocity below 10 km/s: numbers to reckon with."""
+    return (
+        abs(position.x) < 1e7 and abs(position.y) < 1e7 and abs(position.z) < 1e7
+        and abs(velocity.x) < 1e4 and abs(velocity.y) < 1e4 and abs(velocity.z) < 1e4
+    )
+
+
+def bounded(v: Vec, course: Vec, e: Envelope) -> Clipped:
+    """The velocity within the bounds of speed and climb; `course` gives a plane's direction where v has none.
+
+    A plane keeps its speed when its climb is cut: the horizontal part grows.
+    """
+    square = v.x * v.x + v.y * v.y + v.z * v.z
+    if not isfinite(square) and finite(v):  # too large to square: only the direction counts
+        big = max(abs(v.x), abs(v.y), abs(v.z))
+        v = Vec(v.x / big * e.speed_max, v.y / big * e.speed_max, v.z / big * e.speed_max)
+        square = v.x * v.x + v.y * v.y + v.z * v.z
+    speed = sqrt(square)
+    cause = Cause.NONE
+    if speed > e.speed_max:
+        if speed > e.speed_max * (1.0 + TOLERANCE):
+            cause = Cause.SPEED
+        k = e.speed_max / speed
+        v = Vec(v.x * k, v.y * k, v.z * k)
+        speed = e.speed_max
+    low = min(e.speed_min, e.speed_max)
+    if speed < low:
+        if speed < low * (1.0 - TOLERANCE):
+            cause = Cause.SPEED
+        if speed <= TINY:
+            flat = _flat(course)
+            v = Vec(flat.x * low, flat.y * low, 0.0)
+        else:
+            k = low / speed
+            v = Vec(v.x * k, v.y * k, v.z * k)
+        speed = low
+    z = clamp(v.z, -e.climb_max, e.sink_max)
+    if z != v.z:
+        if abs(z - v.z) > TOLERANCE * max(1.0, abs(v.z)) and cause == Cause.NONE:
+            cause = Cause.CLIMB
+        if e.hovers:
+            v = Vec(v.x, v.y, z)
+        else:
+            level = sqrt(max(0.0, speed * speed - z * z))
+            flat = _flat(v) if v.x * v.x + v.y * v.y > TINY else _flat(course)
+            v = Vec(flat.x * level, flat.y * level, z)
+    return Clipped(v, cause)
+
+
+def slewed(v: Vec, before: Vec, dt: float, e: Envelope) -> Clipped:
+    """The velocity nearest to `v` that the limits of turn and acceleration let `before` reach in `dt`."""
+    dt = clamp(dt, 0.0, 1.0)
+    if e.hovers:
+        if e.acceleration <= 0.0:
+            return Clipped(v, Cause.NONE)
+        x = v.x - before.x
+        y = v.y - before.y
+        z = v.z - before.z
+        change = sqrt(x * x + y * y + z * z)
+        most = e.acceleration * dt
+        if change <= most * (1.0 + TOLERANCE):
+            return Clipped(v, Cause.NONE)
+        k = most / change
+        return Clipped(Vec(before.x + x * k, before.y + y * k, before.z + z * k), Cause.ACCELERATION)
+    cause = Cause.NONE
+    level = sqrt(v.x * v.x + v.y * v.y)
+    course = atan2(v.y, v.x)
+    if e.turn_rate > 0.0 and level > TINY and before.x * before.x + before.y * before.y > TINY:
+        old = atan2(before.y, before.x)
+        turn = wrap(course - old)
+        most = e.turn_rate * dt
+        if abs(turn) > most * (1.0 + TOLERANCE):
+            course = old + clamp(turn, -most, most)
+            cause = Cause.TURN
+    speed = sqrt(level * level + v.z * v.z)
+    z = v.z
+    if e.acceleration > 0.0:
+        old_speed = sqrt(before.x * before.x + before.y * before.y + before.z * before.z)
+        most = e.acceleration * dt
+        if old_speed > TINY:
+            held = clamp(speed, old_speed - most, old_speed + most)
+            if abs(held - speed) > TOLERANCE * max(1.0, speed):
+                cause = Cause.ACCELERATION if cause == Cause.NONE else cause
+                speed = held
+        z = clamp(z, before.z - most, before.z + most)
+    level = sqrt(max(0.0, speed * speed - z * z))
+    return Clipped(Vec(level * cos(course), level * sin(course), z), cause)
+
+
+def wrap(angle: float) -> float:
+    """The angle in [−π, π] [rad]."""
+    while angle > pi:
+        angle -= 2.0 * pi
+    while angle < -pi:
+        angle += 2.0 * pi
+    return angle
+
+
+def _flat(v: Vec) -> Vec:
+    """Horizontal unit vector of v; north where it has none."""
+    n = sqrt(v.x * v.x + v.y * v.y)
+    if n <= TINY:
+        return Vec(1.0, 0.0, 0.0)
+    return Vec(v.x / n, v.y / n, 0.0)

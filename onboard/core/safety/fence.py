@@ -1,0 +1,227 @@
+"""Geofence with the way to stop, or to turn, ahead of it.
+
+A multicopter may approach a wall as fast as it can still stop before it: for each edge the part
+of the velocity towards its nearest point is bounded, which holds for polygons of any shape. A
+plane cannot stop: a demand is free while, after the reaction time, a full circle to the left or
+to the right still lies inside; otherwise it turns onto the circle that does.
+"""
+
+from __future__ import annotations
+
+from math import atan2, cos, pi, sin, sqrt
+from typing import NamedTuple
+
+from onboard.core.safety.envelope import wrap
+from onboard.core.safety.policy import Cause, Envelope, Fence
+from onboard.core.vectors import TINY, Vec, clamp
+
+PASSES = 4  # of projection on the walls, before what is left is scaled down
+LEAD = pi / 3  # a plane's evasive course, ahead of its present one [rad]
+
+
+class Nearest(NamedTuple):
+    """The point of a polygon's boundary nearest to a place."""
+
+    distance: float  # [m]
+    x: float
+    y: float
+
+
+class Fenced(NamedTuple):
+    """The velocity that keeps inside, and what changed it."""
+
+    velocity: Vec  # [m/s; ground]
+    cause: Cause
+
+
+def inside(x: float, y: float, polygon: tuple[tuple[float, float], ...]) -> bool:
+    """Whether a place lies inside a polygon (even-odd rule)."""
+    odd = False
+    px, py = polygon[-1]
+    for qx, qy in polygon:
+        if (qy > y) != (py > y) and x < (px - qx) * (y - qy) / (py - qy) + qx:
+            odd = not odd
+        px, py = qx, qy
+    return odd
+
+
+def nearest_on(x: float, y: float, ax: float, ay: float, bx: float, by: float) -> Nearest:
+    """The point of the segment a–b nearest to a place."""
+    ux = bx - ax
+    uy = by - ay
+    n = ux * ux + uy * uy
+    t = clamp(((x - ax) * ux + (y - ay) * uy) / n, 0.0, 1.0) if n > TINY else 0.0
+    qx = ax + t * ux
+    qy = ay + t * uy
+    return Nearest(sqrt((x - qx) * (x - qx) + (y - qy) * (y - qy)), qx, qy)
+
+
+def nearest(x: float, y: float, polygon: tuple[tuple[float, float], ...]) -> Nearest:
+    """The point of the whole boundary nearest to a place."""
+    px, py = polygon[-1]
+    best = Nearest(1e18, x, y)
+    for qx, qy in polygon:
+        here = nearest_on(x, y, px, py, qx, qy)
+        if here.distance < best.distance:
+            best = here
+        px, py = qx, qy
+    return best
+
+
+def depth(x: float, y: float, polygon: tuple[tuple[float, float], ...]) -> float:
+    """Distance to the boundary [m], negative outside."""
+    d = nearest(x, y, polygon).distance
+    return d if inside(x, y, polygon) else -d
+
+
+def outside_by(position: Vec, fence: Fence) -> float:
+    """How far a place lies outside a fence [m], 0 inside."""
+    up = -position.z
+    flat = max(0.0, -depth(position.x, position.y, fence.polygon))
+    return max(flat, fence.low - up, up - fence.high, 0.0)
+
+
+def stopping_speed(distance: float, deceleration: float, reaction: float) -> float:
+    """The fastest speed from which `distance` suffices to react and stop: v t + v²/2a = d [m/s]."""
+    if distance <= 0.0 or deceleration <= 0.0:
+        return 0.0
+    t = reaction
+    return deceleration * (sqrt(t * t + 2.0 * distance / deceleration) - t)
+
+
+def keep_height(v: Vec, position: Vec, fence: Fence, margin: float, reaction: float, e: Envelope) -> Fenced:
+    """The velocity with its vertical part bounded by floor and ceiling; outside the band it leads back."""
+    up = -position.z
+    margin = min(margin, 0.25 * (fence.high - fence.low))
+    climb = -v.z
+    if up > fence.high:
+        climb = min(climb, -min(e.sink_max, max(0.5, 0.5 * (up - fence.high + margin))))
+        cause = Cause.OUTSIDE_FENCE
+    elif up < fence.low:
+        climb = max(climb, min(e.climb_max, max(0.5, 0.5 * (fence.low - up + margin))))
+        cause = Cause.OUTSIDE_FENCE
+    else:
+        cause = Cause.NONE
+        most = stopping_speed(fence.high - margin - up, 0.5 * e.deceleration, reaction)
+        least = -stopping_speed(up - margin - fence.low, 0.5 * e.deceleration, reaction)
+        if climb > most:
+            climb = most
+            cause = Cause.CEILING_AHEAD
+        elif climb < least:
+            climb = least
+            cause = Cause.FLOOR_AHEAD
+    return Fenced(Vec(v.x, v.y, -climb), cause)
+
+
+def brake(
+    v: Vec, position: Vec, fences: tuple[Fence, ...], margin: float, reaction: float, e: Envelope
+) -> Fenced:
+    """A multicopter's velocity, slowed towards every wall it could not stop before; outside, the way back."""
+    walls: list[tuple[float, float, float]] = []  # direction to the wall, and how fast it may be approached
+    for fence in fences:
+        if not inside(position.x, position.y, fence.polygon):
+            home = nearest(position.x, position.y, fence.polygon)
+            speed = clamp(0.5 * (home.distance + margin), 0.5, e.speed_max)
+            return Fenced(_towards(position, home, speed, v.z), Cause.OUTSIDE_FENCE)
+        px, py = fence.polygon[-1]
+        for qx, qy in fence.polygon:
+            wall = nearest_on(position.x, position.y, px, py, qx, qy)
+            px, py = qx, qy
+            if wall.distance <= TINY:
+                return Fenced(Vec(0.0, 0.0, v.z), Cause.FENCE_AHEAD)
+            ux = (wall.x - position.x) / wall.distance
+            uy = (wall.y - position.y) / wall.distance
+            walls.append((ux, uy, stopping_speed(wall.distance - margin, e.deceleration, reaction)))
+    x = v.x
+    y = v.y
+    changed = False
+    for _ in range(PASSES):
+        for ux, uy, most in walls:
+            excess = x * ux + y * uy - most
+            if excess > 0.0:
+                x -= excess * ux
+                y -= excess * uy
+                changed = changed or excess > 1e-6
+    k = 1.0  # zero velocity keeps every bound, so scaling always ends well
+    for ux, uy, most in walls:
+        towards = x * ux + y * uy
+        if towards * k > most:
+            k = most / towards
+    return Fenced(Vec(x * k, y * k, v.z), Cause.FENCE_AHEAD if changed else Cause.NONE)
+
+
+def turn(
+    v: Vec,
+    position: Vec,
+    ground: Vec,
+    fences: tuple[Fence, ...],
+    margin: float,
+    reaction: float,
+    wind: float,
+    e: Envelope,
+) -> Fenced:
+    """A plane's ground velocity, turned away where its demand would leave no circle inside.
+
+    `ground` is the present ground velocity; `wind` the wind's speed [m/s], which widens the circle.
+    """
+    if len(fences) == 0:
+        return Fenced(v, Cause.NONE)
+    level = sqrt(v.x * v.x + v.y * v.y)
+    for fence in fences:
+        if not inside(position.x, position.y, fence.polygon):
+            home = nearest(position.x, position.y, fence.polygon)
+            return Fenced(_towards(position, home, level, v.z), Cause.OUTSIDE_FENCE)
+    radius = turning_radius(e, wind)
+    now = sqrt(ground.x * ground.x + ground.y * ground.y)
+    course = atan2(ground.y, ground.x) if now > TINY else atan2(v.y, v.x)
+    pace = max(now, level)
+    # Where the vehicle is, and how it heads, when an answer to the next decision begins to show.
+    rate = pace / radius if radius > TINY else pi
+    later = course + clamp(wrap(atan2(v.y, v.x) - course), -rate * reaction, rate * reaction)
+    x = position.x + pace * reaction * cos(later)
+    y = position.y + pace * reaction * sin(later)
+    need = radius + margin
+    if _room(x, y, later, radius, 1.0, fences) >= need or _room(x, y, later, radius, -1.0, fences) >= need:
+        return Fenced(v, Cause.NONE)
+    right = _room(position.x, position.y, course, radius, 1.0, fences)
+    left = _room(position.x, position.y, course, radius, -1.0, fences)
+    away = course + (LEAD if right >= left else -LEAD)
+    return Fenced(Vec(level * cos(away), level * sin(away), v.z), Cause.FENCE_AHEAD)
+
+
+def turning_radius(e: Envelope, wind: float) -> float:
+    """The radius of a circle over ground that the plane can hold in `wind` [m]: r (1 + w/v)²."""
+    k = 1.0 + wind / max(e.speed_max, 1.0)
+    return e.turn_radius * k * k
+
+
+def fits(fence: Fence, e: Envelope, margin: float, wind: float) -> bool:
+    """Whether a plane can circle anywhere inside a fence: some place is deeper than its circle needs."""
+    if e.hovers:
+        return True
+    xs = [corner[0] for corner in fence.polygon]
+    ys = [corner[1] for corner in fence.polygon]
+    need = turning_radius(e, wind) + margin
+    steps = 32
+    for i in range(1, steps):
+        for j in range(1, steps):
+            x = min(xs) + (max(xs) - min(xs)) * i / steps
+            y = min(ys) + (max(ys) - min(ys)) * j / steps
+            if depth(x, y, fence.polygon) >= need:
+                return True
+    return False
+
+
+def _room(x: float, y: float, course: float, radius: float, side: float, fences: tuple[Fence, ...]) -> float:
+    """Depth inside all fences of the centre of the circle to the right (1) or left (−1) [m]."""
+    cx = x - side * radius * sin(course)
+    cy = y + side * radius * cos(course)
+    least = 1e18
+    for fence in fences:
+        least = min(least, depth(cx, cy, fence.polygon))
+    return least
+
+
+def _towards(position: Vec, to: Nearest, speed: float, z: float) -> Vec:
+    n = max(to.distance, TINY)
+    return Vec((to.x - position.x) / n * speed, (to.y - position.y) / n * speed, z)

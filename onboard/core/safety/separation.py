@@ -1,0 +1,59 @@
+"""Separation from team mates: who closes in too fast to stop in time gives way, each half of it."""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import NamedTuple
+
+from onboard.core.safety.envelope import believable
+from onboard.core.safety.fence import stopping_speed
+from onboard.core.safety.policy import Mate, Policy
+from onboard.core.vectors import TINY, Vec
+
+
+class Separated(NamedTuple):
+    """The velocity that keeps apart, and whether that changed it."""
+
+    velocity: Vec  # [m/s; ground]
+    changed: bool
+
+
+def keep_apart(v: Vec, position: Vec, own_id: int, mates: tuple[Mate, ...], policy: Policy) -> Separated:
+    """The velocity with its closing parts bounded by what still stops at the separation distance.
+
+    Of an excess each of two vehicles takes half, and one whose mate has gone quiet takes it all and doubles
+    the distance. Inside the distance both move apart; where they are level, the lower id goes up.
+    """
+    changed = False
+    e = policy.envelope
+    for mate in mates:
+        if mate.id == own_id or not mate.age <= policy.mate_forget:
+            continue
+        if not believable(mate.position, mate.velocity):
+            continue
+        quiet = mate.age > policy.mate_age
+        keep = policy.separation * (2.0 if quiet else 1.0)
+        x = mate.position.x - position.x
+        y = mate.position.y - position.y
+        z = mate.position.z - position.z
+        d = sqrt(x * x + y * y + z * z)
+        if d > 1e6:
+            continue
+        if d <= TINY:
+            x, y, z, d = 0.0, 0.0, (1.0 if own_id < mate.id else -1.0), 1.0
+        ux, uy, uz = x / d, y / d, z / d
+        closing = (v.x - mate.velocity.x) * ux + (v.y - mate.velocity.y) * uy + (v.z - mate.velocity.z) * uz
+        if d > keep:
+            most = stopping_speed(d - keep, e.deceleration, policy.reaction)
+        else:
+            most = -min(0.5 * e.speed_max, 0.5 + 0.5 * (keep - d))
+        excess = closing - most
+        if excess <= 1e-6:
+            continue
+        changed = True
+        share = excess if quiet else 0.5 * excess
+        v = Vec(v.x - share * ux, v.y - share * uy, v.z - share * uz)
+        if d < keep and abs(z) < 0.5 * keep:
+            rise = e.climb_max if own_id < mate.id else -e.sink_max
+            v = Vec(v.x, v.y, -rise)
+    return Separated(v, changed)
