@@ -1,0 +1,61 @@
+"""Strategies by name: the core's own, and those of other distributions.
+
+A distribution adds a strategy through the entry-point group `apollonius.strategies`; the entry
+point names an object with `role` ("pursuer" or "evader") and `decide`, a pure function from a
+`PursuerView` or an `EvaderView` to a `Decision`. It runs interpreted; written in kernel style it
+also compiles.
+"""
+
+from __future__ import annotations
+
+from importlib.metadata import EntryPoint, entry_points
+from typing import Any
+
+from onboard.core.game import EvaderStrategy, PursuerStrategy
+from onboard.core.strategies import DEFAULT, EVADERS, PURSUERS
+from onboard.runtime.config import ConfigError
+
+GROUP = "apollonius.strategies"
+
+
+def pursuer_strategy(name: str) -> PursuerStrategy:
+    """A pursuers' strategy by name ("" = the default). Raises ConfigError for an unknown one."""
+    if (name or DEFAULT) in PURSUERS:
+        return PURSUERS[name or DEFAULT].decide
+    found: PursuerStrategy = _plugin(name, "pursuer", list(PURSUERS))
+    return found
+
+
+def evader_strategy(name: str) -> EvaderStrategy:
+    """The evader's strategy by name ("" = the default). Raises ConfigError for an unknown one."""
+    if (name or DEFAULT) in EVADERS:
+        return EVADERS[name or DEFAULT].decide
+    found: EvaderStrategy = _plugin(name, "evader", list(EVADERS))
+    return found
+
+
+def plugin_names() -> tuple[str, ...]:
+    """Names that other distributions add."""
+    return tuple(sorted({point.name for point in entry_points(group=GROUP)}))
+
+
+def _plugin(name: str, role: str, known: list[str]) -> Any:
+    points = [point for point in entry_points(group=GROUP) if point.name == name]
+    if not points:
+        names = ", ".join([*known, *plugin_names()])
+        raise ConfigError(f"strategy: found '{name}', expected one of: {names}")
+    plugin = _load(points[0])
+    found = getattr(plugin, "role", None)
+    if found != role:
+        raise ConfigError(f"strategy: '{name}' is for the role {found!r}, expected '{role}'")
+    decide = getattr(plugin, "decide", None)
+    if not callable(decide):
+        raise ConfigError(f"strategy: '{name}' has no function 'decide'")
+    return decide
+
+
+def _load(point: EntryPoint) -> Any:
+    try:
+        return point.load()
+    except Exception as error:  # a foreign module may fail in any way
+        raise ConfigError(f"strategy: '{point.name}' ({point.value}) does not load: {error}") from None
