@@ -1,0 +1,32 @@
+"""A share of the long fuzz (`make fuzz`) in every test run."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+
+from tests.fuzz import campaign, framing, signing
+
+
+def test_no_frame_raises_and_none_is_lost() -> None:
+    totals = campaign.run(framing.play, 20_000, 7, None, lambda line: None)
+    assert totals["good"] > 1000
+    assert totals["values"] > 50
+    assert totals["bad"] > 5000
+
+
+def test_no_forgery_passes_and_the_sender_is_always_heard() -> None:
+    totals = campaign.run(signing.play, 5_000, 7, None, lambda line: None)
+    assert {totals[kind] for kind in signing.KINDS_OF_FORGERY} == {5_000}
+    assert totals["legitimate"] == 2_500
+    for cause in ("signature_wrong", "signature_replayed", "signature_unsigned", "signature_future", "truncated"):
+        assert totals[f"counted_{cause}"] > 500
+
+
+def test_a_campaign_continues_where_it_stopped(tmp_path: Path) -> None:
+    resume = tmp_path / "state.json"
+    said: list[str] = []
+    campaign.run(framing.play, 10_000, 3, resume, said.append)
+    half = campaign.run(framing.play, 20_000, 3, resume, said.append)
+    whole: Counter[str] = campaign.run(framing.play, 20_000, 3, None, said.append)
+    assert half == whole
