@@ -60,6 +60,7 @@ def rules(picture: Picture, in_force: InForce, limits: Thresholds, version: str)
         else:
             yield from _link(vehicle, in_force, limits)
             yield from _autopilot(vehicle, in_force, limits)
+            yield from _supervisor(vehicle)
             yield from _fence(picture, vehicle, in_force, limits)
             yield from _identity(picture, vehicle, version)
 
@@ -137,7 +138,8 @@ def _lost(vehicle: VehicleView) -> Finding:
 
 def _link(vehicle: VehicleView, in_force: InForce, limits: Thresholds) -> Iterator[Finding]:
     name = f"vehicle {vehicle.id}"
-    if vehicle.state is not None and vehicle.state_age_s > limits.state_stale_s:
+    spoke_since = vehicle.state_age_s - vehicle.age_s > 0.2  # else it is silent, which is another matter
+    if vehicle.state is not None and vehicle.state_age_s > limits.state_stale_s and spoke_since:
         yield Finding(
             "stale", vehicle.id, WARNING, f"{name} lives, but its position is old",
             "its autopilot or its link to the agent is silent: check the wiring", 0.2,
@@ -199,11 +201,14 @@ def _autopilot(vehicle: VehicleView, in_force: InForce, limits: Thresholds) -> I
             "estimate", vehicle.id, ERROR, f"{name}'s autopilot does not trust its position",
             "do not start; in flight: hold and let the pilot take over", 1.0,
         )  # fmt: skip
+
+
+def _supervisor(vehicle: VehicleView) -> Iterator[Finding]:
     spoken = vehicle.decision.supervisor if vehicle.decision and vehicle.decision_age_s < 1.0 else ""
     if spoken not in ("", "ok"):
         reason = f": {vehicle.decision.reason}" if vehicle.decision and vehicle.decision.reason else ""
         yield Finding(
-            "supervisor", vehicle.id, WARNING, f"{name}'s supervisor orders {spoken}{reason}",
+            "supervisor", vehicle.id, WARNING, f"vehicle {vehicle.id}'s supervisor orders {spoken}{reason}",
             "it keeps the vehicle safe; mend the cause, then `resume`", 0.2,
         )  # fmt: skip
 

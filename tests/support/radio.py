@@ -1,0 +1,158 @@
+"""What vehicles, sensors and masters say on the bus, for tests of the ground station."""
+
+from __future__ import annotations
+
+import msgspec
+
+from gcs import journal
+from gcs.picture import Picture, VehicleView
+from gcs.rules import Thresholds
+from gcs.watch import Watch
+from onboard.wire import swarm, topics
+from onboard.wire.swarm import Codec, Message, Phase, Role
+
+NS = 1_000_000_000
+START_NS = 1_700_000_000 * NS
+GAME = "test"
+
+TOPIC: dict[type[Message], tuple[topics.Topic, Codec]] = {  # type: ignore[type-arg]
+    swarm.State: (topics.STATE, swarm.STATE),
+    swarm.Health: (topics.HEALTH, swarm.HEALTH),
+    swarm.DecisionReport: (topics.DECISION, swarm.DECISION),
+    swarm.Event: (topics.EVENTS, swarm.EVENT),
+    swarm.Track: (topics.TRACK, swarm.TRACK),
+    swarm.Setup: (topics.SETUP, swarm.SETUP),
+    swarm.PhaseChange: (topics.PHASE, swarm.PHASE),
+    swarm.Outcome: (topics.OUTCOME, swarm.OUTCOME),
+    swarm.Master: (topics.MASTER, swarm.MASTER),
+    swarm.EvaderBrief: (topics.EVADER_BRIEF, swarm.EVADER_BRIEF),
+}
+
+
+def role_of(i: int) -> Role:
+    """The evader has id 1."""
+    return Role.EVADER if i == 1 else Role.PURSUER
+
+
+def on_bus(message: Message, game: str = GAME) -> tuple[str, bytes]:
+    """Key and payload of a message."""
+    topic, codec = TOPIC[type(message)]
+    return topics.key(game, topic, getattr(message, "id", None)), codec.encode(message)
+
+
+def state(i: int, stamp_ns: int = START_NS, **changes: object) -> swarm.State:
+    """A vehicle that flies north at 10 m/s, 100 m east of its neighbour."""
+    base = swarm.State(
+        id=i, role=role_of(i), stamp_ns=stamp_ns, position=(0.0, 100.0 * i, -50.0),
+        velocity=(10.0, 0.0, 0.0), airspeed=10.0, wind=(0.0, 0.0, 0.0), roll=0.0, pitch=0.0, yaw=0.0,
+        mode="GUIDED", armed=True, nonce=1000 + i,
+    )  # fmt: skip
+    return msgspec.structs.replace(base, **changes)
+
+
+def health(i: int, stamp_ns: int = START_NS, **changes: object) -> swarm.Health:
+    """A vehicle in full health that acts."""
+    base = swarm.Health(
+        id=i, role=role_of(i), stamp_ns=stamp_ns, stage="acting", lacks=(),
+        autopilot="ArduCopter", mode="GUIDED", armed=True, battery=0.9, link_quality=1.0,
+        telemetry_rate_hz=20.0, setpoint_rate_hz=20.0, clock_offset_s=0.0, gps_fix=3, ekf_ok=True,
+        supervisor="ok", version="0.1.0", counters={}, nonce=1000 + i,
+    )  # fmt: skip
+    return msgspec.structs.replace(base, **changes)
+
+
+def decision(i: int, stamp_ns: int = START_NS, **changes: object) -> swarm.DecisionReport:
+    """A pursuer that cuts the evader off."""
+    base = swarm.DecisionReport(
+        id=i, stamp_ns=stamp_ns, t=1.0, level="tactical", module="geometric", strategy="apollonius",
+        rule="intercept", velocity=(10.0, 0.0, 0.0), aim=(200.0, 100.0, -50.0), time_to_aim=12.5, miss=1.5,
+    )  # fmt: skip
+    return msgspec.structs.replace(base, **changes)
+
+
+def event(i: int, number: int, **changes: object) -> swarm.Event:
+    """Something that happened to a vehicle."""
+    base = swarm.Event(i, number, START_NS, swarm.Severity.INFO, "note", f"event {number}", nonce=1000 + i)
+    return msgspec.structs.replace(base, **changes)
+
+
+def track(i: int, stamp_ns: int = START_NS, **changes: object) -> swarm.Track:
+    """A sensor's sight of a vehicle."""
+    base = swarm.Track(i, stamp_ns, (0.0, 100.0 * i, -50.0), (10.0, 0.0, 0.0), (1.0,) * 6, "radar")
+    return msgspec.structs.replace(base, **changes)
+
+
+def setup(count: int = 3, pursuer_speed: float = 10.0, **changes: object) -> swarm.Setup:
+    """A game of one evader and `count` − 1 pursuers."""
+    roster = tuple(
+        swarm.Member(i, role_of(i), 10.0 if i == 1 else pursuer_speed, (0.0, 100.0 * i, -50.0))
+        for i in range(1, count + 1)
+    )
+    base = swarm.Setup(
+        game=GAME, scenario="meeting", scenario_hash="abc", master="bridge",
+        origin=swarm.Origin(47.0, 8.0, 400.0), roster=roster, capture_radius=2.0, safety_distance=4.0,
+        lambda_=100.0, beta=1.0, epsilon_min=1.0, horizon=100.0,
+    )  # fmt: skip
+    return msgspec.structs.replace(base, **changes)
+
+
+class Tower:
+    """A ground station's watch and a hand on the clock."""
+
+    def __init__(self, limits: Thresholds | None = None, version: str = "0.1.0") -> None:
+        self.watch = Watch(GAME, limits, version)
+        self.now_ns = START_NS
+        self.stream: list[tuple[str, bytes, int]] = []  # all that was heard, as a recorder has it
+
+    def hear(self, *messages: Message) -> None:
+        """Messages arrive now."""
+        for message in messages:
+            self.hear_raw(*on_bus(message))
+
+    def hear_raw(self, key: str, payload: bytes) -> None:
+        """Bytes arrive now."""
+        self.stream.append((key, payload, self.now_ns))
+        self.watch.apply(key, payload, self.now_ns)
+
+    def note(self, name: str, payload: bytes) -> None:
+        """An entry of the station's own journal."""
+        self.hear_raw(journal.key(GAME, name), payload)
+
+    def token(self, i: int, alive: bool) -> None:
+        """A liveliness token appears or goes."""
+        entry = journal.Presence(topics.key(GAME, topics.ALIVE, i), alive)
+        self.note("presence", journal.PRESENCE.encode(entry))
+
+    def wait(self, seconds: float) -> None:
+        """Let time pass in silence."""
+        self.now_ns += round(seconds * NS)
+        self.watch.tick(self.now_ns)
+
+    def fly(self, seconds: float, *ids: int, state_hz: int = 20, **changes: object) -> None:
+        """These vehicles send state at 20 Hz and health at 2 Hz meanwhile; `changes` are to their health."""
+        for step in range(round(seconds * state_hz)):
+            for i in ids:
+                self.hear(state(i, self.now_ns))
+                if step % (state_hz // 2) == 0:
+                    self.hear(health(i, self.now_ns, **changes))
+            self.wait(1.0 / state_hz)
+
+    @property
+    def picture(self) -> Picture:
+        """The picture now."""
+        return self.watch.picture(self.now_ns)
+
+    def vehicle(self, i: int) -> VehicleView:
+        """One vehicle of it."""
+        found = self.picture.vehicle(i)
+        assert found is not None
+        return found
+
+    def alerts(self) -> set[str]:
+        """Names of the alerts in force."""
+        return {alert.name for alert in self.picture.alerts}
+
+
+def phase(which: Phase, t0_ns: int = 0, stamp_ns: int = START_NS) -> swarm.PhaseChange:
+    """The master's word on the game."""
+    return swarm.PhaseChange(which, t0_ns, stamp_ns)
