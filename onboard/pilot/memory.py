@@ -1,0 +1,52 @@
+"""What a pilot remembers from step to step: a predictor for each track, and how fast it has seen them fly."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+
+from onboard.core.vectors import ZERO, Vec, norm, sub
+from onboard.pilot.predictor import Prediction, TrackPredictor, Trainer
+from onboard.pilot.setup import TrackSample
+
+FORGETTING = 1.0 / 60.0  # share of a remembered top speed that fades in a second
+TRACKS_MAX = 256  # tracks remembered; more than any roster
+
+
+class Memory:
+    """Tracks by id, their training, and the upper envelope of their airspeeds."""
+
+    def __init__(self) -> None:
+        self.tracks: dict[Hashable, TrackPredictor] = {}  # by id
+        self.trainer = Trainer()
+        self._fastest: dict[int, tuple[float, float]] = {}  # id → (envelope [m/s], instant [s])
+
+    def take(self, samples: tuple[TrackSample, ...]) -> None:
+        """Give new measurements to their predictors."""
+        for sample in samples:
+            predictor = self.tracks.get(sample.id)
+            if predictor is None:
+                if len(self.tracks) >= TRACKS_MAX:
+                    continue
+                predictor = self.tracks[sample.id] = TrackPredictor(seed=sample.id)
+            predictor.add(sample.t, sample.position, sample.velocity, sample.variance)
+
+    def predict(self, id: int, t: float) -> Prediction | None:
+        """A track at instant `t`; None where there is none that is usable."""
+        predictor = self.tracks.get(id)
+        if predictor is None:
+            return None
+        prediction = predictor.predict(t)
+        return prediction if prediction.usable else None
+
+    def top_speed(self, id: int, t: float, velocity: Vec, wind: Vec = ZERO) -> float:
+        """Upper envelope of the filtered airspeed of a track with no declared maximum [m/s]."""
+        speed = norm(sub(velocity, wind))
+        envelope, then = self._fastest.get(id, (speed, t))
+        faded = envelope * max(0.0, 1.0 - FORGETTING * max(0.0, t - then))
+        best = max(speed, faded)
+        self._fastest[id] = (best, t)
+        return best
+
+    def train(self, now: float, slices: int = 1) -> int:
+        """Advance the predictors' training by at most `slices` of about 1 ms; returns how many were done."""
+        return self.trainer.advance(now, self.tracks, slices)
