@@ -30,7 +30,8 @@ def signed(rng: np.random.Generator, stamp: int, key: bytes, link: int) -> bytes
     body = bytes([size, 1, 0, int(rng.integers(256)), 1, 1]) + number.to_bytes(3, "little") + rng.bytes(size)
     crc = int(dialect.x25crc(body + EXTRA[number]).crc)
     frame = b"\xfd" + body + crc.to_bytes(2, "little") + bytes([link]) + stamp.to_bytes(6, "little")
-    return frame + sha256(key + frame).digest()[:6]
+    whole: bytes = frame + sha256(key + frame).digest()[:6]
+    return whole
 
 
 def forgery(rng: np.random.Generator, kind: str, heard: list[bytes], now: int) -> bytes:

@@ -19,8 +19,8 @@ def test_no_forgery_passes_and_the_sender_is_always_heard() -> None:
     totals = campaign.run(signing.play, 5_000, 7, None, lambda line: None)
     assert {totals[kind] for kind in signing.KINDS_OF_FORGERY} == {5_000}
     assert totals["legitimate"] == 2_500
-    for cause in ("signature_wrong", "signature_replayed", "signature_unsigned", "signature_future", "truncated"):
-        assert totals[f"counted_{cause}"] > 500
+    for verdict in ("wrong", "replayed", "unsigned", "future"):
+        assert totals[f"counted_signature_{verdict}"] > 500
 
 
 def test_a_campaign_continues_where_it_stopped(tmp_path: Path) -> None:
