@@ -6,6 +6,7 @@ from enum import Enum
 from typing import NamedTuple
 
 ROOT = "apollonius"
+DEFAULT_GAME = "game"  # the game that all programs join unless told another
 
 
 class Delivery(Enum):
