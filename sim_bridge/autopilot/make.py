@@ -1,0 +1,71 @@
+"""From a scenario's vehicle to its autopilot."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import atan, degrees
+
+from onboard.core.vectors import Vec
+from onboard.runtime.scenario import Kind, VehicleSpec
+from onboard.wire.geodesy import Frame
+from onboard.wire.signing import Signing
+from sim_bridge.autopilot.arducopter import ArduCopter
+from sim_bridge.autopilot.arduplane import ArduPlane
+from sim_bridge.autopilot.machine import Autopilot
+from sim_bridge.autopilot.px4 import Px4Multicopter
+from sim_bridge.autopilot.setup import Setup
+from sim_bridge.flight.kinematic import G, ability_of
+from sim_bridge.motion import Motion
+
+PERSONALITIES: Mapping[Kind, type[Autopilot]] = {
+    Kind.PX4: Px4Multicopter,
+    Kind.ARDUCOPTER: ArduCopter,
+    Kind.ARDUPLANE: ArduPlane,
+}
+OFFSET = Vec(3.0, -2.0, -0.5)  # [m; NED] per system id, of an autopilot's own origin from its home
+
+
+def autopilot_for(
+    spec: VehicleSpec,
+    kind: Kind,
+    system: int,
+    frame: Frame,
+    start: Motion,
+    *,
+    airborne: bool = True,
+    now_ns: int = 0,
+    epoch_ns: int = 0,
+    parameters: Mapping[str, float] | None = None,
+    signing: Signing | None = None,
+    ready_s: float = 12.0,
+    battery_s: float = 1200.0,
+) -> Autopilot:
+    """The autopilot of vehicle `system`, that starts with `start` in the game frame `frame`.
+
+    Home is the ground below the start, at the altitude of the game's origin. Raises ValueError for
+    parameters that this kind does not have.
+    """
+    p = start.position
+    ground = Vec(p.x, p.y, 0.0 if airborne else p.z)
+    own = Vec(ground.x + system * OFFSET.x, ground.y + system * OFFSET.y, ground.z + (system % 10) * OFFSET.z)
+    ability = ability_of(spec, kind)
+    setup = Setup(
+        kind=kind,
+        system=system,
+        frame=frame,
+        start=start,
+        home=frame.geodetic_from_ned(ground),
+        origin=frame.geodetic_from_ned(own),
+        epoch_ns=epoch_ns,
+        airborne=airborne,
+        speed_min=ability.speed_min,
+        speed_max=ability.speed_max,
+        speed_cruise=spec.speed,
+        bank_max_deg=degrees(atan(ability.turn_rate * max(spec.speed, 1.0) / G)),
+        ready_s=ready_s,
+        healthy_s=0.6 * ready_s,
+        battery_s=battery_s,
+        parameters=parameters or {},
+        signing=signing,
+    )
+    return PERSONALITIES[kind](setup, now_ns)
