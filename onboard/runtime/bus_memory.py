@@ -1,0 +1,382 @@
+"""The bus in memory: one `MemoryBroker` in a process, a `MemoryBus` for each who would have a session.
+
+It behaves as the Zenoh bus does, so that programs cannot tell: a publisher keeps its cached values
+and events and hands them to late joiners and to a broker that comes back; messages of one publisher
+arrive in order; LATEST messages may be lost on an impaired connection, all others come late instead,
+as over TCP.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections import Counter, deque
+from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING
+
+from onboard.runtime.impairment import Channel, Impairment
+from onboard.runtime.patterns import matches
+from onboard.runtime.protocols import Sample
+from onboard.wire.topics import Delivery
+
+if TYPE_CHECKING:
+    from numpy.random import Generator
+
+EVENTS_KEPT = 256  # events a publisher keeps of each key
+CALLS_MAX = 4096  # calls under way to one connection before LATEST messages to it are dropped
+RECONNECT_S = 0.5  # a connection is back at most this long after the broker
+RESEND_S = 0.2  # what an impaired connection loses of reliable messages comes this much later
+_NS = 1_000_000_000
+
+
+class _Undo:
+    """A subscription: closing runs `undo`, once."""
+
+    def __init__(self, undo: Callable[[], None]) -> None:
+        self._undo: Callable[[], None] | None = undo
+
+    def close(self) -> None:
+        """Undo it; idempotent."""
+        undo, self._undo = self._undo, None
+        if undo is not None:
+            undo()
+
+
+class _Kept:
+    """What a publisher keeps of one key: (number, payload), the oldest first."""
+
+    def __init__(self, delivery: Delivery) -> None:
+        self.number = 0
+        self.entries: deque[tuple[int, bytes]] = deque(
+            maxlen=EVENTS_KEPT if delivery is Delivery.EVENT else 1
+        )
+
+
+class _Listener:
+    """One subscription of one connection; numbers tell what it has had already."""
+
+    def __init__(self, pattern: str, receiver: Callable[[Sample], None]) -> None:
+        self.pattern = pattern
+        self.receiver = receiver
+        self.had: dict[tuple[int, str], int] = {}  # (publisher, key) → number last delivered
+        self.open = True
+
+
+class _Watcher:
+    """One presence subscription: what it believes, so that it is told changes only."""
+
+    def __init__(self, pattern: str, receiver: Callable[[str, bool], None]) -> None:
+        self.pattern = pattern
+        self.receiver = receiver
+        self.alive: set[str] = set()
+        self.open = True
+
+
+class MemoryBroker:
+    """Joins the connections of one process; can be killed and brought back."""
+
+    def __init__(self, impairment: Impairment | None = None, rng: Generator | None = None) -> None:
+        if impairment is not None and rng is None:
+            raise ValueError("an impaired broker needs a generator")
+        self._impairment = impairment
+        self._rng = rng
+        self.up = True
+        self.buses: list[MemoryBus] = []
+        self._routes: dict[str, list[tuple[MemoryBus, _Listener]]] = {}
+
+    def connect(self, name: str = "") -> MemoryBus:
+        """A new connection, with an impaired channel of its own where the broker is impaired."""
+        channel = None
+        if self._impairment is not None and self._rng is not None:
+            channel = Channel(self._impairment, self._rng.spawn(1)[0])
+        bus = MemoryBus(self, name or f"bus {len(self.buses) + 1}", channel)
+        self.buses.append(bus)
+        bus._online = self.up
+        return bus
+
+    def kill(self) -> None:
+        """The broker dies: everybody loses everybody, at once."""
+        self.up = False
+        for bus in self.buses:
+            bus._online = False
+        for bus in self.buses:
+            bus._lost()
+
+    def restore(self) -> None:
+        """The broker is back: the connections return within `RECONNECT_S`, in the order they were made."""
+        self.up = True
+        for bus in self.buses:
+            asyncio.get_running_loop().call_later(RECONNECT_S, bus._returned)
+
+    def route(self, key: str) -> list[tuple[MemoryBus, _Listener]]:
+        """Who hears a key."""
+        found = self._routes.get(key)
+        if found is None:
+            found = self._routes[key] = [
+                (bus, listener)
+                for bus in self.buses
+                for listener in bus.listeners
+                if matches(listener.pattern, key)
+            ]
+        return found
+
+    def changed(self) -> None:
+        """Forget the routes: somebody subscribed or left."""
+        self._routes.clear()
+
+    def tokens_changed(self) -> None:
+        """Tell all watchers what came and went."""
+        for bus in self.buses:
+            bus._look()
+
+    def tokens(self) -> list[str]:
+        """The keys that are alive, each once."""
+        return list(dict.fromkeys(key for bus in self.buses if bus._online for key in bus.tokens))
+
+
+class MemoryBus:
+    """One connection to a `MemoryBroker`. `channel` is its impairment, of what comes in."""
+
+    def __init__(self, broker: MemoryBroker, name: str, channel: Channel | None) -> None:
+        self.name = name
+        self.channel = channel
+        self.listeners: list[_Listener] = []
+        self.tokens: list[str] = []
+        self._broker = broker
+        self._watchers: list[_Watcher] = []
+        self._servers: list[tuple[str, Callable[[bytes], bytes]]] = []
+        self._kept: dict[str, _Kept] = {}
+        self._counts: Counter[str] = Counter()
+        self._pending = 0
+        self._reliable_ns = 0  # arrival of the last reliable message: the next comes no sooner
+        self._reliable: deque[tuple[bytes, Callable[[bytes], None]]] = deque(maxlen=CALLS_MAX)
+        self._pumping = False
+        self._online = False
+        self._closed = False
+
+    def publish(self, key: str, payload: bytes, delivery: Delivery) -> None:
+        """Put a message; counts `no_bus` while there is no broker."""
+        if self._closed:
+            self._counts["closed"] += 1
+            return
+        number = 0
+        if delivery in (Delivery.CACHED, Delivery.EVENT):
+            kept = self._kept.get(key)
+            if kept is None:
+                kept = self._kept[key] = _Kept(delivery)
+            kept.number += 1
+            number = kept.number
+            kept.entries.append((number, payload))
+        if not self._online:
+            self._counts["no_bus"] += 1
+            return
+        self._counts["published"] += 1
+        sample = Sample(key, payload)
+        for bus, listener in self._broker.route(key):
+            if bus._online:
+                bus._hand(listener, sample, delivery, (id(self), key), number)
+
+    def subscribe(self, pattern: str, receiver: Callable[[Sample], None]) -> _Undo:
+        """Call `receiver` for what matches; what publishers keep comes first."""
+        listener = _Listener(pattern, receiver)
+        self.listeners.append(listener)
+        self._broker.changed()
+        if self._online:
+            self._catch_up(listener)
+
+        def undo() -> None:
+            listener.open = False
+            self.listeners.remove(listener)
+            self._broker.changed()
+
+        return _Undo(undo)
+
+    def serve(self, key: str, handler: Callable[[bytes], bytes]) -> _Undo:
+        """Answer requests on `key`."""
+        entry = (key, handler)
+        self._servers.append(entry)
+        return _Undo(lambda: self._servers.remove(entry) if entry in self._servers else None)
+
+    async def request(self, key: str, payload: bytes, timeout_s: float) -> list[bytes]:
+        """The replies of all who serve `key`: once all are there, or what came within `timeout_s`."""
+        asked = [
+            (bus, handler)
+            for bus in (self._broker.buses if self._online else ())
+            for served, handler in (bus._servers if bus._online else ())
+            if matches(key, served)
+        ]
+        replies: list[bytes] = []
+        complete = asyncio.Event()
+
+        def answer(bus: MemoryBus, handler: Callable[[bytes], bytes], question: bytes) -> None:
+            reply = handler(question)
+            bus._counts["answered"] += 1
+            self._soon(Delivery.REQUEST, reply, arrived)
+
+        def arrived(reply: bytes) -> None:
+            replies.append(reply)
+            if len(replies) >= len(asked):
+                complete.set()
+
+        self._counts["requests" if self._online else "no_bus"] += 1
+        for bus, handler in asked:
+            bus._soon(Delivery.REQUEST, payload, partial(answer, bus, handler))
+        if asked:
+            try:
+                async with asyncio.timeout(timeout_s):
+                    await complete.wait()
+            except TimeoutError:
+                self._counts["request_timeout"] += 1
+        else:
+            self._counts["request_unserved"] += 1
+        return list(replies)
+
+    def announce(self, key: str) -> _Undo:
+        """Declare a liveliness token."""
+        self.tokens.append(key)
+        self._broker.tokens_changed()
+
+        def undo() -> None:
+            self.tokens.remove(key)
+            self._broker.tokens_changed()
+
+        return _Undo(undo)
+
+    def presence(self, pattern: str, receiver: Callable[[str, bool], None]) -> _Undo:
+        """Call `receiver(key, alive)`, for tokens that already exist first."""
+        watcher = _Watcher(pattern, receiver)
+        self._watchers.append(watcher)
+        self._look()
+
+        def undo() -> None:
+            watcher.open = False
+            self._watchers.remove(watcher)
+
+        return _Undo(undo)
+
+    def connected(self) -> bool:
+        """Whether the broker is there."""
+        return self._online
+
+    def counters(self) -> dict[str, int]:
+        """published, received, dropped by cause, and what the impairment did."""
+        counts = dict(self._counts)
+        if self.channel is not None:
+            counts.update({f"in_{cause}": count for cause, count in self.channel.counts.items()})
+        return counts
+
+    async def close(self) -> None:
+        """Leave the broker; tokens and kept values go with it."""
+        if self._closed:
+            return
+        self._closed = True
+        self._online = False
+        for listener in self.listeners:
+            listener.open = False
+        for watcher in self._watchers:
+            watcher.open = False
+        self.tokens.clear()
+        self._broker.buses.remove(self)
+        self._broker.changed()
+        self._broker.tokens_changed()
+
+    def _lost(self) -> None:
+        self._reliable.clear()
+        self._look()
+
+    def _returned(self) -> None:
+        if self._closed or self._online or not self._broker.up:
+            return
+        self._online = True
+        for listener in self.listeners:
+            self._catch_up(listener)
+        for bus in self._broker.buses:
+            if bus is not self and bus._online:
+                for listener in bus.listeners:
+                    bus._take_kept(self, listener)
+        self._broker.tokens_changed()
+
+    def _catch_up(self, listener: _Listener) -> None:
+        """Hand a listener what all publishers keep and it has not had."""
+        for publisher in self._broker.buses:
+            if publisher._online:
+                self._take_kept(publisher, listener)
+
+    def _take_kept(self, publisher: MemoryBus, listener: _Listener) -> None:
+        for key, kept in publisher._kept.items():
+            if matches(listener.pattern, key):
+                for number, payload in kept.entries:
+                    self._hand(listener, Sample(key, payload), Delivery.CACHED, (id(publisher), key), number)
+
+    def _hand(
+        self, listener: _Listener, sample: Sample, delivery: Delivery, source: tuple[int, str], number: int
+    ) -> None:
+        """Bring a sample to one of the own listeners, through the impairment."""
+
+        def arrived(payload: bytes) -> None:
+            if not self._online or not listener.open:
+                return
+            if number:
+                if listener.had.get(source, 0) >= number:
+                    return
+                listener.had[source] = number
+            self._counts["received"] += 1
+            listener.receiver(Sample(sample.key, payload))
+
+        self._soon(delivery, sample.payload, arrived)
+
+    def _soon(self, delivery: Delivery, payload: bytes, arrived: Callable[[bytes], None]) -> None:
+        """Call `arrived` with what comes of a payload, in a later round of the loop."""
+        loop = asyncio.get_running_loop()
+        latest = delivery is Delivery.LATEST
+        if latest and self._pending >= CALLS_MAX:
+            self._counts["overflow"] += 1
+        elif self.channel is None:
+            self._pending += 1
+            loop.call_soon(self._land, payload, arrived)
+        elif latest:
+            now_ns = round(loop.time() * _NS)
+            for arrival_ns, shape in self.channel.fate(payload, now_ns):
+                self._pending += 1
+                loop.call_later((arrival_ns - now_ns) / _NS, self._land, shape, arrived)
+        else:
+            if len(self._reliable) == self._reliable.maxlen:
+                self._counts["overflow"] += 1
+            self._reliable.append((payload, arrived))
+            if not self._pumping:
+                self._pump(self.channel)
+
+    def _pump(self, channel: Channel) -> None:
+        """Pass on the reliable messages in order; what the channel loses is sent again later."""
+        loop = asyncio.get_running_loop()
+        now_ns = round(loop.time() * _NS)
+        self._pumping = False
+        while self._reliable:
+            payload, arrived = self._reliable[0]
+            fate = channel.fate(b"", now_ns)
+            if not fate:
+                self._pumping = True
+                loop.call_later(RESEND_S, self._pump, channel)
+                return
+            self._reliable.popleft()
+            self._reliable_ns = max(self._reliable_ns, fate[0][0])
+            self._pending += 1
+            loop.call_later((self._reliable_ns - now_ns) / _NS, self._land, payload, arrived)
+
+    def _land(self, payload: bytes, arrived: Callable[[bytes], None]) -> None:
+        self._pending -= 1
+        arrived(payload)
+
+    def _look(self) -> None:
+        """Tell the own watchers which tokens came and went."""
+        tokens = self._broker.tokens() if self._online else []
+        for watcher in self._watchers:
+            seen = {key for key in tokens if matches(watcher.pattern, key)}
+            for key in sorted(watcher.alive ^ seen):
+                self._soon(Delivery.REQUEST, b"", partial(self._tell, watcher, key, key in seen))
+            watcher.alive = seen
+
+    @staticmethod
+    def _tell(watcher: _Watcher, key: str, alive: bool, _: bytes) -> None:
+        if watcher.open:
+            watcher.receiver(key, alive)
