@@ -16,6 +16,15 @@ from onboard.core.safety.policy import Action, Cause, Policy, Seen
 from onboard.core.safety.separation import keep_apart
 from onboard.core.vectors import ZERO, Vec, add, along, clamp, norm, sub
 
+PROTECTIVE = (
+    Cause.FENCE_AHEAD,
+    Cause.CEILING_AHEAD,
+    Cause.FLOOR_AHEAD,
+    Cause.OUTSIDE_FENCE,
+    Cause.SEPARATION,
+    Cause.LAYER,
+)
+
 
 class Watch(NamedTuple):
     """The supervisor's memory from step to step."""
@@ -24,6 +33,7 @@ class Watch(NamedTuple):
     cause: Cause = Cause.NONE
     since: float = 0.0  # monotonic [s]
     urged: float = -1e9  # when the action in force was last demanded [s]
+    named: float = -1e9  # when the cause in force was last demanded [s]
     floor: Action = Action.PASS  # latched: nothing milder until control is handed back
     floor_cause: Cause = Cause.NONE
     demand: Vec = ZERO  # last setpoint, relative to the air [m/s]
@@ -90,9 +100,21 @@ def advance(watch: Watch, demand: Demand, handed_back: bool, now: float, settle:
         action = watch.action
         cause = watch.cause
         urged = watch.urged
+    named = urged
+    other = action == Action.CLIP and watch.action == Action.CLIP and cause != watch.cause
+    graver = cause in PROTECTIVE and watch.cause not in PROTECTIVE
+    if other and not graver and now - watch.named < settle:
+        cause = watch.cause  # one event for a clip of many reasons, not one a step
+        named = watch.named
     since = watch.since if action == watch.action and cause == watch.cause else now
     return watch._replace(
-        action=action, cause=cause, since=since, urged=urged, floor=floor, floor_cause=floor_cause
+        action=action,
+        cause=cause,
+        since=since,
+        urged=urged,
+        named=named,
+        floor=floor,
+        floor_cause=floor_cause,
     )
 
 
