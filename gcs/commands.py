@@ -102,6 +102,12 @@ class CommandBook:
         if reply.state in FINAL:
             leg.took_ns = now_ns
 
+    def state(self, command_id: str, vehicle_id: int) -> tuple[str, str, str]:
+        """State, reason and mode of one leg as last answered; empty where there is none."""
+        order = self._orders.get(command_id)
+        leg = order.legs.get(vehicle_id) if order else None
+        return (leg.state, leg.reason, leg.mode) if leg else ("", "", "")
+
     def due(self, now_ns: int) -> list[Due]:
         """What is to be sent now; counts as sent."""
         found = []

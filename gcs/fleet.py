@@ -369,7 +369,7 @@ class Fleet:
             return presence
         if name == "remark":
             remark = journal.REMARK.decode(payload, self.drops)
-            if remark is not None:
+            if remark is not None and not remark.advice:  # with advice it becomes an alert, logged as such
                 self._say(now_ns, 0, remark.severity, remark.kind, remark.text)
             return remark
         if name == "sent":

@@ -39,7 +39,8 @@ class Thresholds(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_onl
     gps_fix: int = SUPERVISOR.gps_fix
     link_low: float = 0.70  # share of expected telemetry that arrives
     link_margin: float = 0.10
-    clock_offset_s: float = SUPERVISOR.clock_jump / 2
+    clock_offset_s: float = 0.05
+    clock_unready_s: float = 0.2  # an agent is not ready beyond this
     fence_near_m: float = SUPERVISOR.fence_margin
     fence_clear_m: float = 2.0  # beyond the limit, to clear
     separation_clear: float = 1.15  # clears at this multiple of the separation
@@ -161,8 +162,9 @@ def _link(vehicle: VehicleView, in_force: InForce, limits: Thresholds) -> Iterat
         )  # fmt: skip
     limit = limits.clock_offset_s * (0.7 if in_force(f"clock:{vehicle.id}") else 1.0)
     if abs(health.clock_offset_s) > limit:
+        unready = abs(health.clock_offset_s) > limits.clock_unready_s
         yield Finding(
-            "clock", vehicle.id, WARNING, f"{name}'s clock is off by {health.clock_offset_s:+.2f} s",
+            "clock", vehicle.id, ERROR if unready else WARNING, f"{name}'s clock is off by {health.clock_offset_s:+.2f} s",
             "synchronise its clock (chrony, NTP): t₀ and tracks depend on it", 1.0,
         )  # fmt: skip
     if vehicle.missed_events > 0:

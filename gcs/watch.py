@@ -31,7 +31,7 @@ class Watch:
         self.alerts = Alerts()
         self._limits = limits or rules.Thresholds()
         self._version = version
-        self._remarks: dict[str, Finding] = {}
+        self.remarks: dict[str, Finding] = {}  # standing ones, by kind
         self._next_ns: int | None = None
 
     def apply(self, key: str, payload: bytes, now_ns: int) -> Message | None:
@@ -88,7 +88,7 @@ class Watch:
 
         def find(in_force: Callable[[str], bool]) -> Iterator[Finding]:
             yield from rules.rules(picture, in_force, self._limits, self._version)
-            yield from self._remarks.values()
+            yield from self.remarks.values()
 
         for alert in self.alerts.judge(find, at_ns):
             self._log(alert, at_ns)
@@ -107,9 +107,9 @@ class Watch:
 
     def _remark(self, remark: Remark) -> None:
         if remark.over:
-            self._remarks.pop(remark.kind, None)
+            self.remarks.pop(remark.kind, None)
         elif remark.advice and remark.severity is not Severity.INFO:
-            self._remarks[remark.kind] = Finding(remark.kind, 0, remark.severity, remark.text, remark.advice)
+            self.remarks[remark.kind] = Finding(remark.kind, 0, remark.severity, remark.text, remark.advice)
 
     def _say(self, now_ns: int, severity: Severity, kind: str, text: str) -> None:
         self.fleet.log.append(LogLine(at_ns=now_ns, id=0, severity=severity, kind=kind, text=text))

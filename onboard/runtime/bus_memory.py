@@ -2,8 +2,8 @@
 
 It behaves as the Zenoh bus does, so that programs cannot tell: a publisher keeps its cached values
 and events and hands them to late joiners and to a broker that comes back; messages of one publisher
-arrive in order; LATEST messages may be lost on an impaired connection, all others come late instead,
-as over TCP.
+arrive in order; LATEST messages, requests and replies may be lost on an impaired connection (who asks
+asks again, sooner than TCP would), all others come late instead, as over TCP.
 """
 
 from __future__ import annotations
@@ -211,7 +211,7 @@ class MemoryBus:
         def answer(bus: MemoryBus, handler: Callable[[bytes], bytes], question: bytes) -> None:
             reply = handler(question)
             bus._counts["answered"] += 1
-            self._soon(Delivery.REQUEST, reply, arrived)
+            self._soon(Delivery.LATEST, reply, arrived)
 
         def arrived(reply: bytes) -> None:
             replies.append(reply)
@@ -220,7 +220,7 @@ class MemoryBus:
 
         self._counts["requests" if self._online else "no_bus"] += 1
         for bus, handler in asked:
-            bus._soon(Delivery.REQUEST, payload, partial(answer, bus, handler))
+            bus._soon(Delivery.LATEST, payload, partial(answer, bus, handler))
         if asked:
             try:
                 async with asyncio.timeout(timeout_s):
