@@ -29,8 +29,8 @@ def _root() -> None:
 
 
 @app.command(
-    epilog="Examples:  sim-bridge planar   |   sim-bridge planar my.toml --strategy pure-pursuit --figures out"
-    "   |   sim-bridge planar my.toml --json",
+    epilog="Examples: sim-bridge planar | sim-bridge planar my.toml --strategy pure-pursuit --figures out"
+    " | sim-bridge planar my.toml --json",
 )
 def planar(
     scenarios: Annotated[

@@ -108,7 +108,7 @@ def animate(played: Played, path: Path, seconds: float = 10.0, fps: int = 20) ->
     if ending not in (".gif", ".mp4"):
         raise ConfigError(f"--animate: found '{path.name}', expected a name ending in .gif or .mp4")
     if ending == ".mp4" and not FFMpegWriter.isAvailable():
-        raise ConfigError("--animate: an .mp4 needs the program ffmpeg, which is not here; .gif needs nothing")
+        raise ConfigError("--animate: .mp4 needs ffmpeg, which is not here; .gif needs nothing")
     figure, axis = plt.subplots(figsize=(7.5, 7.5), layout="constrained")
     count = min(len(played.frames), max(2, int(seconds * fps)))
     chosen = [round(k * (len(played.frames) - 1) / (count - 1)) for k in range(count)]

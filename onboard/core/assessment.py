@@ -104,42 +104,40 @@ def largest_free_cap(cones: tuple[Cone, ...]) -> Cap:
     if not seats:
         return Cap(NORTH, pi)
     best = Cap(NORTH, 0.0)
-    for candidate in _candidates(seats):
-        if candidate.radius > best.radius and all(
-            angle_between(candidate.axis, axis) - h >= candidate.radius - 1e-9 for axis, h in seats
-        ):
-            best = candidate
+    for centre in _centres(seats):
+        room = min(angle_between(centre, axis) - h for axis, h in seats)
+        if room > best.radius:
+            best = Cap(centre, room)
     return best
 
 
-def _candidates(seats: tuple[tuple[Vec, float], ...]) -> list[Cap]:
+Seat = tuple[Vec, float]  # axis and half-angle of a cone
+
+
+def _centres(seats: tuple[Seat, ...]) -> list[Vec]:
+    """Where the centre of the largest cap can lie; each is measured, so none need be exact."""
     found = []
     for i, (a, ha) in enumerate(seats):
-        found.append(Cap(scale(a, -1.0), pi - ha))
+        found.append(scale(a, -1.0))
         for j in range(i):
             b, hb = seats[j]
             apart = angle_between(a, b)
             r = 0.5 * (2.0 * pi - apart - ha - hb)
             side = unit(along(b, a, -dot(a, b)), NORTH)
-            if r + ha <= pi and r + hb <= pi and apart > TINY:  # away from b around a
-                found.append(Cap(_turned(a, scale(side, -1.0), r + ha), r))
+            if apart > TINY:  # away from b, around a
+                found.append(along(scale(a, cos(r + ha)), side, -sin(r + ha)))
             for k in range(j):
-                found.extend(_three(a, ha, b, hb, *seats[k]))
+                found.extend(_three(seats[i], seats[j], seats[k]))
     return found
 
 
-def _turned(axis: Vec, side: Vec, angle: float) -> Vec:
-    return along(scale(axis, cos(angle)), side, sin(angle))
-
-
-def _three(a: Vec, ha: float, b: Vec, hb: float, c: Vec, hc: float) -> list[Cap]:
-    """u = p cos r − q sin r solves the three linear equations; |u| = 1 gives r."""
-    bc = cross(b, c)
+def _three(one: Seat, two: Seat, three: Seat) -> list[Vec]:
+    """Directions u with u·aᵢ = cos(hᵢ + r): linear in u for a given r, and |u| = 1 gives r."""
+    (a, ha), (b, hb), (c, hc) = one, two, three
+    bc, ca, ab = cross(b, c), cross(c, a), cross(a, b)
     volume = dot(a, bc)
-    if abs(volume) <= 1e-12:
-        return []
-    ca = cross(c, a)
-    ab = cross(a, b)
+    if abs(volume) <= 1e-6:
+        return _three_coplanar(one, two, three)
 
     def solve(x: float, y: float, z: float) -> Vec:
         return scale(along(along(scale(bc, x), ca, y), ab, z), 1.0 / volume)
@@ -147,7 +145,7 @@ def _three(a: Vec, ha: float, b: Vec, hb: float, c: Vec, hc: float) -> list[Cap]
     p = solve(cos(ha), cos(hb), cos(hc))
     q = solve(sin(ha), sin(hb), sin(hc))
     pp, qq, pq = dot(p, p), dot(q, q), dot(p, q)
-    # (pp+qq)/2 − 1 + (pp−qq)/2 cos 2r − pq sin 2r = 0
+    # u = p cos r − q sin r, so (pp+qq)/2 − 1 + (pp−qq)/2 cos 2r − pq sin 2r = 0.
     m, n = 0.5 * (pp - qq), -pq
     length = sqrt(m * m + n * n)
     level = 1.0 - 0.5 * (pp + qq)
@@ -158,11 +156,26 @@ def _three(a: Vec, ha: float, b: Vec, hb: float, c: Vec, hc: float) -> list[Cap]
     found = []
     for sign in (-1.0, 1.0):
         r = 0.5 * ((phase + sign * swing) % (2.0 * pi))
-        for turn in (r, r - pi):
-            if 0.0 < turn < pi:
-                u = along(scale(p, cos(turn)), q, -sin(turn))
-                found.append(Cap(unit(u, NORTH), turn))
+        found.append(unit(along(scale(p, cos(r)), q, -sin(r)), NORTH))
+        found.append(scale(found[-1], -1.0))
     return found
+
+
+def _three_coplanar(one: Seat, two: Seat, three: Seat) -> list[Vec]:
+    """Axes in one plane: c = x a + y b turns the third equation into one for r alone."""
+    for (a, ha), (b, hb), (c, hc) in ((one, two, three), (two, three, one), (three, one, two)):
+        normal = cross(a, b)
+        square = dot(normal, normal)
+        if square <= 1e-12:
+            continue
+        x = dot(cross(c, b), normal) / square
+        y = dot(cross(a, c), normal) / square
+        r = atan2(cos(hc) - x * cos(ha) - y * cos(hb), sin(hc) - x * sin(ha) - y * sin(hb)) % pi
+        ka, kb, ab = cos(ha + r), cos(hb + r), dot(a, b)
+        base = along(scale(a, (ka - kb * ab) / square), b, (kb - ka * ab) / square)
+        rise = sqrt(max(0.0, (1.0 - dot(base, base)) / square))
+        return [unit(along(base, normal, sign * rise), NORTH) for sign in (-1.0, 1.0)]
+    return []
 
 
 def prospect(

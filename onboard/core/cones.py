@@ -101,8 +101,11 @@ def free_ray(preferred: Vec, cones: tuple[Cone, ...]) -> Ray:
         y = preferred.y - pa * a.axis.y
         z = preferred.z - pa * a.axis.z
         n = sqrt(x * x + y * y + z * z)
-        # On the axis every point of the edge is as near: take any.
+        # On the axis every point of the edge is as near: take any. Near it, rounding turns the
+        # side out of the perpendicular: make it so again.
         side = _perpendicular(a.axis) if n <= TINY else Vec(x / n, y / n, z / n)
+        if n < 1e-3:
+            side = unit(_blend(side, 1.0, a.axis, -dot(side, a.axis)), preferred)
         near = pa * a.cos + n * a.sin
         if near > best:
             u = unit(_blend(a.axis, a.cos, side, a.sin), preferred)

@@ -32,7 +32,7 @@ class Link(Protocol):
         ...
 
     def send(self, data: bytes, peer: Hashable | None = None) -> None:
-        """Send to `peer`, or where None to the peer last heard (or configured). Never raises: failures count."""
+        """Send to `peer`; None: the one last heard or configured. Never raises: failures count."""
         ...
 
     def receive(self, receiver: Receiver) -> None:
