@@ -11,7 +11,8 @@ from onboard.wire.swarm import Command, CommandReply
 from tests.support.radio import GAME, NS, health, on_bus, state
 
 MODES = {
-    "abort": "LOITER", "hold": "LOITER", "return": "RTL", "land": "LAND", "start": "GUIDED", "resume": "GUIDED",
+    "abort": "LOITER", "hold": "LOITER", "return": "RTL", "land": "LAND",
+    "start": "GUIDED", "resume": "GUIDED",
 }  # fmt: skip
 
 

@@ -1,0 +1,51 @@
+"""What a console shows and steers: a live station, or a recording."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple, Protocol
+
+from gcs.picture import Picture
+from onboard.wire.swarm import CommandKind
+
+
+class Key(NamedTuple):
+    """A key that a source understands beside the console's own (a replay: pause, speed, seek, step)."""
+
+    key: str  # as Textual names it: "space", "right", "ctrl+right", "p"
+    action: str  # handed to `Source.act`
+    text: str  # for footer and help
+
+
+class Source(Protocol):
+    """Where a console's picture comes from."""
+
+    @property
+    def title(self) -> str:
+        """For the title bar: `live` or the run's name."""
+        ...
+
+    @property
+    def keys(self) -> tuple[Key, ...]:
+        """Keys of its own; they go before the console's."""
+        ...
+
+    def picture(self) -> Picture:
+        """The picture to show now; called at the console's refresh rate."""
+        ...
+
+    def status(self) -> str:
+        """One line about itself: the bus and the recording; or pause, speed and place of a replay."""
+        ...
+
+    def act(self, action: str) -> str:
+        """A key of its own was pressed; what to tell the user, "" = nothing."""
+        ...
+
+    def command(self, kind: CommandKind, ids: Iterable[int]) -> str:
+        """Give a command; what to tell the user. A recording refuses in words."""
+        ...
+
+    def acknowledge(self, alert: str) -> None:
+        """The user has seen an alert; "" = all."""
+        ...
