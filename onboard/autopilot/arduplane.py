@@ -1,0 +1,209 @@
+"""ArduPlane in GUIDED: a roll angle at 20 Hz, altitude and airspeed on change (the plain variant: a course).
+
+A plane gets no velocity targets: it reads one as an altitude of 0. The decision's air velocity plus the wind
+gives the course over ground; its error gives a turn rate, and that a bank angle. The autopilot keeps altitude
+and airspeed by its own loops (43001, 43000). Roll-only attitude lapses after 3 s, altitude and speed do not,
+and the plain variant's course (43002) never does: so to end is to command LOITER.
+"""
+
+from __future__ import annotations
+
+from math import atan, atan2, pi
+
+from onboard.autopilot.base import NEVER, Envelope, Note, Setpoint, Stage, Step, Telemetry, Way
+from onboard.autopilot.control import Control
+from onboard.autopilot.envelope import is_finite, within
+from onboard.core.vectors import Vec, add, clamp, norm
+from onboard.wire import commands
+from onboard.wire.commands import Target
+from onboard.wire.mavlink import MavMessage
+from onboard.wire.modes import Kind
+from onboard.wire.values import CommandAck
+
+G = 9.80665  # [m/s²]
+GAIN = 1.1  # [1/s] turn rate for an error of the course
+ROLL_EVERY = 0.03  # [s] at least between two roll targets: every step of a 20 Hz loop passes
+COURSE_EVERY = 0.1  # [s] between two course commands of the plain variant
+COURSE_STEP = 0.01  # [rad] that is a new course
+SLOW_EVERY = 0.5  # [s] between two commands of altitude, and of speed: at most 2 Hz
+REFRESH = 3.0  # [s] after which either is said again, though unchanged
+ALTITUDE_STEP = 0.5  # [m] that is a new altitude
+SPEED_STEP = 0.2  # [m/s] that is a new airspeed
+LOOK_AHEAD = 3.3  # [s] a climb rate is an altitude this far ahead, at rate 0
+DRIFT = 8.0  # [m] by which the reference of altitude may leave the aircraft
+CREEP = 3.0  # [m/s; ground] below this there is no course: the nose counts
+CHANGE_SPEED, CHANGE_ALTITUDE, CHANGE_HEADING = 43000, 43001, 43002
+NAMES = {CHANGE_SPEED: "airspeed", CHANGE_ALTITUDE: "altitude", CHANGE_HEADING: "course"}
+FAULTS = {
+    "not_finite": "a setpoint that is no number was not sent",
+    "no_direction": "a plane cannot stand still: give no setpoint, or leave to loiter",
+}
+WAYS = {Way.HOLD: "LOITER", Way.RETURN: "RTL", Way.LAND: "RTL"}  # how it lands is its mission's business
+
+
+def wrapped(angle: float) -> float:
+    """The angle in (−π, π]."""
+    return pi - (pi - angle) % (2.0 * pi)
+
+
+def bank_for(course: float, velocity: Vec, yaw: float, bank_max: float) -> float:
+    """Bank [rad, right positive] that turns the flight over ground towards a course [rad].
+
+    φ = atan(V ψ̇ / g) with ψ̇ proportional to the error: a coordinated turn.
+    """
+    ground = (velocity.x * velocity.x + velocity.y * velocity.y) ** 0.5
+    present = atan2(velocity.y, velocity.x) if ground > CREEP else yaw
+    rate = GAIN * wrapped(course - present)
+    return clamp(atan(max(ground, CREEP) * rate / G), -bank_max, bank_max)
+
+
+def _fault(setpoint: Setpoint) -> str:
+    if not (is_finite(setpoint.velocity) and is_finite(setpoint.wind)):
+        return "not_finite"
+    return "no_direction" if norm(setpoint.velocity) <= 1e-6 else ""
+
+
+class _Slow:
+    """One of altitude and airspeed: said on change, again until acknowledged, at most at 2 Hz."""
+
+    def __init__(self, step: float) -> None:
+        self._step = step
+        self._said = 0.0
+        self._at = NEVER
+        self.open = True  # not acknowledged
+
+    def due(self, now: float, value: float) -> bool:
+        age = now - self._at
+        if age < SLOW_EVERY:
+            return False
+        if not self.open and abs(value - self._said) < self._step and age < REFRESH:
+            return False
+        self._said, self._at, self.open = value, now, True
+        return True
+
+    def forget(self) -> None:
+        """The autopilot may have forgotten: say it at once."""
+        self._at = NEVER
+        self.open = True
+
+
+class ArduPlaneAdapter:
+    """See `base.Adapter`. `plain` commands a course in place of a bank angle."""
+
+    holds_airspeed = True
+    guided_mode = "GUIDED"
+    kind = Kind.ARDUPLANE
+
+    def __init__(
+        self, to: Target, envelope: Envelope, *, may_arm: bool = False, plain: bool = False
+    ) -> None:
+        self.envelope = envelope
+        self.name = "arduplane-plain" if plain else "arduplane"
+        self._plain = plain
+        self._to = to
+        self._control = Control(self.kind, to, self.guided_mode, WAYS, may_arm=may_arm)
+        self._altitude, self._speed = _Slow(ALTITUDE_STEP), _Slow(SPEED_STEP)
+        self._reference = 0.0  # [m; MSL] where the commanded climbs lead
+        self._at = NEVER  # of the last setpoint
+        self._turned_at = NEVER
+        self._course = NEVER  # [rad] of the plain variant's last command
+        self._reboots = 0
+        self._refused: set[tuple[int, int]] = set()
+        self._notes: list[Note] = []
+        self._fault = ""
+
+    @property
+    def stage(self) -> Stage:
+        """Who flies."""
+        return self._control.stage
+
+    def enter(self, now: float) -> None:
+        """Ask for GUIDED: until the first setpoint the plane circles where it is."""
+        self._control.enter(now)
+
+    def leave(self, now: float, way: Way) -> None:
+        """End the targets; ask for LOITER or RTL."""
+        self._control.leave(now, way)
+
+    def end(self, now: float) -> None:
+        """A plane would fly on: LOITER."""
+        if self._control.stage is Stage.ACTIVE:
+            self._control.leave(now, Way.HOLD)
+
+    def arm(self, now: float) -> bool:
+        """Ask for arming, if made with `may_arm`."""
+        return self._control.arm()
+
+    def acknowledge(self, now: float, ack: CommandAck) -> None:
+        """Hear the answer to a command."""
+        self._control.acknowledge(now, ack)
+        if ack.command not in NAMES:
+            return
+        if ack.result == 0:
+            self._refused = {pair for pair in self._refused if pair[0] != ack.command}
+            if ack.command != CHANGE_HEADING:
+                (self._altitude if ack.command == CHANGE_ALTITUDE else self._speed).open = False
+        elif (ack.command, ack.result) not in self._refused:
+            self._refused.add((ack.command, ack.result))
+            text = f"{NAMES[ack.command]} refused: result {ack.result}"
+            self._notes.append(Note("warning", "setpoint_refused", text))
+
+    def step(self, now: float, telemetry: Telemetry, setpoint: Setpoint | None) -> Step:
+        """Roll (or course), altitude and airspeed for a setpoint, while GUIDED is ours."""
+        messages, notes = self._control.step(now, telemetry)
+        notes += self._notes
+        self._notes = []
+        if setpoint is None or self._control.stage is not Stage.ACTIVE:
+            return Step(tuple(messages), tuple(notes))
+        fault = _fault(setpoint)
+        if fault != self._fault and fault:
+            notes.append(Note("error", fault, FAULTS[fault]))
+        self._fault = fault
+        if fault:
+            return Step(tuple(messages), tuple(notes))
+        air = within(setpoint.velocity, self.envelope)
+        ground = add(air, setpoint.wind)
+        if telemetry.reboots != self._reboots:
+            self._reboots = telemetry.reboots
+            self._altitude.forget()
+            self._speed.forget()
+        messages += self._turn(now, telemetry, ground)
+        messages += self._climb(now, telemetry, ground)
+        speed = clamp(norm(air), self.envelope.speed_min, self.envelope.speed_max)
+        if self._speed.due(now, speed):
+            messages.append(commands.change_speed(self._to, speed))
+        return Step(tuple(messages), tuple(notes))
+
+    def _turn(self, now: float, telemetry: Telemetry, ground: Vec) -> list[MavMessage]:
+        if ground.x * ground.x + ground.y * ground.y < 1e-6:
+            return []
+        course = atan2(ground.y, ground.x)
+        if not self._plain:
+            if now - self._turned_at < ROLL_EVERY:
+                return []
+            self._turned_at = now
+            bank = bank_for(course, telemetry.velocity, telemetry.yaw, self.envelope.bank_max)
+            return [commands.roll_target(self._to, telemetry.time_boot_s, bank)]
+        stale = now - self._turned_at >= 1.0  # it may have been lost
+        new = self._course == NEVER or abs(wrapped(course - self._course)) >= COURSE_STEP
+        if now - self._turned_at < COURSE_EVERY or not (new or stale):
+            return []
+        self._turned_at, self._course = now, course
+        lateral = G * self.envelope.bank_max
+        return [commands.change_heading(self._to, course, lateral)]
+
+    def _climb(self, now: float, telemetry: Telemetry, ground: Vec) -> list[MavMessage]:
+        """Altitude that follows the commanded climb: a reference integrates it, so that level stays level."""
+        climb = clamp(-ground.z, -self.envelope.sink_max, self.envelope.climb_max)
+        present = telemetry.altitude_m
+        gap = now - self._at
+        self._at = now
+        if gap > SLOW_EVERY:
+            self._reference = present
+            self._altitude.forget()
+        else:
+            self._reference = clamp(self._reference + climb * gap, present - DRIFT, present + DRIFT)
+        wanted = self._reference + climb * LOOK_AHEAD
+        if not self._altitude.due(now, wanted):
+            return []
+        return [commands.change_altitude(self._to, wanted)]

@@ -1,0 +1,119 @@
+"""Multicopters by velocity targets: PX4 in OFFBOARD, ArduCopter in GUIDED.
+
+PX4 takes mask 0x9C7 with a yaw, wants a stream of targets for a second before it lets OFFBOARD in, and falls
+back by itself a second after the stream ends (COM_OF_LOSS_T). ArduCopter takes mask 0x0DC7 and stops three
+seconds after the stream ends (GUID_TIMEOUT). Both are in the autopilot's local frame, whose axes are north,
+east and down: a velocity needs no origin.
+"""
+
+from __future__ import annotations
+
+from math import atan2
+
+from onboard.autopilot.base import NEVER, Envelope, Note, Setpoint, Stage, Step, Telemetry, Way
+from onboard.autopilot.control import Control
+from onboard.autopilot.envelope import is_finite, towards, within
+from onboard.core.vectors import Vec, add
+from onboard.wire import commands
+from onboard.wire.commands import Target
+from onboard.wire.modes import Kind
+from onboard.wire.values import CommandAck
+
+STREAM_BEFORE = 1.2  # [s] of targets before PX4 is asked for OFFBOARD (it wants 1 s at 2 Hz or more)
+GAP = 0.4  # [s] without a target: the stream has to begin again
+TURNING = 0.5  # [m/s; ground] below this the vehicle keeps looking where it looks
+
+GUIDED = {Kind.PX4_MULTICOPTER: "OFFBOARD", Kind.ARDUCOPTER: "GUIDED"}
+WAYS = {
+    Kind.PX4_MULTICOPTER: {Way.HOLD: "HOLD", Way.RETURN: "RTL", Way.LAND: "LAND"},
+    Kind.ARDUCOPTER: {Way.HOLD: "LOITER", Way.RETURN: "RTL", Way.LAND: "LAND"},
+}
+
+
+class VelocityAdapter:
+    """PX4 multicopter or ArduCopter; see `base.Adapter`.
+
+    ArduCopter's LOITER needs a pilot's throttle stick in the middle: without a transmitter hold by "BRAKE".
+    """
+
+    name = "velocity"
+    holds_airspeed = False
+
+    def __init__(
+        self,
+        kind: Kind,
+        to: Target,
+        envelope: Envelope,
+        *,
+        may_arm: bool = False,
+        hold_mode: str = "",
+    ) -> None:
+        self.kind = kind
+        self.envelope = envelope
+        self.guided_mode = GUIDED[kind]
+        ways = {**WAYS[kind], **({Way.HOLD: hold_mode} if hold_mode else {})}
+        self._control = Control(kind, to, self.guided_mode, ways, may_arm=may_arm)
+        self._to = to
+        self._last = Vec(0.0, 0.0, 0.0)  # [m/s; ground] the target last sent
+        self._last_at = NEVER
+        self._since = NEVER  # when the present stream began
+        self._complained = False
+
+    @property
+    def stage(self) -> Stage:
+        """Who flies."""
+        return self._control.stage
+
+    def enter(self, now: float) -> None:
+        """Ask for OFFBOARD or GUIDED; with PX4 give setpoints meanwhile (zero to hover)."""
+        self._control.enter(now)
+
+    def leave(self, now: float, way: Way) -> None:
+        """End the targets; ask for hold, return or land."""
+        self._control.leave(now, way)
+
+    def end(self, now: float) -> None:
+        """Silence: these autopilots stop by themselves."""
+        self._since = NEVER
+
+    def arm(self, now: float) -> bool:
+        """Ask for arming, if made with `may_arm`."""
+        return self._control.arm()
+
+    def acknowledge(self, now: float, ack: CommandAck) -> None:
+        """Hear the answer to a command."""
+        self._control.acknowledge(now, ack)
+
+    def step(self, now: float, telemetry: Telemetry, setpoint: Setpoint | None) -> Step:
+        """A target for a setpoint, where targets count (or PX4 must see them first)."""
+        if now - self._last_at > GAP:
+            self._since = NEVER
+        streamed = self._since != NEVER and now - self._since >= STREAM_BEFORE
+        px4 = self.kind is Kind.PX4_MULTICOPTER
+        messages, notes = self._control.step(now, telemetry, ready=streamed or not px4)
+        if setpoint is None or not self._may_send(px4):
+            return Step(tuple(messages), tuple(notes))
+        wanted = add(setpoint.velocity, setpoint.wind)
+        if not is_finite(wanted):
+            if not self._complained:
+                notes.append(Note("error", "not_finite", "a setpoint that is no number was not sent"))
+            self._complained = True
+            return Step(tuple(messages), tuple(notes))
+        self._complained = False
+        wanted = within(wanted, self.envelope)
+        if self._since == NEVER:
+            self._since = now
+        elif self.envelope.acceleration > 0.0:
+            wanted = towards(self._last, wanted, self.envelope.acceleration * (now - self._last_at))
+        self._last, self._last_at = wanted, now
+        yaw = None
+        if px4:
+            turning = wanted.x * wanted.x + wanted.y * wanted.y > TURNING * TURNING
+            yaw = atan2(wanted.y, wanted.x) if turning else telemetry.yaw
+        messages.append(commands.velocity_target(self._to, telemetry.time_boot_s, wanted, yaw=yaw))
+        return Step(tuple(messages), tuple(notes))
+
+    def _may_send(self, px4: bool) -> bool:
+        """Targets outside the guided mode are ignored; PX4 wants to see them before it."""
+        stage = self._control.stage
+        return stage is Stage.ACTIVE or (px4 and stage in (Stage.IDLE, Stage.ENTERING))
