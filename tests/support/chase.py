@@ -1,0 +1,251 @@
+"""A made-up flight for tests of what records and shows: the bus messages of a simple chase.
+
+Pursuers fly at the evader, the evader at its target; nobody thinks. The same arguments give the same
+messages. Items are (key, payload, stamp_ns) in order of arrival.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import asin, atan2, cos, sin, sqrt
+from typing import NamedTuple
+
+from gcs import journal
+from onboard.wire import swarm, topics
+from onboard.wire.swarm import CommandKind, Phase, Role, Severity, Triple
+
+NS = 1_000_000_000
+EPOCH_NS = 1_760_000_000 * NS
+TARGET = (400.0, 100.0, -60.0)
+
+
+class Item(NamedTuple):
+    """One message as it arrived."""
+
+    key: str
+    payload: bytes
+    stamp_ns: int
+
+
+def setup(game: str, vehicles: int) -> swarm.Setup:
+    """Evader 1, pursuers from 2 up on a wide arc ahead."""
+    roster = [swarm.Member(1, Role.EVADER, 12.0, (0.0, 0.0, -50.0))]
+    for index in range(vehicles - 1):
+        angle = (index - (vehicles - 2) / 2) * 0.35
+        start = (260.0 * cos(angle), 260.0 * sin(angle), -40.0 - 4.0 * (index % 5))
+        roster.append(swarm.Member(index + 2, Role.PURSUER, 9.0, start))
+    return swarm.Setup(
+        game=game,
+        scenario="a chase",
+        scenario_hash="0123456789abcdef",
+        master="bridge",
+        origin=swarm.Origin(47.397742, 8.545594, 488.0),
+        roster=tuple(roster),
+        capture_radius=5.0,
+        safety_distance=10.0,
+        lambda_=100.0,
+        beta=1.0,
+        epsilon_min=3.0,
+        horizon=60.0,
+        fence=swarm.Fence(((-100.0, -400.0), (600.0, -400.0), (600.0, 400.0), (-100.0, 400.0)), 5.0, 150.0),
+        separation=4.0,
+        track_sigma=0.5,
+    )
+
+
+def chase(
+    duration_s: float = 20.0,
+    *,
+    vehicles: int = 3,
+    game: str = "field",
+    state_only: bool = False,
+    story: bool = True,
+) -> Iterator[Item]:
+    """The messages of a chase of `duration_s`; `story` adds an outcome, events, commands and alerts."""
+    plan = setup(game, vehicles)
+
+    def item(topic: topics.Topic, vehicle: int | None, payload: bytes, at_ns: int) -> Item:
+        return Item(topics.key(game, topic, vehicle), payload, at_ns)
+
+    t0_ns = EPOCH_NS + 2 * NS
+    if not state_only:
+        yield item(topics.SETUP, None, swarm.SETUP.encode(plan), EPOCH_NS)
+        yield item(
+            topics.EVADER_BRIEF,
+            None,
+            swarm.EVADER_BRIEF.encode(swarm.EvaderBrief(TARGET, EPOCH_NS)),
+            EPOCH_NS,
+        )
+        staging = swarm.PhaseChange(Phase.STAGING, 0, EPOCH_NS)
+        yield item(topics.PHASE, None, swarm.PHASE.encode(staging), EPOCH_NS + 1000)
+        for member in plan.roster:
+            token = journal.Presence(topics.key(game, topics.ALIVE, member.id), True)
+            yield Item(journal.key(game, "presence"), journal.PRESENCE.encode(token), EPOCH_NS + 2000)
+    places = {m.id: m.start for m in plan.roster}
+    velocities: dict[int, Triple] = {m.id: (0.0, 0.0, 0.0) for m in plan.roster}
+    dt = 0.05
+    steps = round(duration_s / dt)
+    captured = False
+    for step in range(steps):
+        now_ns = EPOCH_NS + 10_000 + step * 50_000_000
+        running = now_ns >= t0_ns and not captured
+        time = (now_ns - t0_ns) / NS
+        if not state_only:
+            if step == 20:
+                yield item(
+                    topics.PHASE,
+                    None,
+                    swarm.PHASE.encode(swarm.PhaseChange(Phase.READY, t0_ns, now_ns)),
+                    now_ns,
+                )
+            if step == 40:
+                change = swarm.PhaseChange(Phase.RUNNING, t0_ns, now_ns)
+                yield item(topics.PHASE, None, swarm.PHASE.encode(change), now_ns)
+            if step % 10 == 0:
+                yield item(
+                    topics.MASTER, None, swarm.MASTER.encode(swarm.Master("bridge", now_ns, 2.0, 7)), now_ns
+                )
+        for member in plan.roster:
+            aim = TARGET if member.role is Role.EVADER else places[1]
+            velocity = _towards(places[member.id], aim, member.speed_max) if running else (0.0, 0.0, 0.0)
+            velocities[member.id] = velocity
+            at = now_ns + member.id * 1000
+            yield item(
+                topics.STATE, member.id, swarm.STATE.encode(_state(member, places, velocity, time, at)), at
+            )
+            if state_only:
+                continue
+            if step % 2 == 0:
+                report = _decision(member, places, velocity, aim, time, at)
+                yield item(topics.DECISION, member.id, swarm.DECISION.encode(report), at + 100)
+            if step % 2 == 1:
+                track = swarm.Track(
+                    member.id, at, places[member.id], velocity, (0.25,) * 3 + (0.04,) * 3, "radar"
+                )
+                yield item(topics.TRACK, member.id, swarm.TRACK.encode(track), at + 200)
+            if step % 10 == 5:
+                yield item(
+                    topics.HEALTH,
+                    member.id,
+                    swarm.HEALTH.encode(_health(member, step, running, at)),
+                    at + 300,
+                )
+        if story and not state_only:
+            yield from _story(plan, game, step, now_ns + 900_000, time)
+        for vehicle, velocity in velocities.items():
+            north, east, down = places[vehicle]
+            places[vehicle] = (north + velocity[0] * dt, east + velocity[1] * dt, down + velocity[2] * dt)
+        smallest = min(_distance(places[1], places[m.id]) for m in plan.roster[1:])
+        if story and not state_only and not captured and smallest < plan.capture_radius:
+            captured = True
+            end_ns = now_ns + 950_000
+            captor = min(plan.roster[1:], key=lambda m: _distance(places[1], places[m.id])).id
+            outcome = swarm.Outcome(
+                "captured", time, captor, smallest, end_ns, f"vehicle {captor} within 5 m"
+            )
+            yield item(topics.OUTCOME, None, swarm.OUTCOME.encode(outcome), end_ns)
+            ended = swarm.PhaseChange(Phase.ENDED, t0_ns, end_ns)
+            yield item(topics.PHASE, None, swarm.PHASE.encode(ended), end_ns + 1)
+
+
+def _story(plan: swarm.Setup, game: str, step: int, now_ns: int, time: float) -> Iterator[Item]:
+    """What makes a flight worth a report: an event, and a command that one vehicle is slow to obey."""
+    if step == 100:
+        event = swarm.Event(2, 1, now_ns, Severity.WARNING, "limit", "decision clipped: pitch")
+        yield Item(topics.key(game, topics.EVENTS, 2), swarm.EVENT.encode(event), now_ns)
+    ids = tuple(m.id for m in plan.roster)
+    command = swarm.Command("c-1", CommandKind.HOLD, "gcs@field", now_ns)
+    if step == 300:
+        yield Item(journal.key(game, "sent"), journal.SENT.encode(journal.Sent(command, ids)), now_ns)
+    for vehicle in ids:
+        if step in (302, 303 + 2 * vehicle):
+            state = "pending" if step == 302 else "confirmed"
+            reply = swarm.CommandReply("c-1", vehicle, state, "", "gcs@field", now_ns, "LOITER")
+            yield Item(
+                journal.key(game, "replied"), journal.REPLIED.encode(journal.Replied(reply)), now_ns + vehicle
+            )
+
+
+def _towards(place: Triple, aim: Triple, speed: float) -> Triple:
+    away = _distance(place, aim)
+    if away < 1.0:
+        return (0.0, 0.0, 0.0)
+    return tuple((b - a) / away * speed for a, b in zip(place, aim, strict=True))  # type: ignore[return-value]
+
+
+def _distance(a: Triple, b: Triple) -> float:
+    return sqrt(sum((x - y) ** 2 for x, y in zip(a, b, strict=True)))
+
+
+def _state(
+    member: swarm.Member, places: dict[int, Triple], velocity: Triple, time: float, at_ns: int
+) -> swarm.State:
+    speed = _distance(velocity, (0.0, 0.0, 0.0))
+    yaw = atan2(velocity[1], velocity[0]) if speed > 0 else 0.0
+    pitch = asin(-velocity[2] / speed) if speed > 0 else 0.0
+    wind = (2.0 + 0.5 * sin(time), -1.0, 0.0)
+    return swarm.State(
+        member.id,
+        member.role,
+        at_ns - 20_000_000,
+        places[member.id],
+        velocity,
+        speed,
+        wind,
+        0.1,
+        pitch,
+        yaw,
+        "GUIDED",
+        True,
+        1000 + member.id,
+    )
+
+
+def _decision(
+    member: swarm.Member, places: dict[int, Triple], velocity: Triple, aim: Triple, time: float, at_ns: int
+) -> swarm.DecisionReport:
+    evader = member.role is Role.EVADER
+    rule = "towards_target" if evader else ("intercept" if int(time) % 4 else "close_in")
+    cones = ((1.0, 0.0, 0.0, 0.2),) if evader else ()
+    return swarm.DecisionReport(
+        member.id,
+        at_ns,
+        time,
+        "tactical",
+        "geometric",
+        "paper",
+        rule,
+        velocity,
+        aim,
+        _distance(places[member.id], aim) / member.speed_max,
+        2.0,
+        cones,
+    )
+
+
+def _health(member: swarm.Member, step: int, running: bool, at_ns: int) -> swarm.Health:
+    battery = max(0.1, 0.95 - 0.0005 * step - 0.05 * member.id)
+    quality = 1.0 if member.id != 2 else 0.9
+    return swarm.Health(
+        member.id,
+        member.role,
+        at_ns,
+        "acting" if running else "ready",
+        (),
+        "ArduCopter",
+        "GUIDED",
+        True,
+        battery,
+        quality,
+        50.0,
+        20.0,
+        0.002 * member.id,
+        3,
+        True,
+        "ok",
+        "0.1.0",
+        {"bad_crc": step // 50},
+        0.02,
+        0.4,
+        1000 + member.id,
+    )
