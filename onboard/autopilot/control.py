@@ -104,9 +104,9 @@ class Control:
         if ack.target_system not in (0, self.to.system) or ack.target_component not in (0, COMPANION):
             return
         why = RESULTS.get(ack.result, f"result {ack.result}")
-        if ack.command == SET_MODE and self.stage in (Stage.ENTERING, Stage.LEAVING):
-            if self._mode.answered(now, ack.result, AFTER_NO):
-                self._notes.append(Note("warning", "mode_refused", f"{self._wanted} {why}"))
+        asking = self.stage in (Stage.ENTERING, Stage.LEAVING)
+        if ack.command == SET_MODE and asking and self._mode.answered(now, ack.result, AFTER_NO):
+            self._notes.append(Note("warning", "mode_refused", f"{self._wanted} {why}"))
         if ack.command == ARM and self._arm is not None and self._arm.answered(now, ack.result, ARM_AFTER_NO):
             self._notes.append(Note("warning", "arming_refused", f"arming {why}"))
 
