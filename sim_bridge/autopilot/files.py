@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from struct import Struct
 
-HEADER = Struct("<HBBBBBBI")  # sequence, session, opcode, size, request opcode, burst complete, padding, offset
+# sequence, session, opcode, size, request opcode, burst complete, padding, offset
+HEADER = Struct("<HBBBBBBI")
 PAYLOAD = 251
 NAK = 129
 UNKNOWN_COMMAND = 7

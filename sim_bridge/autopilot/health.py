@@ -35,7 +35,9 @@ _ALL_ESTIMATES = (
     | dialect.EKF_PRED_POS_HORIZ_REL
     | dialect.EKF_PRED_POS_HORIZ_ABS
 )
-_NO_POSITION = dialect.EKF_ATTITUDE | dialect.EKF_VELOCITY_VERT | dialect.EKF_POS_VERT_ABS | dialect.EKF_CONST_POS_MODE
+_NO_POSITION = (
+    dialect.EKF_ATTITUDE | dialect.EKF_VELOCITY_VERT | dialect.EKF_POS_VERT_ABS | dialect.EKF_CONST_POS_MODE
+)
 
 
 class Fault(Enum):

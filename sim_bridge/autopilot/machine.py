@@ -238,7 +238,6 @@ class Autopilot(ABC):
             dialect.MAV_CMD_GET_MESSAGE_INTERVAL: self._do_get_interval,
             dialect.MAV_CMD_REQUEST_MESSAGE: self._do_request_message,
             dialect.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES: self._do_request_version,
-            dialect.MAV_CMD_REQUEST_PROTOCOL_VERSION: self._do_request_protocol,
             dialect.MAV_CMD_GET_HOME_POSITION: self._do_get_home,
             dialect.MAV_CMD_DO_SET_HOME: self._do_set_home,
             dialect.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN: self._do_reboot,
@@ -246,8 +245,10 @@ class Autopilot(ABC):
 
     # ------------------------------------------------------------------ what personalities use
 
-    def emit(self, message: MavMessage) -> None:
-        """Queue one message."""
+    def emit(self, message: MavMessage | None) -> None:
+        """Queue one message; None: there is nothing to say."""
+        if message is None:
+            return
         self._out.append(self._sender.pack(message, self._last_step_ns + self.setup.epoch_ns))
 
     def say(self, severity: int, text: str) -> None:
@@ -274,6 +275,11 @@ class Autopilot(ABC):
     def height(self) -> float:
         """Above home [m]."""
         return self.setup.frame.origin.altitude_m - self.motion.position.z - self.home.altitude_m
+
+    @property
+    def above_ground(self) -> float:
+        """Above the ground of its start [m]: home may have been moved since."""
+        return self.setup.frame.origin.altitude_m - self.motion.position.z - self.setup.home.altitude_m
 
     def game_position(self, latitude_deg: float, longitude_deg: float, altitude_m: float) -> Vec:
         """In the frame in which motion is given [m; NED]."""
@@ -364,9 +370,7 @@ class Autopilot(ABC):
             self._heartbeat(now_ns)
             self._heartbeat_ns = following if following > now_ns else now_ns + HEARTBEAT_NS
         for number in self._streams.due(now_ns):
-            message = telemetry.build(self, number, now_ns)
-            if message is not None:
-                self.emit(message)
+            self.emit(telemetry.build(self, number, now_ns))
         for message in self.parameters.due(PARAMETERS_A_STEP):
             self.emit(message)
 
@@ -423,14 +427,10 @@ class Autopilot(ABC):
             self.say(dialect.MAV_SEVERITY_INFO, line)
 
     def _on_param_read(self, now_ns: int, packet: Packet) -> None:
-        answer = self.parameters.read(packet.message.param_id, packet.message.param_index)
-        if answer is not None:
-            self.emit(answer)
+        self.emit(self.parameters.read(packet.message.param_id, packet.message.param_index))
 
     def _on_param_set(self, now_ns: int, packet: Packet) -> None:
-        answer = self.parameters.write(packet.message.param_id, packet.message.param_value)
-        if answer is not None:
-            self.emit(answer)
+        self.emit(self.parameters.write(packet.message.param_id, packet.message.param_value))
 
     def _on_mission_list(self, now_ns: int, packet: Packet) -> None:
         self.emit(dialect.MAVLink_mission_count_message(
@@ -508,17 +508,11 @@ class Autopilot(ABC):
         number = _whole(command.p1)
         if not telemetry.can_build(self, number):
             return self.unknown_message
-        message = telemetry.build(self, number, now_ns)
-        if message is not None:
-            self.emit(message)
+        self.emit(telemetry.build(self, number, now_ns))
         return ACCEPTED
 
     def _do_request_version(self, now_ns: int, command: Command) -> int:
         self.emit(telemetry.autopilot_version(self, now_ns))
-        return ACCEPTED
-
-    def _do_request_protocol(self, now_ns: int, command: Command) -> int:
-        self.emit(telemetry.protocol_version(self, now_ns))
         return ACCEPTED
 
     def _do_get_home(self, now_ns: int, command: Command) -> int:
@@ -534,7 +528,8 @@ class Autopilot(ABC):
             self.home = self.place
         else:
             home = Geodetic(command.latitude_deg, command.longitude_deg, command.z)
-            if not all(isfinite(value) for value in home) or not (-90 <= home[0] <= 90 and -180 <= home[1] <= 180):
+            sane = abs(home.latitude_deg) <= 90.0 and abs(home.longitude_deg) <= 180.0
+            if not sane or not isfinite(home.altitude_m):
                 return DENIED
             self.home = home
         self._home_known = True

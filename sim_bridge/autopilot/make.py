@@ -62,6 +62,8 @@ def autopilot_for(
         speed_max=ability.speed_max,
         speed_cruise=spec.speed,
         bank_max_deg=degrees(atan(ability.turn_rate * max(spec.speed, 1.0) / G)),
+        pitch_min_deg=spec.pitch_min_deg,
+        pitch_max_deg=spec.pitch_max_deg,
         ready_s=ready_s,
         healthy_s=0.6 * ready_s,
         battery_s=battery_s,

@@ -31,7 +31,9 @@ class Parameter(NamedTuple):
 class Parameters:
     """One autopilot's parameters, and the values still to be sent."""
 
-    def __init__(self, table: tuple[Parameter, ...], overrides: Mapping[str, float], *, bytewise: bool) -> None:
+    def __init__(
+        self, table: tuple[Parameter, ...], overrides: Mapping[str, float], *, bytewise: bool
+    ) -> None:
         self._table = tuple(sorted(table))
         self._numbers = {parameter.name: number for number, parameter in enumerate(self._table)}
         self._values = {p.name: float(overrides.get(p.name, p.default)) for p in self._table}
@@ -49,6 +51,12 @@ class Parameters:
 
     def __contains__(self, name: str) -> bool:
         return name in self._values
+
+    def put(self, name: str, value: float) -> None:
+        """Change a value from within. Raises KeyError for a name it does not know."""
+        if name not in self._numbers:
+            raise KeyError(name)
+        self._values[name] = value
 
     def list_all(self) -> None:
         """Begin to send the whole table."""

@@ -30,6 +30,8 @@ class Setup(NamedTuple):
     speed_max: float  # [m/s; air]
     speed_cruise: float  # [m/s; air] flown when nothing else is asked
     bank_max_deg: float  # of planes: ROLL_LIMIT_DEG
+    pitch_min_deg: float  # of planes: PTCH_LIM_MIN_DEG
+    pitch_max_deg: float
     ready_s: float = 12.0  # a ground start's time from boot until arming is accepted [s]
     healthy_s: float = 7.0  # … until the pre-arm bit says healthy: real ones say it too early [s]
     battery_s: float = 1200.0  # from full to empty in flight [s]

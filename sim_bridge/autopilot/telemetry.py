@@ -65,8 +65,8 @@ def global_position(ap: Autopilot, now_ns: int) -> MavMessage | None:
     heading = round(degrees(ap.motion.yaw) * 100.0) % 36000
     message: MavMessage = dialect.MAVLink_global_position_int_message(
         ap.boot_ms(now_ns), _e7(place.latitude_deg), _e7(place.longitude_deg), _i32(place.altitude_m * 1e3),
-        _i32((place.altitude_m - ap.home.altitude_m) * 1e3), _i16(v.x * 1e2), _i16(v.y * 1e2), _i16(v.z * 1e2),
-        heading,
+        _i32((place.altitude_m - ap.home.altitude_m) * 1e3), _i16(v.x * 1e2), _i16(v.y * 1e2),
+        _i16(v.z * 1e2), heading,
     )
     return message
 
@@ -148,7 +148,8 @@ def estimator_status(ap: Autopilot, now_ns: int) -> MavMessage:
     positioned = ap.positioned(now_ns)
     ratio = 0.05 if positioned else 1.5
     message: MavMessage = dialect.MAVLink_estimator_status_message(
-        ap.boot_ms(now_ns) * 1000, ap.health.ekf_flags(positioned), ratio, ratio, 0.03, 0.02, 0.0, 0.0, 0.3, 0.4
+        ap.boot_ms(now_ns) * 1000, ap.health.ekf_flags(positioned), ratio, ratio, 0.03, 0.02, 0.0, 0.0,
+        0.3, 0.4,
     )
     return message
 
@@ -242,11 +243,6 @@ def autopilot_version(ap: Autopilot, now_ns: int) -> MavMessage:
     return message
 
 
-def protocol_version(ap: Autopilot, now_ns: int) -> MavMessage:
-    message: MavMessage = dialect.MAVLink_protocol_version_message(200, 100, 200, [0] * 8, [0] * 8)
-    return message
-
-
 Builder = Callable[["Autopilot", int], MavMessage | None]
 
 COMMON: dict[int, Builder] = {
@@ -265,7 +261,6 @@ COMMON: dict[int, Builder] = {
     dialect.MAVLINK_MSG_ID_AUTOPILOT_VERSION: autopilot_version,
     dialect.MAVLINK_MSG_ID_HOME_POSITION: home_position,
     dialect.MAVLINK_MSG_ID_EXTENDED_SYS_STATE: extended_state,
-    dialect.MAVLINK_MSG_ID_PROTOCOL_VERSION: protocol_version,
 }
 OF_PX4: dict[int, Builder] = {
     **COMMON,
@@ -285,7 +280,7 @@ DATA_STREAMS: dict[int, tuple[int, ...]] = {
     dialect.MAV_DATA_STREAM_POSITION: (32, 33),  # LOCAL_POSITION_NED, GLOBAL_POSITION_INT
     dialect.MAV_DATA_STREAM_EXTRA1: (30,),  # ATTITUDE
     dialect.MAV_DATA_STREAM_EXTRA2: (74,),  # VFR_HUD
-    dialect.MAV_DATA_STREAM_EXTRA3: (2, 147, 168, 193),  # SYSTEM_TIME, BATTERY_STATUS, WIND, EKF_STATUS_REPORT
+    dialect.MAV_DATA_STREAM_EXTRA3: (2, 147, 168, 193),  # SYSTEM_TIME, BATTERY_STATUS, WIND, EKF
 }
 DATA_STREAMS[dialect.MAV_DATA_STREAM_ALL] = tuple(n for group in DATA_STREAMS.values() for n in group)
 
