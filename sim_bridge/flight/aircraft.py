@@ -162,7 +162,8 @@ def build(spec: Spec, name: str) -> Aircraft:
         if loop.rate_gain * sign <= 0 or loop.integral_gain * sign < 0:
             raise ConfigError(
                 f"{name}: {key}.rate_gain: found {loop.rate_gain:g} with integral_gain "
-                f"{loop.integral_gain:g}, expected the sign of the surface's steady effect ({transfer.steady:+.3g})"
+                f"{loop.integral_gain:g}, expected the sign of the surface's steady effect "
+                f"({transfer.steady:+.3g})"
             )
     dt = 1.0 / spec.rate_hz
     s, f = spec.speed, spec.follow

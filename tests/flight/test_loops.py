@@ -67,7 +67,7 @@ def test_margins_of_the_loop_as_flown(aircraft: Aircraft, axis: str) -> None:
 
 @pytest.mark.parametrize("axis", ["pitch", "yaw"])
 def test_the_flown_loop_bears_its_margins_and_no_more(aircraft: Aircraft, axis: str) -> None:
-    """Twice the gain, or the delay that eats 45° at the crossover: it still settles. Beyond the margins it does not."""
+    """Twice the gain, or the delay that eats 45° at the crossover: it settles. Beyond its margins not."""
     model, law = axis_of(aircraft, axis)
     margins = linear.margins(cut.open_loop(model, law, DT), DT)
     assert ringing(model, law, 2.0, 0) < 0.01
@@ -142,14 +142,14 @@ def test_airspeed_steps_settle_and_stay_within_the_engine(aircraft: Aircraft) ->
         thrusts.append(state.thrust)
         assert state.speed < 50.5
     assert state.speed == pytest.approx(50.0, abs=0.02)
-    assert max(thrusts) <= 5.0 and min(thrusts) >= -4.0
+    assert -4.0 <= min(thrusts) <= max(thrusts) <= 5.0
 
 
 def test_the_design_report_says_what_was_measured(tmp_path: Path) -> None:
     from onboard.runtime.resources import configs
 
     text = design(configs() / "aircraft" / "nose.toml", tmp_path)
-    assert "phase margin" in text and "2.682" in text and "settled" in text
+    assert all(word in text for word in ("phase margin", "2.682", "settled"))
     assert {path.name for path in tmp_path.iterdir()} == {"nose-bode.png", "nose-steps.png"}
 
 
