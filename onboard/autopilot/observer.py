@@ -33,6 +33,7 @@ from onboard.wire.values import (
 AUTOPILOT = 1  # MAV_COMP_ID_AUTOPILOT1
 OLD = 0.5  # [s] within which a lower sequence number means a late frame rather than a restart
 REBOOT = 3.0  # [s] by which the autopilot's clock must fall back to count as a restart
+NO_NUMBER = -1  # of a frame that came over another link
 QUALITY = 0.005  # weight of one frame in the running link quality: about the last 200
 
 BLANK: dict[type, Value] = {
@@ -59,16 +60,23 @@ class Observer:
         self.frame: Frame | None = None  # the game frame, when the setup is known
         self.home: Home | None = None
         self._latest: dict[type, tuple[float, int, Value]] = {}  # kind → (arrival, sequence, value)
+        self._link = 0
         self._boot_s = 0.0
         self._reboots = 0
         self._quality = 1.0
         self._sequence = -1
         self._heard_at = NEVER
 
-    def take(self, now: float, packet: Packet) -> Value | None:
-        """Take one packet in; its value, or None where it is another's, nobody's, unsound or out of date."""
+    def take(self, now: float, packet: Packet, link: int = 0) -> Value | None:
+        """Take one packet in; its value, or None where it is another's, nobody's, unsound or out of date.
+
+        `link` tells several links apart: on each an autopilot numbers its frames from its own start.
+        """
         if packet.system != self.system or packet.component != self.component:
             return None
+        if link != self._link:
+            self._link, self._heard_at = link, NEVER
+            self._latest = {kind: (at, NO_NUMBER, value) for kind, (at, _, value) in self._latest.items()}
         self._count(now, packet.sequence)
         value = decode(packet.message)
         if value is None:
@@ -76,7 +84,8 @@ class Observer:
         if isinstance(value, Heartbeat) and value.kind is Kind.UNKNOWN and value.autopilot == 8:
             return None  # a component that says it is no autopilot
         kept = self._latest.get(type(value))
-        if kept is not None and now - kept[0] < OLD and (packet.sequence - kept[1]) % 256 > 128:
+        late = kept is not None and now - kept[0] < OLD and (packet.sequence - kept[1]) % 256 > 128
+        if late and kept is not None and kept[1] != NO_NUMBER:
             return None
         if isinstance(value, Home):
             self.home = value

@@ -14,7 +14,7 @@ from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from onboard.wire.signing import Signing, Verdict
 
-__all__ = ["Framer", "MavMessage", "Packet", "Sender", "dialect"]
+__all__ = ["Framer", "MavMessage", "Packet", "Sender", "dialect", "frame_size", "message_number"]
 
 MAGIC_1, MAGIC_2 = dialect.PROTOCOL_MARKER_V1, dialect.PROTOCOL_MARKER_V2  # 0xFE, 0xFD
 HEADER_1, HEADER_2 = Struct("<BBBBBB"), Struct("<BBBBBBBHB")
@@ -92,6 +92,20 @@ def _layout(number: int) -> _Layout | None:
     if found is None and number in dialect.mavlink_map:
         found = _LAYOUTS[number] = _Layout(dialect.mavlink_map[number])
     return found
+
+
+def message_number(name: str) -> int:
+    """The number of a message by its name in capitals; KeyError for none of the dialect."""
+    return _NUMBERS[name]
+
+
+def frame_size(name: str, signed: bool = False) -> int:
+    """The most bytes that a frame of this message takes on the wire (trailing zeros may save some)."""
+    size: int = dialect.mavlink_map[_NUMBERS[name]].unpacker.size
+    return HEADER_2.size + size + 2 + (SIGNATURE if signed else 0)
+
+
+_NUMBERS: dict[str, int] = {kind.msgname: number for number, kind in dialect.mavlink_map.items()}
 
 
 class Framer:
