@@ -10,10 +10,10 @@ from onboard.core.vectors import Vec
 from onboard.runtime.master import GameMaster, Timing
 from onboard.runtime.protocols import Bus, Clock, Sample
 from onboard.runtime.scenario import Scenario
+from onboard.runtime.staging import setup_of, target_of
 from onboard.wire import swarm
 from onboard.wire.topics import EVADER_BRIEF, HEALTH, MASTER, OUTCOME, PHASE, SETUP, Topic, key
 from sim_bridge.motion import Motion
-from sim_bridge.staging import setup_of, target_of
 
 NAME = "sim-bridge"
 RECOVERY_S = 3.0

@@ -1,9 +1,8 @@
-"""From a scenario to what is flown: starts, kinds, airframes, the setup, and generators by concern."""
+"""From a scenario to what is flown: starts, kinds, airframes, and generators by concern."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import radians
 from zlib import crc32
 
 import numpy as np
@@ -11,9 +10,9 @@ from numpy.random import Generator, SeedSequence
 
 from onboard.core.vectors import Vec, yaw_of
 from onboard.runtime.config import ConfigError
-from onboard.runtime.scenario import AirframeKind, Kind, Scenario, VehicleSpec, vec
+from onboard.runtime.scenario import AirframeKind, Kind, Scenario, VehicleSpec
+from onboard.runtime.staging import staging_place
 from onboard.wire.geodesy import Frame
-from onboard.wire.swarm import Fence, Member, Origin, Role, Setup
 from sim_bridge.flight.kinematic import kinematic, start_motion
 from sim_bridge.motion import Air, Airframe, Motion
 from sim_bridge.setup import start_headings
@@ -30,23 +29,6 @@ def frame_of(scenario: Scenario) -> Frame:
     """The game frame."""
     origin = scenario.flight.origin
     return Frame(origin.latitude_deg, origin.longitude_deg, origin.altitude_m)
-
-
-def flown(scenario: Scenario, point: Vec) -> Vec:
-    """A place as it is flown: plane games at `flight.height`."""
-    return Vec(point.x, point.y, -scenario.flight.height) if scenario.planar else point
-
-
-def staging_place(scenario: Scenario, spec: VehicleSpec) -> Vec:
-    """Where a vehicle starts [m; NED]: on the ground where the scenario has a ground start."""
-    place = flown(scenario, spec.start())
-    return Vec(place.x, place.y, 0.0) if scenario.flight.ground_start else place
-
-
-def target_of(scenario: Scenario) -> Vec | None:
-    """The evader's target as it is flown."""
-    target = scenario.evader.target
-    return None if target is None else flown(scenario, vec(target))
 
 
 def kind_of(scenario: Scenario, spec: VehicleSpec) -> Kind:
@@ -84,45 +66,3 @@ def airframe_of(scenario: Scenario, spec: VehicleSpec, start: Motion, air: Air) 
     from sim_bridge.flight.airframe import fixed_wing
 
     return fixed_wing(airframe.value, spec.limits(), start.position, start.yaw, start.airspeed, air.wind)
-
-
-def setup_of(scenario: Scenario, game: str, master: str) -> Setup:
-    """`game/setup`: everything but the evader's target."""
-    p, flight = scenario.parameters, scenario.flight
-    roster = []
-    for index, (id, spec) in enumerate(zip(scenario.ids, scenario.vehicles, strict=True)):
-        place, limits = staging_place(scenario, spec), spec.limits()
-        roster.append(
-            Member(
-                id=id,
-                role=Role.PURSUER if index else Role.EVADER,
-                speed_max=spec.speed,
-                start=(place.x, place.y, place.z),
-                speed_min=limits.speed_min,
-                pitch_min=limits.pitch_min,
-                pitch_max=limits.pitch_max,
-                turn_rate=radians(spec.turn_rate_deg),
-                strategy=spec.strategy,
-            )
-        )
-    fence = flight.fence
-    return Setup(
-        game=game,
-        scenario=scenario.name,
-        scenario_hash=scenario.hash(),
-        master=master,
-        origin=Origin(flight.origin.latitude_deg, flight.origin.longitude_deg, flight.origin.altitude_m),
-        roster=tuple(roster),
-        capture_radius=p.R,
-        safety_distance=scenario.rho,
-        lambda_=p.lambda_,
-        beta=p.beta,
-        epsilon_min=p.epsilon_min,
-        horizon=p.horizon,
-        planar=scenario.planar,
-        fence=None if fence is None else Fence(fence.polygon, fence.height_min, fence.height_max),
-        separation=p.separation,
-        track_sigma=flight.sensor.sigma,
-        seed=scenario.seed,
-        field_profile=flight.field_profile,
-    )

@@ -1,0 +1,338 @@
+"""The console: a Textual application over a `Source`.
+
+It refreshes at 3 Hz, because text on a slow line costs more than it tells; keys answer at once. All
+thinking is in the pure modules beside this one.
+"""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from textual.app import App, ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Container
+from textual.css.query import NoMatches
+from textual.widgets import Input
+
+from gcs.commands import ENDS_A_FLIGHT
+from gcs.console import plan, words
+from gcs.console.help import HelpScreen
+from gcs.console.rows import Row, rows
+from gcs.console.source import Source
+from gcs.console.widgets import AlertBoard, Detail, LogPanel, Plan, Prompt, StatusBar, VehicleTable
+from gcs.picture import Picture
+from onboard.wire.swarm import CommandKind
+
+REFRESH_HZ = 3.0
+WIDE = 120  # columns from which on the plan stands beside the table
+TALL = 30  # lines from which on the table and the log take their share
+CONFIRM_S = 8.0  # how long a question waits for its answer
+
+KEYS: tuple[tuple[str, str, str], ...] = (  # key, action, text for the help
+    ("x", "abort_all", "ABORT ALL: everybody holds or returns, at once (ctrl+x while typing)"),
+    ("up,k", "move(-1)", "select the vehicle above"),
+    ("down,j", "move(1)", "select the vehicle below"),
+    ("h", "order('hold')", "hold the selected vehicle"),
+    ("r", "order('resume')", "resume the selected vehicle"),
+    ("b", "order('return')", "bring the selected vehicle back (asks)"),
+    ("l", "order('land')", "land the selected vehicle (asks)"),
+    ("colon,slash,enter", "command_line", "type a command"),
+    ("escape", "cancel", "leave the command line, answer no"),
+    ("y", "yes", "answer yes"),
+    ("a", "acknowledge('')", "acknowledge the topmost alert"),
+    ("A", "acknowledge('all')", "acknowledge all alerts"),
+    ("s", "sort(1)", "sort by the next column"),
+    ("S", "reverse", "turn the order round"),
+    ("plus,equals_sign", "zoom(True)", "plan: closer"),
+    ("minus", "zoom(False)", "plan: farther"),
+    ("f", "fit", "plan: fit everything, and keep it fitted"),
+    ("c", "follow", "plan: follow the selected vehicle"),
+    ("t", "draw('trails')", "plan: trails on and off"),
+    ("o", "draw('circles')", "plan: circles on and off"),
+    ("pageup", "scroll_log(-1)", "log: back"),
+    ("pagedown", "scroll_log(1)", "log: forward"),
+    ("question_mark,f1", "help", "this help"),
+    ("q", "leave", "leave the console; vehicles fly on (asks)"),
+)
+
+
+class Console(App[int]):
+    """The ground station's console."""
+
+    TITLE = "Apollonius"
+    ENABLE_COMMAND_PALETTE = False
+    AUTO_FOCUS = None  # keys are for the console until one opens the command line
+    HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (WIDE, "-wide")]  # noqa: RUF012 - as the base class has it
+    VERTICAL_BREAKPOINTS = [(0, "-low"), (TALL, "-tall")]  # noqa: RUF012
+    BINDINGS: ClassVar[list[BindingType]] = [
+        *(Binding(key, action, text, show=False) for key, action, text in KEYS),
+        Binding("ctrl+x", "abort_all", "abort all", show=False, priority=True),
+        Binding("ctrl+q,ctrl+c", "leave_now", "leave", show=False, priority=True),
+    ]
+    CSS = """
+    #main { layout: grid; grid-size: 2; grid-gutter: 0 1; grid-columns: 1fr 1fr; grid-rows: 1 7 1fr 3 3 1; }
+    #status, #vehicles, #alerts, #log, #prompt { column-span: 2; }
+    #status { background: $boost; }
+    Screen.-tall #main { grid-rows: 1 3fr 4fr 2fr 3fr 1; }
+    Screen.-wide #main { grid-columns: 82 1fr; }
+    Screen.-wide #vehicles, Screen.-wide #alerts, Screen.-wide #log { column-span: 1; }
+    Screen.-wide #plan { row-span: 4; }
+    """
+
+    def __init__(self, source: Source) -> None:
+        super().__init__()
+        self.source = source
+        self.selected: int | None = None
+        self.sort = "id"
+        self.descending = False
+        self.view = plan.START
+        self.keeps_fitted = True
+        self.follows = False
+        self.options = plan.Options()
+        self.table: list[Row] = []
+        self.asked: words.Order | words.Do | None = None  # waits for a yes
+        self.asked_ns = 0
+        self.picture: Picture = source.picture()
+
+    # ---- what is on the screen
+
+    def compose(self) -> ComposeResult:
+        with Container(id="main"):
+            yield StatusBar(id="status")
+            yield VehicleTable(id="vehicles")
+            yield Plan(id="plan")
+            yield Detail(id="detail")
+            yield AlertBoard(id="alerts")
+            yield LogPanel(id="log")
+            yield Prompt(id="prompt")
+
+    def on_mount(self) -> None:
+        for key in self.source.keys:
+            self._bindings.bind(key.key, f"source({key.action!r})", key.text, show=False)
+        self.set_interval(1.0 / REFRESH_HZ, self.refresh_picture)
+        self.refresh_picture()
+
+    def refresh_picture(self) -> None:
+        """Take the picture and show it."""
+        self.picture = self.source.picture()
+        if self.asked is not None and self.picture.now_ns - self.asked_ns > CONFIRM_S * 1e9:
+            self._answer_no()
+        self.show()
+
+    def show(self) -> None:
+        """Show the picture as it is, by the present settings."""
+        picture = self.picture
+        if self.selected is None and picture.vehicles:
+            self.selected = picture.vehicles[0].id
+        self.table = rows(picture, self.sort, self.descending)
+        try:
+            self._show_all(picture)
+        except NoMatches:  # not composed yet, or on its way out
+            return
+
+    def _show_all(self, picture: Picture) -> None:
+        main = self.screen_stack[0]
+        main.query_one(StatusBar).show(picture, self.source.title, self.source.status())
+        main.query_one(VehicleTable).show(self.table, self.selected, self.sort, self.descending)
+        area = main.query_one(Plan)
+        self.view = self._look(picture, area.size.width, area.size.height)
+        area.show(picture, self.view, self.selected, self.options)
+        main.query_one(Detail).show(picture, self.selected)
+        main.query_one(AlertBoard).show(picture)
+        main.query_one(LogPanel).show(picture)
+
+    def _look(self, picture: Picture, width: int, height: int) -> plan.View:
+        view = self.view
+        if self.keeps_fitted:
+            view = plan.fitted(view, picture, width, height)
+        chosen = picture.vehicle(self.selected) if self.selected is not None else None
+        if self.follows and chosen is not None and chosen.position is not None:
+            view = view._replace(north=chosen.position[0], east=chosen.position[1])
+        return view
+
+    def say(self, text: str, style: str = "") -> None:
+        """Tell the user something in the prompt line."""
+        self.screen_stack[0].query_one(Prompt).say(text, style)
+
+    # ---- keys
+
+    def action_source(self, action: str) -> None:
+        """A key of the source's own."""
+        self.say(self.source.act(action))
+        self.refresh_picture()
+
+    def action_abort_all(self) -> None:
+        """Knock it off, everybody: one key, no dialogue."""
+        self.asked = None
+        ids = tuple(vehicle.id for vehicle in self.source.picture().vehicles)
+        if not ids:
+            self.say("no vehicle is known yet", "bold yellow")
+            return
+        self._give(words.Order(CommandKind.ABORT, ids))
+
+    def action_order(self, kind: str) -> None:
+        """A command to the selected vehicle; the same key again answers yes."""
+        if self.selected is None:
+            self.say("no vehicle is known yet", "bold yellow")
+            return
+        order = words.Order(CommandKind(kind), (self.selected,))
+        if self.asked == order:
+            self.action_yes()
+        else:
+            self._order(order)
+
+    def action_move(self, step: int) -> None:
+        """Select the next vehicle of the table."""
+        ids = [row.id for row in self.table]
+        if not ids:
+            return
+        at = ids.index(self.selected) if self.selected in ids else 0
+        self.select(ids[max(0, min(len(ids) - 1, at + step))])
+
+    def select(self, vehicle_id: int) -> None:
+        """Show this vehicle's detail."""
+        self.selected = vehicle_id
+        self.show()
+
+    def action_command_line(self) -> None:
+        """Open the command line."""
+        self._answer_no()
+        self.query_one(Prompt).open()
+
+    def action_cancel(self) -> None:
+        """Leave the command line; answer no."""
+        self._answer_no()
+        self.query_one(Prompt).close()
+        self.say("")
+
+    def action_yes(self) -> None:
+        """Yes to what was asked."""
+        asked, self.asked = self.asked, None
+        if isinstance(asked, words.Order):
+            self._give(asked)
+        elif isinstance(asked, words.Do):
+            self.exit(0)
+
+    def action_acknowledge(self, what: str) -> None:
+        """Mark the topmost alert, or all, as seen."""
+        fresh = [alert.name for alert in self.picture.alerts if not alert.acknowledged]
+        if not fresh:
+            self.say("nothing to acknowledge")
+            return
+        self.source.acknowledge("" if what == "all" else what or fresh[0])
+        self.refresh_picture()
+
+    def action_sort(self, step: int) -> None:
+        """Sort by the next column."""
+        at = words.SORTS.index(self.sort)
+        self.sort_by(words.SORTS[(at + step) % len(words.SORTS)])
+
+    def sort_by(self, column: str) -> None:
+        """Sort by a column; by the same one again: the other way round."""
+        self.descending = not self.descending if column == self.sort else False
+        self.sort = column
+        self.show()
+
+    def action_reverse(self) -> None:
+        """Turn the order round."""
+        self.descending = not self.descending
+        self.show()
+
+    def action_zoom(self, closer: bool) -> None:
+        """A round step closer or farther."""
+        self.keeps_fitted = False
+        self.view = plan.zoomed(self.view, closer)
+        self.show()
+
+    def action_fit(self) -> None:
+        """Fit everything again."""
+        self.keeps_fitted, self.follows = True, False
+        area = self.query_one(Plan).size
+        self.view = plan.fitted(plan.View(1e9, 1e9, 1.0), self.picture, area.width, area.height)
+        self.show()
+
+    def action_follow(self) -> None:
+        """Keep the selected vehicle in the middle."""
+        self.follows = not self.follows
+        self.keeps_fitted = not self.follows
+        self.show()
+
+    def action_draw(self, what: str) -> None:
+        """Trails or circles on and off."""
+        self.options = self.options._replace(**{what: not getattr(self.options, what)})
+        self.show()
+
+    def action_scroll_log(self, pages: int) -> None:
+        """Back and forward in the log."""
+        self.query_one(LogPanel).scroll_pages(pages)
+
+    def action_help(self) -> None:
+        """Show the help, or leave it."""
+        if isinstance(self.screen, HelpScreen):
+            self.pop_screen()
+        else:
+            self.push_screen(HelpScreen(KEYS, self.source.keys))
+
+    def action_leave(self) -> None:
+        """Leave, after a question."""
+        if isinstance(self.asked, words.Do):
+            self.action_yes()
+        else:
+            self._ask(words.Do("quit"), "leave the console? vehicles fly on")
+
+    def action_leave_now(self) -> None:
+        """Leave at once."""
+        self.exit(0)
+
+    def on_vehicle_table_picked(self, event: VehicleTable.Picked) -> None:
+        """A vehicle was clicked."""
+        self.select(event.vehicle_id)
+
+    def on_vehicle_table_sorted(self, event: VehicleTable.Sorted) -> None:
+        """A heading was clicked."""
+        self.sort_by(event.column)
+
+    # ---- the command line
+
+    def on_input_submitted(self, event: Input.Submitted) -> None:
+        """A line was typed."""
+        self.query_one(Prompt).close()
+        meaning = words.parse(event.value, self.picture, self.selected)
+        if isinstance(meaning, words.Wrong):
+            self.say(meaning.reason, "bold yellow")
+        elif isinstance(meaning, words.Order):
+            self._order(meaning)
+        else:
+            self._do(meaning)
+
+    def _do(self, meaning: words.Do) -> None:
+        if meaning.what == "ack":
+            self.action_acknowledge(meaning.argument)
+        elif meaning.what == "select":
+            self.select(int(meaning.argument))
+        elif meaning.what == "sort":
+            self.sort_by(meaning.argument)
+        elif meaning.what == "help":
+            self.action_help()
+        else:
+            self.exit(0)
+
+    def _order(self, order: words.Order) -> None:
+        if order.kind in ENDS_A_FLIGHT:
+            self._ask(order, f"{order.kind.value} {words.names(order.ids, self.picture)}?")
+        else:
+            self._give(order)
+
+    def _ask(self, what: words.Order | words.Do, question: str) -> None:
+        self.asked, self.asked_ns = what, self.picture.now_ns
+        self.say(f"{question}  y: yes, esc: no", "bold reverse")
+
+    def _answer_no(self) -> None:
+        if self.asked is not None:
+            self.asked = None
+            self.say("not done")
+
+    def _give(self, order: words.Order) -> None:
+        said = self.source.command(order.kind, order.ids)
+        self.say(said or f"{order.kind.value} to {words.names(order.ids, self.picture)}", "bold")
+        self.refresh_picture()

@@ -1,0 +1,131 @@
+"""One vehicle in words: what it does and why. Pure."""
+
+from __future__ import annotations
+
+from math import atan2, degrees, hypot
+
+from gcs.console.rows import GRADE_WORDS, STYLES, age, evader_position, grades
+from gcs.picture import Picture, VehicleView
+from onboard.core.vectors import Vec, distance, dot, norm, scale, sub
+from onboard.wire.swarm import Role
+
+Line = tuple[str, str]  # text, style
+
+
+def detail(picture: Picture, selected: int | None) -> list[Line]:
+    """Lines about the selected vehicle, the most important first."""
+    vehicle = picture.vehicle(selected) if selected is not None else None
+    if vehicle is None:
+        return [("no vehicle selected", "dim")]
+    grade = grades(picture)[vehicle.id]
+    role = vehicle.role.value if vehicle.role else "role unknown"
+    armed = "armed" if vehicle.armed else "disarmed"
+    lines = [
+        (f"{vehicle.id} {role}: {GRADE_WORDS[grade]}, heard {age(vehicle.age_s)} s ago", STYLES[grade]),
+        (f"{vehicle.mode or 'no mode'}, {armed}, {vehicle.health.autopilot if vehicle.health else ''}", ""),
+    ]
+    if vehicle.health is not None and vehicle.health.lacks:
+        lines.append((f"waits for {', '.join(vehicle.health.lacks)}", "yellow"))
+    lines += _decision(vehicle)
+    lines += _distances(picture, vehicle)
+    lines += _prospect(picture, vehicle)
+    lines += _motion(vehicle)
+    lines += _health(vehicle)
+    lines += [(f"alert: {a.text}", "yellow") for a in picture.alerts if a.id == vehicle.id]
+    return lines
+
+
+def _decision(vehicle: VehicleView) -> list[Line]:
+    decision = vehicle.decision
+    if decision is None:
+        return [("no decision reported", "dim")]
+    north, east, down = decision.aim
+    old = f" ({age(vehicle.decision_age_s)} s ago)" if vehicle.decision_age_s > 1.0 else ""
+    lines = [
+        (f"rule {decision.rule}{old}", "bold"),
+        (f"{decision.level}, {decision.module}, {decision.strategy}", ""),
+        (f"aim N {north:.0f} E {east:.0f} up {-down:.0f} m", ""),
+        (f"in {decision.time_to_aim:.1f} s, predicted miss {decision.miss:.1f} m", ""),
+    ]
+    if decision.supervisor not in ("", "ok"):
+        lines.append((f"supervisor: {decision.supervisor}: {decision.reason}", "bold yellow"))
+    if decision.predictor:
+        lines.append((f"predictor {decision.predictor}, σ {decision.predictor_sigma:.1f} m", ""))
+    return lines
+
+
+def _distances(picture: Picture, vehicle: VehicleView) -> list[Line]:
+    if vehicle.state is None:
+        return []
+    here = Vec(*vehicle.state.position)
+    lines = []
+    evader = evader_position(picture)
+    if vehicle.role is not Role.EVADER and evader is not None:
+        line = sub(evader, here)
+        away = norm(line)
+        closing = dot(Vec(*vehicle.state.velocity), scale(line, 1.0 / away)) if away > 0.0 else 0.0
+        lines.append((f"evader {away:.1f} m, closing {closing:+.1f} m/s", ""))
+    others = [
+        (distance(here, Vec(*o.position)), o)
+        for o in picture.vehicles
+        if o.id != vehicle.id and o.position is not None and o.role is not Role.EVADER
+    ]
+    if others:
+        away, nearest = min(others, key=lambda pair: pair[0])
+        word = "nearest pursuer" if vehicle.role is Role.EVADER else "nearest mate"
+        lines.append((f"{word} {nearest.id}: {away:.1f} m", ""))
+    if vehicle.role is Role.EVADER and picture.game.target is not None:
+        lines.append((f"target {distance(here, Vec(*picture.game.target)):.1f} m away", ""))
+    return lines
+
+
+def _prospect(picture: Picture, vehicle: VehicleView) -> list[Line]:
+    found = picture.assessment
+    if found is None:
+        return []
+    if vehicle.role is Role.EVADER:
+        who = ", ".join(f"{p.id} in {p.time_s:.0f} s" for p in found.prospects if p.intercepts)
+        free = "encircled" if found.encircled else f"widest gap {degrees(found.largest_gap):.0f}°"
+        return [(f"{free}; its course is met by {who or 'nobody'}", "")]
+    for prospect in found.prospects:
+        if prospect.id == vehicle.id:
+            meets = f"can intercept in {prospect.time_s:.1f} s" if prospect.intercepts else "cannot intercept"
+            return [(f"{meets}{', denies the target' if prospect.denies_target else ''}", "")]
+    return []
+
+
+def _motion(vehicle: VehicleView) -> list[Line]:
+    state = vehicle.state
+    if state is None:
+        return []
+    north, east, down = state.position
+    v_north, v_east, v_down = state.velocity
+    course = degrees(atan2(v_east, v_north)) % 360
+    speed = f"{hypot(v_north, v_east):.1f} m/s to {course:.0f}°"
+    lines = [
+        (f"at N {north:.1f} E {east:.1f} up {-down:.1f} m", ""),
+        (f"{speed}, climb {-v_down:+.1f}, air {state.airspeed:.1f}", ""),
+    ]
+    wind = hypot(state.wind[0], state.wind[1])
+    if wind > 0.05:
+        source = (degrees(atan2(state.wind[1], state.wind[0])) + 180) % 360
+        lines.append((f"wind {wind:.1f} m/s from {source:.0f}°", ""))
+    return lines
+
+
+def _health(vehicle: VehicleView) -> list[Line]:
+    health = vehicle.health
+    if health is None:
+        return [("no health reported", "dim")]
+    battery = f"{health.battery:.0%}" if health.battery >= 0 else "unknown"
+    lines = [
+        (f"battery {battery}, link {health.link_quality:.0%}, GPS fix {health.gps_fix}", ""),
+        (f"telemetry {health.telemetry_rate_hz:.0f} Hz, setpoints {health.setpoint_rate_hz:.0f} Hz", ""),
+        (f"state here {vehicle.state_rate_hz:.0f} Hz, clock {health.clock_offset_s * 1e3:+.0f} ms", ""),
+        (f"version {health.version}", ""),
+    ]
+    dropped = {**health.counters, **{f"here {cause}": n for cause, n in vehicle.dropped}}
+    told = ", ".join(f"{cause} {n}" for cause, n in sorted(dropped.items()) if n)
+    if told:
+        lines.append((f"counters: {told}", "dim"))
+    return lines

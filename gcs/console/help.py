@@ -1,0 +1,70 @@
+"""The help screen."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import ClassVar
+
+from rich.text import Text
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import VerticalScroll
+from textual.screen import ModalScreen
+from textual.widgets import Static
+
+from gcs.console import plan, words
+from gcs.console.source import Key
+
+KEY_NAMES = {
+    "colon": ":", "slash": "/", "question_mark": "?", "plus": "+", "equals_sign": "=", "minus": "-",
+    "escape": "esc", "pageup": "PgUp", "pagedown": "PgDn", "up": "↑", "down": "↓", "left": "←", "right": "→",
+}  # fmt: skip
+
+
+class HelpScreen(ModalScreen[None]):
+    """Keys, commands and signs, over the console."""
+
+    CSS = """
+    HelpScreen { align: center middle; }
+    #help { width: 78; max-width: 100%; height: 90%; border: round; padding: 0 1; background: $surface; }
+    """
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("escape,question_mark,f1,q,enter", "app.pop_screen", "back", show=False)
+    ]
+
+    def __init__(self, keys: Iterable[tuple[str, str, str]], own: Iterable[Key]) -> None:
+        super().__init__()
+        self._text = help_text(keys, own)
+
+    def compose(self) -> ComposeResult:
+        with VerticalScroll(id="help"):
+            yield Static(self._text)
+
+
+def help_text(keys: Iterable[tuple[str, str, str]], own: Iterable[Key]) -> Text:
+    """Everything one needs to know, on two screens of 80×24."""
+    text = Text()
+    text.append("Keys", "bold")
+    text.append("  (↑ ↓ scroll, esc leaves)\n")
+    for key in own:
+        _entry(text, _named(key.key), key.text)
+    for names, _, said in keys:
+        _entry(text, _named(names), said)
+    text.append("\nCommand line", "bold")
+    text.append("  (: or enter opens it)\n")
+    for form, said in words.HELP_LINES:
+        _entry(text, form, said)
+    text.append(f"  {words.WHOM}\n")
+    text.append("\nPlan\n", "bold")
+    for sign, said in plan.LEGEND:
+        _entry(text, sign, said)
+    return text
+
+
+def _entry(text: Text, left: str, right: str) -> None:
+    text.append(f"  {left:<15}", "bold")
+    text.append(f"{right}\n")
+
+
+def _named(keys: str) -> str:
+    return " ".join(KEY_NAMES.get(key, key) for key in keys.split(","))

@@ -1,0 +1,265 @@
+"""The field seen from above, drawn with characters: north is up. Pure.
+
+Lines, trails and circles are braille dots, two across and four down in each character, so that a dot is
+about as wide as it is high. Everything that colour says is said by a sign as well.
+"""
+
+from __future__ import annotations
+
+from math import atan2, ceil, cos, floor, hypot, log10, pi, sin
+from typing import NamedTuple
+
+from gcs.console.rows import GRADE_WORDS, STYLES, Grade, grades
+from gcs.picture import Picture, Presence, VehicleView
+from onboard.wire.swarm import Role
+
+Run = tuple[str, str]  # text, style
+ARROWS = "↑↗→↘↓↙←↖"
+BRAILLE = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))  # [row][column]
+MOST_DOTS = 2000  # of one line or circle
+MARGIN = 0.15  # share of the view kept free when it is fitted
+
+
+class View(NamedTuple):
+    """Which part of the field is shown."""
+
+    north: float  # centre [m]
+    east: float
+    scale: float  # [m] per dot
+
+
+class Options(NamedTuple):
+    """What is drawn."""
+
+    trails: bool = True
+    circles: bool = True
+
+
+START = View(0.0, 0.0, 2.0)
+ALL = Options()
+
+
+def points(picture: Picture) -> list[tuple[float, float]]:
+    """What a fitted view must show: vehicles there, tracks, the target."""
+    found = [v.position[:2] for v in picture.vehicles if v.position and v.presence is not Presence.EXPECTED]
+    found += [t.track.position[:2] for t in picture.tracks]
+    if picture.game.target is not None and found:
+        found.append(picture.game.target[:2])
+    if not found and picture.game.setup:
+        found = [member.start[:2] for member in picture.game.setup.roster]
+    return found
+
+
+def fitted(view: View, picture: Picture, width: int, height: int) -> View:
+    """The view itself while all is in it and not lost in its middle; else one that fits, in round steps."""
+    places = points(picture)
+    if not places or width < 2 or height < 2:
+        return view
+    low_n, high_n = min(p[0] for p in places), max(p[0] for p in places)
+    low_e, high_e = min(p[1] for p in places), max(p[1] for p in places)
+    half_e, half_n = width * view.scale, 2 * height * view.scale
+    inside = (
+        low_e >= view.east - 0.95 * half_e and high_e <= view.east + 0.95 * half_e
+        and low_n >= view.north - 0.95 * half_n and high_n <= view.north + 0.95 * half_n
+    )  # fmt: skip
+    need = max((high_e - low_e) / (2 * width), (high_n - low_n) / (4 * height)) / (1 - 2 * MARGIN)
+    if inside and need > view.scale / 4:
+        return view
+    return View((low_n + high_n) / 2, (low_e + high_e) / 2, round_up(max(need, 0.05)))
+
+
+def round_up(value: float) -> float:
+    """The next of 1, 2, 5, 10 …"""
+    power = 10.0 ** floor(log10(value))
+    for step in (1.0, 2.0, 5.0):
+        if value <= step * power * 1.000001:
+            return step * power
+    return 10.0 * power
+
+
+def zoomed(view: View, closer: bool) -> View:
+    """One round step closer or farther, within a centimetre and 10 km a dot."""
+    factor = 0.499 if closer else 1.5
+    return view._replace(scale=min(1e4, max(0.01, round_up(view.scale * factor))))
+
+
+class _Canvas:
+    def __init__(self, width: int, height: int, view: View) -> None:
+        self.width, self.height, self.view = width, height, view
+        self.dots = [[0] * width for _ in range(height)]
+        self.signs: list[list[str]] = [[""] * width for _ in range(height)]
+        self.styles = [[""] * width for _ in range(height)]
+
+    def place(self, north: float, east: float) -> tuple[float, float]:
+        """Dot coordinates: right, down."""
+        v = self.view
+        return (east - v.east) / v.scale + self.width, (v.north - north) / v.scale + 2 * self.height
+
+    def dot(self, x: float, y: float, style: str) -> None:
+        if 0 <= x < 2 * self.width and 0 <= y < 4 * self.height:
+            column, row = int(x), int(y)
+            self.dots[row // 4][column // 2] |= BRAILLE[row % 4][column % 2]
+            self.styles[row // 4][column // 2] = style
+
+    def line(self, a: tuple[float, float], b: tuple[float, float], style: str, gap: int = 1) -> None:
+        """A line between two places (north, east), every `gap`-th dot."""
+        ends = _clipped(self.place(*a), self.place(*b), 2.0 * self.width, 4.0 * self.height)
+        if ends is None:
+            return
+        (x0, y0), (x1, y1) = ends
+        steps = max(1, min(MOST_DOTS, ceil(max(abs(x1 - x0), abs(y1 - y0)))))
+        for step in range(0, steps + 1, gap):
+            self.dot(x0 + (x1 - x0) * step / steps, y0 + (y1 - y0) * step / steps, style)
+
+    def circle(self, north: float, east: float, radius: float, style: str) -> None:
+        r = radius / self.view.scale
+        if r < 1.5:
+            return
+        x, y = self.place(north, east)
+        count = min(MOST_DOTS, ceil(2 * pi * r))
+        for step in range(count):
+            angle = 2 * pi * step / count
+            self.dot(x + r * sin(angle), y - r * cos(angle), style)
+
+    def text(self, column: int, row: int, text: str, style: str) -> None:
+        if not 0 <= row < self.height:
+            return
+        for offset, sign in enumerate(text):
+            if 0 <= column + offset < self.width:
+                self.signs[row][column + offset] = sign
+                self.styles[row][column + offset] = style
+
+    def sign(self, north: float, east: float, text: str, style: str) -> None:
+        """Text whose first character stands at a place; moved left where it would leave the view."""
+        x, y = self.place(north, east)
+        column, row = floor(x / 2), floor(y / 4)
+        if 0 <= column < self.width and 0 <= row < self.height:
+            self.text(max(0, min(column, self.width - len(text))), row, text, style)
+
+    def rows(self) -> list[list[Run]]:
+        rows = []
+        for signs, dots, styles in zip(self.signs, self.dots, self.styles, strict=True):
+            runs: list[Run] = []
+            text, style = "", ""
+            for sign, dot, own in zip(signs, dots, styles, strict=True):
+                here = sign or (chr(0x2800 + dot) if dot else " ")
+                if own != style and text:
+                    runs.append((text, style))
+                    text = ""
+                text, style = text + here, own
+            runs.append((text, style))
+            rows.append(runs)
+        return rows
+
+
+def _clipped(
+    a: tuple[float, float], b: tuple[float, float], width: float, height: float
+) -> tuple[tuple[float, float], tuple[float, float]] | None:
+    """The part of a line inside the canvas (Liang and Barsky)."""
+    low, high = 0.0, 1.0
+    dx, dy = b[0] - a[0], b[1] - a[1]
+    for p, q in ((-dx, a[0]), (dx, width - a[0]), (-dy, a[1]), (dy, height - a[1])):
+        if p == 0.0:
+            if q < 0.0:
+                return None
+        elif p < 0.0:
+            low = max(low, q / p)
+        else:
+            high = min(high, q / p)
+    if low > high:
+        return None
+    return (a[0] + low * dx, a[1] + low * dy), (a[0] + high * dx, a[1] + high * dy)
+
+
+def plan(
+    picture: Picture, view: View, width: int, height: int, selected: int | None, options: Options = ALL
+) -> list[list[Run]]:
+    """Rows of styled text, `height` of them, each `width` wide."""
+    canvas = _Canvas(width, height, view)
+    setup = picture.game.setup
+    if setup is not None and setup.fence is not None:
+        corners = setup.fence.polygon
+        for a, b in zip(corners, corners[1:] + corners[:1], strict=True):
+            canvas.line(a, b, "dim", gap=2)
+    chosen = picture.vehicle(selected) if selected is not None else None
+    if options.circles:
+        _circles(canvas, picture, chosen)
+    if options.trails:
+        _trails(canvas, picture)
+    if chosen is not None and chosen.decision is not None and chosen.position is not None:
+        aim = chosen.decision.aim
+        canvas.line(chosen.position[:2], aim[:2], "bold", gap=3)
+        canvas.sign(aim[0], aim[1], "×", "bold")
+    if picture.game.target is not None:
+        canvas.sign(picture.game.target[0], picture.game.target[1], "◎", "bold green")
+    own = {v.id for v in picture.vehicles if v.presence is Presence.PRESENT and v.position}
+    for track in picture.tracks:
+        if track.id not in own:
+            canvas.sign(track.track.position[0], track.track.position[1], f"+{track.id}", "red")
+    graded = grades(picture)
+    for vehicle in sorted(picture.vehicles, key=lambda v: v.id == selected):
+        if vehicle.position is not None:
+            label, style = _label(vehicle, graded[vehicle.id], vehicle.id == selected)
+            canvas.sign(vehicle.position[0], vehicle.position[1], label, style)
+    _scale(canvas)
+    return canvas.rows()
+
+
+def _circles(canvas: _Canvas, picture: Picture, chosen: VehicleView | None) -> None:
+    if picture.game.setup is not None:
+        for vehicle in picture.vehicles:
+            if vehicle.role is Role.PURSUER and vehicle.position is not None:
+                canvas.circle(*vehicle.position[:2], picture.game.setup.capture_radius, "dim cyan")
+    if chosen is not None and chosen.decision is not None and chosen.decision_age_s < 2.0:
+        for north, east, _, radius in chosen.decision.circles:
+            canvas.circle(north, east, radius, "yellow")
+
+
+def _trails(canvas: _Canvas, picture: Picture) -> None:
+    seen = set()
+    for vehicle in picture.vehicles:
+        seen.add(vehicle.id)
+        style = "red" if vehicle.role is Role.EVADER else "cyan"
+        for a, b in zip(vehicle.trail, vehicle.trail[1:], strict=False):
+            canvas.line(a[:2], b[:2], style)
+    for track in picture.tracks:
+        if track.id not in seen:
+            for place in track.trail:
+                canvas.dot(*canvas.place(*place[:2]), "red")
+
+
+def _label(vehicle: VehicleView, grade: Grade, selected: bool) -> tuple[str, str]:
+    assert vehicle.state is not None
+    name = f"E{vehicle.id}" if vehicle.role is Role.EVADER else str(vehicle.id)
+    if selected:
+        name = f"[{name}]"
+    if grade is Grade.LOST:
+        return f"✕{name}", STYLES[grade]
+    north, east, _ = vehicle.state.velocity
+    course = atan2(east, north) if hypot(north, east) > 0.5 else vehicle.state.yaw
+    arrow = ARROWS[round(course / (pi / 4)) % 8]
+    alarm = "!" if grade in (Grade.ERROR, Grade.WARN) else ""
+    style = "bold red" if vehicle.role is Role.EVADER else "bold cyan"
+    return f"{arrow}{name}{alarm}", STYLES[grade] if alarm else style
+
+
+def _scale(canvas: _Canvas) -> None:
+    """A scale bar, and which way is north."""
+    if canvas.width < 16 or canvas.height < 3:
+        return
+    length = round_up(canvas.view.scale * 2 * canvas.width / 8)
+    cells = max(2, round(length / (2 * canvas.view.scale)))
+    unit = f"{length / 1000:g} km" if length >= 1000 else f"{length:g} m"
+    canvas.text(0, canvas.height - 1, f"├{'─' * (cells - 2)}┤ {unit}", "dim")
+    canvas.text(canvas.width - 2, 0, "N↑", "dim")
+
+
+LEGEND = (
+    ("↗2", "pursuer 2 and its course"),
+    ("E1", "the evader"),
+    ("[2]", "the selected vehicle, with its line to its aim × and its Apollonius circles"),
+    ("2!", f"an alert about it ({GRADE_WORDS[Grade.WARN]} or {GRADE_WORDS[Grade.ERROR]})"),
+    ("✕2", "lost: where it was last"),
+    ("+1", "a track of somebody who does not speak here"),
+    ("◎", "the evader's target"),
+)
