@@ -1,0 +1,49 @@
+"""What an agent still lacks before it can play, in words a person can act on."""
+
+from __future__ import annotations
+
+from onboard.agent.craft import Craft
+from onboard.agent.table import Table
+from onboard.autopilot.base import NEVER
+from onboard.core.safety.policy import Policy
+from onboard.wire.swarm import Role
+
+MASTER_S = 5.0  # a master silent for longer counts as lacking
+
+
+def lacking(
+    now: float, craft: Craft, table: Table, policy: Policy, role: Role, why_not: str, connected: bool
+) -> tuple[str, ...]:
+    """What is missing at `now` [s, monotonic]; `why_not`: why the setup at hand was refused."""
+    lacks: list[str] = []
+    t = craft.telemetry
+    if craft.adapter is None:
+        others = sorted(craft.heard_systems)
+        heard = f" (heard: system {', '.join(map(str, others))})" if others else ""
+        lacks.append(f"an autopilot: {craft.refusal}" if craft.refusal else f"an autopilot{heard}")
+    elif not now - t.heartbeat_at <= policy.heartbeat_age:
+        lacks.append("the autopilot's heartbeat")
+    elif not now - t.position_at <= policy.telemetry_age:
+        lacks.append("the vehicle's position")
+    else:
+        if policy.gps_fix > 0 and t.gps_at != NEVER and t.gps_fix < policy.gps_fix:
+            lacks.append("a GPS fix")
+        if t.ekf_at != NEVER and not t.ekf_ok:
+            lacks.append("a healthy position estimate")
+        if not t.armed:
+            lacks.append("an armed vehicle")
+        if 0.0 <= t.battery < policy.battery:
+            lacks.append("a charged battery")
+    if not connected:
+        lacks.append("the bus")
+    if table.setup is None:
+        lacks.append("a game's setup")
+    elif why_not:
+        lacks.append(f"a setup that fits: {why_not}")
+    if table.master_at == NEVER or now - table.master_at > MASTER_S:
+        lacks.append("a master")
+    elif not table.clock.ready:
+        lacks.append(f"a clock that agrees with the master's ({table.clock.offset_s * 1e3:+.0f} ms)")
+    if role is Role.EVADER and table.setup is not None and not table.briefed:
+        lacks.append("the evader's brief")
+    return tuple(lacks)
