@@ -10,7 +10,7 @@ from onboard.wire.mavlink import Packet, dialect
 from onboard.wire.modes import ARDUCOPTER_MODES
 from sim_bridge.autopilot import tables, telemetry
 from sim_bridge.autopilot.ardupilot import ABOVE_HOME, ABSOLUTE, ArduPilot
-from sim_bridge.autopilot.machine import ACCEPTED, DENIED, FAILED, Command
+from sim_bridge.autopilot.command import ACCEPTED, DENIED, FAILED, Command
 from sim_bridge.autopilot.multicopter import Leg, Multicopter, Speeds
 from sim_bridge.autopilot.parameters import Parameters
 from sim_bridge.motion import Demand

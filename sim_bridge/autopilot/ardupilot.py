@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 from onboard.core.vectors import Vec
 from onboard.wire.mavlink import Packet, dialect
-from sim_bridge.autopilot.machine import ACCEPTED, DENIED, FAILED, Autopilot, Command
+from sim_bridge.autopilot.command import ACCEPTED, DENIED, FAILED, Command
+from sim_bridge.autopilot.machine import Autopilot
 
 VERSION = 4 << 24 | 5 << 16 | 6 << 8 | 255  # 4.5.6, release
 PREARM_EVERY_S = 30.0

@@ -13,7 +13,7 @@ from onboard.wire.mavlink import Packet, dialect
 from onboard.wire.modes import ARDUPLANE_MODES
 from sim_bridge.autopilot import tables, telemetry
 from sim_bridge.autopilot.ardupilot import ABOVE_HOME, ABSOLUTE, ArduPilot
-from sim_bridge.autopilot.machine import ACCEPTED, DENIED, FAILED, Command
+from sim_bridge.autopilot.command import ACCEPTED, DENIED, FAILED, Command
 from sim_bridge.autopilot.parameters import Parameters
 from sim_bridge.autopilot.setup import Setup
 from sim_bridge.flight.kinematic import G

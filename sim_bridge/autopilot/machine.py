@@ -9,16 +9,18 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections import Counter, OrderedDict
 from collections.abc import Callable, Hashable, Mapping
-from math import isfinite
-from typing import ClassVar, NamedTuple
+from functools import partial
+from typing import ClassVar
 
 from onboard.core.vectors import Vec
 from onboard.wire.geodesy import Frame, Geodetic
 from onboard.wire.mavlink import Framer, MavMessage, Packet, Sender, dialect
 from sim_bridge.autopilot import telemetry
-from sim_bridge.autopilot.files import refusal
+from sim_bridge.autopilot.command import ACCEPTED, UNSUPPORTED, Command, from_int, from_long
 from sim_bridge.autopilot.health import Fault, Health
+from sim_bridge.autopilot.inquiries import INQUIRIES
 from sim_bridge.autopilot.parameters import Parameters
+from sim_bridge.autopilot.services import SERVICES
 from sim_bridge.autopilot.setup import Setup
 from sim_bridge.autopilot.streams import Streams
 from sim_bridge.motion import CALM, Air, Demand, Motion
@@ -28,28 +30,7 @@ SECOND = 1_000_000_000
 HEARTBEAT_NS = SECOND
 PEERS_MAX = 16  # framing states kept, least recently heard forgotten first
 PARAMETERS_A_STEP = 5
-ACCEPTED: int = dialect.MAV_RESULT_ACCEPTED
-LATER: int = dialect.MAV_RESULT_TEMPORARILY_REJECTED
-DENIED: int = dialect.MAV_RESULT_DENIED
-UNSUPPORTED: int = dialect.MAV_RESULT_UNSUPPORTED
-FAILED: int = dialect.MAV_RESULT_FAILED
 FORCE = 21196  # param2 of 400: arm or disarm whatever the checks say
-
-
-class Command(NamedTuple):
-    """COMMAND_LONG or COMMAND_INT, place in degrees."""
-
-    number: int
-    p1: float
-    p2: float
-    p3: float
-    p4: float
-    latitude_deg: float
-    longitude_deg: float
-    z: float
-    frame: int  # MAV_FRAME; of a COMMAND_LONG −1
-    system: int  # the sender's
-    component: int
 
 
 class Autopilot(ABC):
@@ -86,7 +67,7 @@ class Autopilot(ABC):
         self._framers: OrderedDict[Hashable, Framer] = OrderedDict()
         self._out: list[bytes] = []
         self._place: tuple[Vec, Geodetic] | None = None
-        self._home_known = not self._cold
+        self.home_known = not self._cold
         self._ground_station_ns = -1  # last heartbeat of the watched one; −1 = never
         self._start_wire(now_ns)
         self.enter(now_ns, self.mode)
@@ -112,8 +93,8 @@ class Autopilot(ABC):
         self.air = air
         self._place = None
         self.health.drain(dt, self.armed and not self.landed)
-        if not self._home_known and self.positioned(now_ns):
-            self._home_known = True
+        if not self.home_known and self.positioned(now_ns):
+            self.home_known = True
             self.emit(telemetry.home_position(self, now_ns))
             self.emit(telemetry.global_origin(self, now_ns))
         self.watch(now_ns)
@@ -211,37 +192,22 @@ class Autopilot(ABC):
         """What else happens at arming."""
 
     def _message_handlers(self) -> dict[int, Callable[[int, Packet], None]]:
-        return {
-            dialect.MAVLINK_MSG_ID_HEARTBEAT: self._on_heartbeat,
-            dialect.MAVLINK_MSG_ID_COMMAND_LONG: self._on_command_long,
-            dialect.MAVLINK_MSG_ID_COMMAND_INT: self._on_command_int,
-            dialect.MAVLINK_MSG_ID_SET_MODE: self._on_set_mode,
-            dialect.MAVLINK_MSG_ID_PARAM_REQUEST_LIST: self._on_param_list,
-            dialect.MAVLINK_MSG_ID_PARAM_REQUEST_READ: self._on_param_read,
-            dialect.MAVLINK_MSG_ID_PARAM_SET: self._on_param_set,
-            dialect.MAVLINK_MSG_ID_MISSION_REQUEST_LIST: self._on_mission_list,
-            dialect.MAVLINK_MSG_ID_MISSION_REQUEST_INT: self._on_mission_request,
-            dialect.MAVLINK_MSG_ID_MISSION_REQUEST: self._on_mission_request,
-            dialect.MAVLINK_MSG_ID_MISSION_COUNT: self._on_mission_upload,
-            dialect.MAVLINK_MSG_ID_MISSION_CLEAR_ALL: self._on_mission_clear,
-            dialect.MAVLINK_MSG_ID_FILE_TRANSFER_PROTOCOL: self._on_file_transfer,
-            dialect.MAVLINK_MSG_ID_TIMESYNC: self._on_timesync,
-            dialect.MAVLINK_MSG_ID_PING: self._on_ping,
-            dialect.MAVLINK_MSG_ID_REQUEST_DATA_STREAM: self._on_data_stream,
+        handlers: dict[int, Callable[[int, Packet], None]] = {
+            number: partial(service, self) for number, service in SERVICES.items()
         }
+        handlers[dialect.MAVLINK_MSG_ID_HEARTBEAT] = self._on_heartbeat
+        handlers[dialect.MAVLINK_MSG_ID_COMMAND_LONG] = self._on_command_long
+        handlers[dialect.MAVLINK_MSG_ID_COMMAND_INT] = self._on_command_int
+        handlers[dialect.MAVLINK_MSG_ID_SET_MODE] = self._on_set_mode
+        return handlers
 
     def _command_handlers(self) -> dict[int, Callable[[int, Command], int]]:
-        return {
-            dialect.MAV_CMD_COMPONENT_ARM_DISARM: self._do_arm,
-            dialect.MAV_CMD_DO_SET_MODE: self.set_mode_result,
-            dialect.MAV_CMD_SET_MESSAGE_INTERVAL: self._do_set_interval,
-            dialect.MAV_CMD_GET_MESSAGE_INTERVAL: self._do_get_interval,
-            dialect.MAV_CMD_REQUEST_MESSAGE: self._do_request_message,
-            dialect.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES: self._do_request_version,
-            dialect.MAV_CMD_GET_HOME_POSITION: self._do_get_home,
-            dialect.MAV_CMD_DO_SET_HOME: self._do_set_home,
-            dialect.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN: self._do_reboot,
+        handlers: dict[int, Callable[[int, Command], int]] = {
+            number: partial(inquiry, self) for number, inquiry in INQUIRIES.items()
         }
+        handlers[dialect.MAV_CMD_COMPONENT_ARM_DISARM] = self._do_arm
+        handlers[dialect.MAV_CMD_DO_SET_MODE] = self.set_mode_result
+        return handlers
 
     # ------------------------------------------------------------------ what personalities use
 
@@ -258,6 +224,10 @@ class Autopilot(ABC):
     def boot_ms(self, now_ns: int) -> int:
         """time_boot_ms."""
         return (now_ns - self._boot_ns) // 1_000_000
+
+    def boot_elapsed_ns(self, now_ns: int) -> int:
+        """Since boot [ns]."""
+        return now_ns - self._boot_ns
 
     def up_s(self, now_ns: int) -> float:
         """Time since boot [s]."""
@@ -305,11 +275,6 @@ class Autopilot(ABC):
         return self.health.positioned and not cold
 
     @property
-    def home_known(self) -> bool:
-        """Whether home has been set."""
-        return self._home_known
-
-    @property
     def mode_name(self) -> str:
         """The mode in the autopilot's own words."""
         for name, number in self.modes.items():
@@ -352,7 +317,7 @@ class Autopilot(ABC):
 
     def _start_wire(self, now_ns: int) -> None:
         self._sender = Sender(self.system, COMPONENT, signing=self.setup.signing)
-        self._streams = Streams(self.default_rates, now_ns)
+        self.streams = Streams(self.default_rates, now_ns)
         self._heartbeat_ns = now_ns
 
     def _change(self, now_ns: int, mode: int) -> None:
@@ -369,7 +334,7 @@ class Autopilot(ABC):
             following = self._heartbeat_ns + HEARTBEAT_NS
             self._heartbeat(now_ns)
             self._heartbeat_ns = following if following > now_ns else now_ns + HEARTBEAT_NS
-        for number in self._streams.due(now_ns):
+        for number in self.streams.due(now_ns):
             self.emit(telemetry.build(self, number, now_ns))
         for message in self.parameters.due(PARAMETERS_A_STEP):
             self.emit(message)
@@ -395,14 +360,10 @@ class Autopilot(ABC):
             self._ground_station_ns = now_ns
 
     def _on_command_long(self, now_ns: int, packet: Packet) -> None:
-        m = packet.message
-        self._obey(now_ns, Command(m.command, m.param1, m.param2, m.param3, m.param4, m.param5, m.param6,
-                                   m.param7, -1, packet.system, packet.component))
+        self._obey(now_ns, from_long(packet))
 
     def _on_command_int(self, now_ns: int, packet: Packet) -> None:
-        m = packet.message
-        self._obey(now_ns, Command(m.command, m.param1, m.param2, m.param3, m.param4, m.x * 1e-7, m.y * 1e-7,
-                                   m.z, m.frame, packet.system, packet.component))
+        self._obey(now_ns, from_int(packet))
 
     def _obey(self, now_ns: int, command: Command) -> None:
         handler = self._commands.get(command.number)
@@ -420,54 +381,6 @@ class Autopilot(ABC):
             packet.system, packet.component))
         self.emit(dialect.MAVLink_command_ack_message(
             dialect.MAVLINK_MSG_ID_SET_MODE, result, 0, 0, packet.system, packet.component))
-
-    def _on_param_list(self, now_ns: int, packet: Packet) -> None:
-        self.parameters.list_all()
-        for line in self.banner:
-            self.say(dialect.MAV_SEVERITY_INFO, line)
-
-    def _on_param_read(self, now_ns: int, packet: Packet) -> None:
-        self.emit(self.parameters.read(packet.message.param_id, packet.message.param_index))
-
-    def _on_param_set(self, now_ns: int, packet: Packet) -> None:
-        self.emit(self.parameters.write(packet.message.param_id, packet.message.param_value))
-
-    def _on_mission_list(self, now_ns: int, packet: Packet) -> None:
-        self.emit(dialect.MAVLink_mission_count_message(
-            packet.system, packet.component, 0, packet.message.mission_type))
-
-    def _on_mission_request(self, now_ns: int, packet: Packet) -> None:
-        self._mission_ack(packet, dialect.MAV_MISSION_INVALID_SEQUENCE)
-
-    def _on_mission_upload(self, now_ns: int, packet: Packet) -> None:
-        self._mission_ack(packet, dialect.MAV_MISSION_NO_SPACE)
-
-    def _on_mission_clear(self, now_ns: int, packet: Packet) -> None:
-        self._mission_ack(packet, dialect.MAV_MISSION_ACCEPTED)
-
-    def _mission_ack(self, packet: Packet, result: int) -> None:
-        self.emit(dialect.MAVLink_mission_ack_message(
-            packet.system, packet.component, result, packet.message.mission_type))
-
-    def _on_file_transfer(self, now_ns: int, packet: Packet) -> None:
-        payload = refusal(bytes(packet.message.payload))
-        self.emit(dialect.MAVLink_file_transfer_protocol_message(0, packet.system, packet.component, payload))
-
-    def _on_timesync(self, now_ns: int, packet: Packet) -> None:
-        if packet.message.tc1 == 0:
-            self.emit(dialect.MAVLink_timesync_message(now_ns - self._boot_ns, packet.message.ts1))
-
-    def _on_ping(self, now_ns: int, packet: Packet) -> None:
-        m = packet.message
-        if m.target_system == 0 and m.target_component == 0:
-            self.emit(dialect.MAVLink_ping_message(m.time_usec, m.seq, packet.system, packet.component))
-
-    def _on_data_stream(self, now_ns: int, packet: Packet) -> None:
-        m = packet.message
-        for number in telemetry.DATA_STREAMS.get(m.req_stream_id, ()):
-            if telemetry.can_build(self, number):
-                hz = m.req_message_rate if m.start_stop else 0
-                self._streams.set(number, 1e6 / hz if hz else -1, now_ns)
 
     def _do_arm(self, now_ns: int, command: Command) -> int:
         forced = command.p2 == FORCE
@@ -489,64 +402,3 @@ class Autopilot(ABC):
                 self.disarm(now_ns)
             return ACCEPTED
         return UNSUPPORTED
-
-    def _do_set_interval(self, now_ns: int, command: Command) -> int:
-        number = _whole(command.p1)
-        if not telemetry.can_build(self, number) or not isfinite(command.p2):
-            return self.unknown_interval
-        self._streams.set(number, command.p2, now_ns)
-        return ACCEPTED
-
-    def _do_get_interval(self, now_ns: int, command: Command) -> int:
-        number = _whole(command.p1)
-        if not telemetry.can_build(self, number):
-            return self.unknown_interval
-        self.emit(dialect.MAVLink_message_interval_message(number, self._streams.interval_us(number)))
-        return ACCEPTED
-
-    def _do_request_message(self, now_ns: int, command: Command) -> int:
-        number = _whole(command.p1)
-        if not telemetry.can_build(self, number):
-            return self.unknown_message
-        self.emit(telemetry.build(self, number, now_ns))
-        return ACCEPTED
-
-    def _do_request_version(self, now_ns: int, command: Command) -> int:
-        self.emit(telemetry.autopilot_version(self, now_ns))
-        return ACCEPTED
-
-    def _do_get_home(self, now_ns: int, command: Command) -> int:
-        if not self._home_known:
-            return FAILED
-        self.emit(telemetry.home_position(self, now_ns))
-        return ACCEPTED
-
-    def _do_set_home(self, now_ns: int, command: Command) -> int:
-        if command.p1 == 1.0:
-            if not self.positioned(now_ns):
-                return FAILED
-            self.home = self.place
-        else:
-            home = Geodetic(command.latitude_deg, command.longitude_deg, command.z)
-            sane = abs(home.latitude_deg) <= 90.0 and abs(home.longitude_deg) <= 180.0
-            if not sane or not isfinite(home.altitude_m):
-                return DENIED
-            self.home = home
-        self._home_known = True
-        self.emit(telemetry.home_position(self, now_ns))
-        return ACCEPTED
-
-    def _do_reboot(self, now_ns: int, command: Command) -> int:
-        if command.p1 != 1.0:
-            return UNSUPPORTED
-        if self.armed:
-            return FAILED
-        self.reboot(now_ns)
-        return ACCEPTED
-
-
-def _whole(value: float) -> int:
-    """A number of a message; −1 for none."""
-    return int(value) if isfinite(value) and 0 <= value < 2**24 else -1
-
-

@@ -10,7 +10,7 @@ from onboard.wire.geodesy import Geodetic
 from onboard.wire.mavlink import Packet, dialect
 from onboard.wire.modes import PX4_MODES
 from sim_bridge.autopilot import ardupilot, tables, telemetry
-from sim_bridge.autopilot.machine import ACCEPTED, DENIED, FAILED, LATER, Command
+from sim_bridge.autopilot.command import ACCEPTED, DENIED, FAILED, LATER, Command
 from sim_bridge.autopilot.multicopter import Leg, Multicopter, Speeds
 from sim_bridge.autopilot.parameters import Parameters
 from sim_bridge.motion import Demand
