@@ -134,6 +134,9 @@ class ArduPlaneAdapter:
         """Ask for arming, if made with `may_arm`."""
         return self._control.arm()
 
+    def close(self) -> None:
+        """Nothing to release."""
+
     def acknowledge(self, now: float, ack: CommandAck) -> None:
         """Hear the answer to a command."""
         self._control.acknowledge(now, ack)

@@ -175,6 +175,10 @@ class Adapter(Protocol):
         """Hear the autopilot's answer to a command."""
         ...
 
+    def close(self) -> None:
+        """Release what it holds (a child process); idempotent. Does not change the mode: `leave` does."""
+        ...
+
     def step(self, now: float, telemetry: Telemetry, setpoint: Setpoint | None) -> Step:
         """Messages due now. `setpoint` None: none is allowed now, and none is sent."""
         ...

@@ -6,13 +6,20 @@ from collections.abc import Mapping
 
 from onboard.autopilot.arduplane import ArduPlaneAdapter
 from onboard.autopilot.base import Adapter, Envelope, Refusal
+from onboard.autopilot.mavsdk import MavsdkAdapter
 from onboard.autopilot.parameters import gcs_failsafe
 from onboard.autopilot.velocity import VelocityAdapter
 from onboard.wire.commands import Target
 from onboard.wire.modes import Kind
 from onboard.wire.values import Heartbeat
 
-SCHEMES = ("auto", "velocity", "arduplane", "arduplane-plain")
+SCHEMES = {
+    "auto": tuple(Kind),
+    "velocity": (Kind.PX4_MULTICOPTER, Kind.ARDUCOPTER),
+    "mavsdk": (Kind.PX4_MULTICOPTER, Kind.ARDUCOPTER),
+    "arduplane": (Kind.ARDUPLANE,),
+    "arduplane-plain": (Kind.ARDUPLANE,),
+}
 
 _WHY_NOT = {
     Kind.PX4_PLANE: "PX4 fixed wing ignores velocity targets, and takes attitude targets without keeping "
@@ -31,11 +38,13 @@ def adapter_for(
     parameters: Mapping[str, float] | None = None,
     may_arm: bool = False,
     hold_mode: str = "",
+    mavsdk_url: str = "",
 ) -> Adapter | Refusal:
     """The adapter for an autopilot by its heartbeat, or the reason why there is none.
 
     `scheme` (configuration) is `auto` or must fit. `parameters` are the autopilot's, as far as read: the
     plain variant of ArduPlane is refused unless they show that the GCS failsafe watches this agent.
+    `mavsdk_url` is the connection that MAVSDK opens for itself, besides the agent's link.
     """
     kind = heartbeat.kind
     if kind in _WHY_NOT:
@@ -45,14 +54,19 @@ def adapter_for(
             f"unknown autopilot (autopilot {heartbeat.autopilot}, vehicle type {heartbeat.vehicle_type}): "
             "expected a PX4 multicopter, an ArduCopter or an ArduPlane"
         )
-    natural = "arduplane" if kind is Kind.ARDUPLANE else "velocity"
-    chosen = natural if scheme == "auto" else scheme
-    if chosen not in SCHEMES or not chosen.startswith(natural):
-        return Refusal(f"{kind.value} cannot be flown by {scheme}: expected auto or {natural}")
+    if kind not in SCHEMES.get(scheme, ()):
+        fitting = [name for name, kinds in SCHEMES.items() if kind in kinds]
+        return Refusal(f"{kind.value} cannot be flown by {scheme}: expected {', '.join(fitting)}")
     limits = envelope or Envelope()
+    if scheme == "mavsdk":
+        if not MavsdkAdapter.available():
+            return Refusal("MAVSDK is not installed: pip install 'apollonius[mavsdk]'")
+        if not mavsdk_url:
+            return Refusal("mavsdk needs a connection of its own: give its URL")
+        return MavsdkAdapter(kind, to, limits, mavsdk_url, may_arm=may_arm)
     if kind is not Kind.ARDUPLANE:
         return VelocityAdapter(kind, to, limits, may_arm=may_arm, hold_mode=hold_mode)
-    plain = chosen == "arduplane-plain"
+    plain = scheme == "arduplane-plain"
     if plain:
         finding = gcs_failsafe(kind, parameters or {}, to.system)
         if finding is not None:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from math import isfinite
 
-from onboard.autopilot.base import Envelope
+from onboard.autopilot.base import NEVER, Envelope
 from onboard.core.vectors import Vec, norm, scale, sub
+
+GAP = 0.4  # [s] without a target: the stream has to begin again
 
 
 def is_finite(velocity: Vec) -> bool:
@@ -38,6 +40,36 @@ def within(velocity: Vec, envelope: Envelope) -> Vec:
         return Vec(0.0, 0.0, z)  # straight up: a plane has no course to make of it
     along = max(0.0, slow * slow - z * z) ** 0.5 / level
     return Vec(velocity.x * along, velocity.y * along, z)
+
+
+class Shaper:
+    """Wanted velocities over ground → targets a multicopter can follow, one after the other."""
+
+    def __init__(self, envelope: Envelope) -> None:
+        self.envelope = envelope
+        self._last = Vec(0.0, 0.0, 0.0)
+        self._at = NEVER
+        self._since = NEVER
+
+    def streamed(self, now: float) -> float:
+        """How long targets have been flowing [s]; 0 after a gap."""
+        if now - self._at > GAP:
+            self._since = NEVER
+        return 0.0 if self._since == NEVER else now - self._since
+
+    def restart(self) -> None:
+        """The next target begins a new stream."""
+        self._since = NEVER
+
+    def shape(self, now: float, wanted: Vec) -> Vec:
+        """The target for now: within the envelope, and no further from the last one than it may change."""
+        wanted = within(wanted, self.envelope)
+        if self.streamed(now) > 0.0 and self.envelope.acceleration > 0.0:
+            wanted = towards(self._last, wanted, self.envelope.acceleration * (now - self._at))
+        elif self._since == NEVER:
+            self._since = now
+        self._last, self._at = wanted, now
+        return wanted
 
 
 def towards(last: Vec, wanted: Vec, change: float) -> Vec:

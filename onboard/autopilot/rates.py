@@ -70,7 +70,7 @@ def plan(needs: Sequence[Need], budget: float, *, signed: bool = False) -> dict[
     for need in needs:
         if rates[need.message] > 0.0:
             size = frame_size(need.message, signed)
-            more = min(need.rate - need.least, left / size)
+            more = max(0.0, min(need.rate - need.least, left / size))
             rates[need.message] += more
             left -= more * size
     return rates

@@ -10,9 +10,9 @@ from __future__ import annotations
 
 from math import atan2
 
-from onboard.autopilot.base import NEVER, Envelope, Note, Setpoint, Stage, Step, Telemetry, Way
+from onboard.autopilot.base import Envelope, Note, Setpoint, Stage, Step, Telemetry, Way
 from onboard.autopilot.control import Control
-from onboard.autopilot.envelope import is_finite, towards, within
+from onboard.autopilot.envelope import Shaper, is_finite
 from onboard.core.vectors import Vec, add
 from onboard.wire import commands
 from onboard.wire.commands import Target
@@ -20,7 +20,6 @@ from onboard.wire.modes import Kind
 from onboard.wire.values import CommandAck
 
 STREAM_BEFORE = 1.2  # [s] of targets before PX4 is asked for OFFBOARD (it wants 1 s at 2 Hz or more)
-GAP = 0.4  # [s] without a target: the stream has to begin again
 TURNING = 0.5  # [m/s; ground] below this the vehicle keeps looking where it looks
 
 GUIDED = {Kind.PX4_MULTICOPTER: "OFFBOARD", Kind.ARDUCOPTER: "GUIDED"}
@@ -28,6 +27,12 @@ WAYS = {
     Kind.PX4_MULTICOPTER: {Way.HOLD: "HOLD", Way.RETURN: "RTL", Way.LAND: "LAND"},
     Kind.ARDUCOPTER: {Way.HOLD: "LOITER", Way.RETURN: "RTL", Way.LAND: "LAND"},
 }
+
+
+def yaw_along(velocity: Vec, present: float) -> float:
+    """Where to look [rad]: along the flight, or as at present where there is none to speak of."""
+    moving = velocity.x * velocity.x + velocity.y * velocity.y > TURNING * TURNING
+    return atan2(velocity.y, velocity.x) if moving else present
 
 
 class VelocityAdapter:
@@ -54,9 +59,7 @@ class VelocityAdapter:
         ways = {**WAYS[kind], **({Way.HOLD: hold_mode} if hold_mode else {})}
         self._control = Control(kind, to, self.guided_mode, ways, may_arm=may_arm)
         self._to = to
-        self._last = Vec(0.0, 0.0, 0.0)  # [m/s; ground] the target last sent
-        self._last_at = NEVER
-        self._since = NEVER  # when the present stream began
+        self._shaper = Shaper(envelope)
         self._complained = False
 
     @property
@@ -74,11 +77,14 @@ class VelocityAdapter:
 
     def end(self, now: float) -> None:
         """Silence: these autopilots stop by themselves."""
-        self._since = NEVER
+        self._shaper.restart()
 
     def arm(self, now: float) -> bool:
         """Ask for arming, if made with `may_arm`."""
         return self._control.arm()
+
+    def close(self) -> None:
+        """Nothing to release."""
 
     def acknowledge(self, now: float, ack: CommandAck) -> None:
         """Hear the answer to a command."""
@@ -86,11 +92,9 @@ class VelocityAdapter:
 
     def step(self, now: float, telemetry: Telemetry, setpoint: Setpoint | None) -> Step:
         """A target for a setpoint, where targets count (or PX4 must see them first)."""
-        if now - self._last_at > GAP:
-            self._since = NEVER
-        streamed = self._since != NEVER and now - self._since >= STREAM_BEFORE
         px4 = self.kind is Kind.PX4_MULTICOPTER
-        messages, notes = self._control.step(now, telemetry, ready=streamed or not px4)
+        ready = not px4 or self._shaper.streamed(now) >= STREAM_BEFORE
+        messages, notes = self._control.step(now, telemetry, ready=ready)
         if setpoint is None or not self._may_send(px4):
             return Step(tuple(messages), tuple(notes))
         wanted = add(setpoint.velocity, setpoint.wind)
@@ -100,16 +104,8 @@ class VelocityAdapter:
             self._complained = True
             return Step(tuple(messages), tuple(notes))
         self._complained = False
-        wanted = within(wanted, self.envelope)
-        if self._since == NEVER:
-            self._since = now
-        elif self.envelope.acceleration > 0.0:
-            wanted = towards(self._last, wanted, self.envelope.acceleration * (now - self._last_at))
-        self._last, self._last_at = wanted, now
-        yaw = None
-        if px4:
-            turning = wanted.x * wanted.x + wanted.y * wanted.y > TURNING * TURNING
-            yaw = atan2(wanted.y, wanted.x) if turning else telemetry.yaw
+        wanted = self._shaper.shape(now, wanted)
+        yaw = yaw_along(wanted, telemetry.yaw) if px4 else None
         messages.append(commands.velocity_target(self._to, telemetry.time_boot_s, wanted, yaw=yaw))
         return Step(tuple(messages), tuple(notes))
 

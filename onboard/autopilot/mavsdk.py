@@ -1,0 +1,192 @@
+"""Multicopters through MAVSDK 4, for those who have it as their stack (optional extra `mavsdk`).
+
+Once started, MAVSDK repeats the last setpoint at 20 Hz for ever, also when the code that fed it has died.
+So it lives in a child process (`mavsdk_child`), fed through a pipe, that stops offboard and exits when no
+setpoint has come for 200 ms. The child has a MAVLink connection of its own (`url`); the agent keeps reading
+telemetry from its link.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from importlib.util import find_spec
+from math import degrees
+from struct import Struct
+from typing import Protocol
+
+from onboard.autopilot.base import NEVER, Envelope, Note, Setpoint, Stage, Step, Telemetry, Way
+from onboard.autopilot.control import Control
+from onboard.autopilot.envelope import Shaper, is_finite
+from onboard.autopilot.velocity import GUIDED, WAYS, yaw_along
+from onboard.core.vectors import add
+from onboard.wire.commands import Target
+from onboard.wire.modes import Kind
+from onboard.wire.values import CommandAck
+
+LINE = Struct("<cd4d")  # what, when [s, monotonic], north, east, down [m/s], yaw [deg]
+SETPOINT, ENTER, HOLD, RETURN, LAND, RELEASE = b"S", b"E", b"H", b"R", b"L", b"X"
+ORDERS = {Way.HOLD: HOLD, Way.RETURN: RETURN, Way.LAND: LAND}
+SILENCE = 0.2  # [s] without a setpoint after which the child stops offboard and exits
+RELAUNCH = 1.0  # [s] at least between two starts of the child
+
+
+class Courier(Protocol):
+    """The way to the child."""
+
+    def send(self, line: bytes) -> bool:
+        """Pass a line on without waiting; False where it did not go."""
+        ...
+
+    def said(self) -> list[Note]:
+        """What the child has said since."""
+        ...
+
+    def alive(self) -> bool:
+        """Whether there is a child."""
+        ...
+
+    def close(self) -> None:
+        """End the child: its input ends, so it stops offboard if that is on, and exits."""
+        ...
+
+
+class Child:
+    """The child process and its two pipes, never waited for."""
+
+    def __init__(self, url: str, system: int) -> None:
+        command = [sys.executable, "-m", "onboard.autopilot.mavsdk_child", url, str(system)]
+        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0)
+        assert self.process.stdin is not None
+        assert self.process.stdout is not None
+        self._in, self._out = self.process.stdin.fileno(), self.process.stdout.fileno()
+        os.set_blocking(self._in, False)
+        os.set_blocking(self._out, False)
+        self._rest = b""
+        self._closed = False
+
+    def send(self, line: bytes) -> bool:
+        """A line is shorter than what a pipe takes in one piece."""
+        if self._closed:
+            return False
+        try:
+            return os.write(self._in, line) == len(line)
+        except OSError:
+            return False
+
+    def said(self) -> list[Note]:
+        """Lines `severity kind text`."""
+        try:
+            self._rest += os.read(self._out, 65536) if not self._closed else b""
+        except OSError:
+            return []
+        *lines, self._rest = self._rest.split(b"\n")
+        parts = (line.decode("utf-8", errors="replace").split(" ", 2) for line in lines)
+        return [Note(*part) for part in parts if len(part) == 3]
+
+    def alive(self) -> bool:
+        """Not exited, not closed."""
+        return not self._closed and self.process.poll() is None
+
+    def close(self) -> None:
+        """Close both pipes; the child sees the end and goes by itself."""
+        if not self._closed:
+            self._closed = True
+            for pipe in (self.process.stdin, self.process.stdout):
+                if pipe is not None:
+                    pipe.close()
+
+
+class MavsdkAdapter:
+    """See `base.Adapter`; its steps give no messages: they go through the child."""
+
+    name = "mavsdk"
+    holds_airspeed = False
+
+    def __init__(
+        self, kind: Kind, to: Target, envelope: Envelope, url: str, *, may_arm: bool = False
+    ) -> None:
+        self.kind = kind
+        self.guided_mode = GUIDED[kind]
+        self._control = Control(kind, to, self.guided_mode, WAYS[kind], may_arm=may_arm)
+        self._shaper = Shaper(envelope)
+        self._url, self._system = url, to.system
+        self._way = Way.HOLD
+        self._courier: Courier | None = None
+        self._launched_at = NEVER
+
+    @staticmethod
+    def available() -> bool:
+        """Whether the optional extra is installed."""
+        return find_spec("mavsdk") is not None
+
+    @property
+    def stage(self) -> Stage:
+        """Who flies."""
+        return self._control.stage
+
+    def enter(self, now: float) -> None:
+        """Ask the child to start offboard; give setpoints meanwhile (zero to hover)."""
+        self._control.enter(now)
+
+    def leave(self, now: float, way: Way) -> None:
+        """End the setpoints; ask the child to hold, return or land."""
+        self._way = way
+        self._control.leave(now, way)
+
+    def end(self, now: float) -> None:
+        """Silence: the child then stops offboard within 200 ms and exits."""
+        self._shaper.restart()
+
+    def arm(self, now: float) -> bool:
+        """Arming goes over the agent's own link."""
+        return self._control.arm()
+
+    def close(self) -> None:
+        """End the child."""
+        if self._courier is not None:
+            self._courier.close()
+            self._courier = None
+
+    def acknowledge(self, now: float, ack: CommandAck) -> None:
+        """Hear the answer to arming."""
+        self._control.acknowledge(now, ack)
+
+    def step(self, now: float, telemetry: Telemetry, setpoint: Setpoint | None) -> Step:
+        """Pass orders and setpoints on to the child; messages are those for arming alone."""
+        messages, notes = self._control.step(now, telemetry)
+        asking = any(message.command == 176 for message in messages)
+        messages = [message for message in messages if message.command != 176]
+        courier = self._present(now, notes)
+        if courier is None:
+            return Step(tuple(messages), tuple(notes))
+        notes += courier.said()
+        stage = self._control.stage
+        if stage is Stage.TAKEN:  # it must not ask for hold: that would take the vehicle from the pilot
+            courier.send(LINE.pack(RELEASE, now, 0.0, 0.0, 0.0, 0.0))
+            self.close()
+        elif asking:
+            order = ENTER if stage is Stage.ENTERING else ORDERS[self._way]
+            courier.send(LINE.pack(order, now, 0.0, 0.0, 0.0, 0.0))
+        if setpoint is not None and stage in (Stage.ENTERING, Stage.ACTIVE):
+            wanted = add(setpoint.velocity, setpoint.wind)
+            if is_finite(wanted):
+                v = self._shaper.shape(now, wanted)
+                yaw = degrees(yaw_along(v, telemetry.yaw))
+                courier.send(LINE.pack(SETPOINT, now, v.x, v.y, v.z, yaw))
+        return Step(tuple(messages), tuple(notes))
+
+    def _present(self, now: float, notes: list[Note]) -> Courier | None:
+        """The child, started when it is needed; an unexpected end gives control up."""
+        if self._courier is not None and not self._courier.alive():
+            notes += self._courier.said()
+            self.close()
+            if self._control.stage is Stage.ACTIVE:
+                self._control.release()
+                notes.append(Note("error", "mavsdk_ended", "the MAVSDK child has ended: offboard is over"))
+        needed = self._control.stage in (Stage.ENTERING, Stage.ACTIVE, Stage.LEAVING)
+        if self._courier is None and needed and now - self._launched_at >= RELAUNCH:
+            self._launched_at = now
+            self._courier = Child(self._url, self._system)
+        return self._courier
