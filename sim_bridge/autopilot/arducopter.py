@@ -17,13 +17,29 @@ from sim_bridge.motion import Demand
 
 M = ARDUCOPTER_MODES
 CM = 0.01
-PILOTED = frozenset(M[name] for name in (
-    "STABILIZE", "ACRO", "ALT_HOLD", "LOITER", "POSHOLD", "SPORT", "DRIFT", "FLOWHOLD", "CIRCLE"))
-POSITIONAL = frozenset(M[name] for name in (
-    "AUTO", "GUIDED", "LOITER", "RTL", "CIRCLE", "DRIFT", "POSHOLD", "BRAKE", "FOLLOW", "ZIGZAG"))
-NOT_SIMULATED = frozenset(M[name] for name in (
-    "FLIP", "AUTOTUNE", "THROW", "AVOID_ADSB", "GUIDED_NOGPS", "SMART_RTL", "SYSTEMID", "AUTOROTATE",
-    "AUTO_RTL", "TURTLE"))
+PILOTED = frozenset(
+    M[name]
+    for name in ("STABILIZE", "ACRO", "ALT_HOLD", "LOITER", "POSHOLD", "SPORT", "DRIFT", "FLOWHOLD", "CIRCLE")
+)
+POSITIONAL = frozenset(
+    M[name]
+    for name in ("AUTO", "GUIDED", "LOITER", "RTL", "CIRCLE", "DRIFT", "POSHOLD", "BRAKE", "FOLLOW", "ZIGZAG")
+)
+NOT_SIMULATED = frozenset(
+    M[name]
+    for name in (
+        "FLIP",
+        "AUTOTUNE",
+        "THROW",
+        "AVOID_ADSB",
+        "GUIDED_NOGPS",
+        "SMART_RTL",
+        "SYSTEMID",
+        "AUTOROTATE",
+        "AUTO_RTL",
+        "TURTLE",
+    )
+)
 NOT_ARMABLE = frozenset(M[name] for name in ("RTL", "LAND", "BRAKE", "AUTO", "CIRCLE", "DRIFT"))
 USER_TAKEOFF = frozenset(M[name] for name in ("GUIDED", "LOITER", "ALT_HOLD", "POSHOLD"))
 # type_mask: a set bit ignores the field; one bit of a group ignores the group

@@ -21,9 +21,9 @@ from sim_bridge.motion import Demand, Lateral
 
 M = ARDUPLANE_MODES
 NOT_SIMULATED = frozenset(number for name, number in M.items() if name.startswith("Q")) | frozenset(
-    M[name] for name in ("AUTOTUNE", "AVOID_ADSB", "INITIALISING", "THERMAL", "LOITER_ALT_QLAND"))
-BY_HAND = frozenset(M[name] for name in (
-    "MANUAL", "STABILIZE", "TRAINING", "ACRO", "FBWA", "FBWB", "CRUISE"))
+    M[name] for name in ("AUTOTUNE", "AVOID_ADSB", "INITIALISING", "THERMAL", "LOITER_ALT_QLAND")
+)
+BY_HAND = frozenset(M[name] for name in ("MANUAL", "STABILIZE", "TRAINING", "ACRO", "FBWA", "FBWB", "CRUISE"))
 KEEPS_ON_SILENCE = frozenset(M[name] for name in ("GUIDED", "AUTO", "TAKEOFF", "RTL"))
 LAPSE_S = 3.0  # of a forced attitude
 ALTITUDE_S = 3.3  # [s] climb rate per altitude error
@@ -144,8 +144,9 @@ class ArduPlane(ArduPilot):
             if not (self.armed and self.is_mode("TAKEOFF")):
                 return Demand(Lateral.HEADING, ZERO, self.motion.yaw, 0.0, 0.0)
             self._take_off()
-        self._airspeed += clamp(self._airspeed_target - self._airspeed, -self._acceleration * dt,
-                                self._acceleration * dt)
+        self._airspeed += clamp(
+            self._airspeed_target - self._airspeed, -self._acceleration * dt, self._acceleration * dt
+        )
         if not self.armed:
             return self._glide()
         lateral, angle = self._sideways(now_ns)
@@ -159,8 +160,10 @@ class ArduPlane(ArduPilot):
         self._rolling = True
         self.lift_off()
         distance, heading = self.parameters["TKOFF_DIST"], degrees(self._heading) % 360.0
-        self.say(dialect.MAV_SEVERITY_INFO,
-                 f"Takeoff to {altitude:.0f}m for {distance:.1f}m heading {heading:.1f} deg")
+        self.say(
+            dialect.MAV_SEVERITY_INFO,
+            f"Takeoff to {altitude:.0f}m for {distance:.1f}m heading {heading:.1f} deg",
+        )
 
     def _glide(self) -> Demand:
         """Disarmed by force in the air: no engine."""
@@ -249,14 +252,14 @@ class ArduPlane(ArduPilot):
         if not all(isfinite(value) for value in (w, x, y, z, m.thrust)):
             self.counters["target_refused"] += 1
             return
-        used = (m.type_mask ^ 0xFF) & 0x87  # attitude as a whole, or roll, pitch, yaw alone
+        used = m.type_mask ^ 0xFF  # 0x80 attitude as a whole; 1, 2: roll, pitch alone
         if used & 0x81:
             self._roll = atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))
             self._roll_ns = now_ns
-        if used & 0x02 or used == 0x80:
+        if used & 0x82:
             self._pitch = asin(clamp(2.0 * (w * y - z * x), -1.0, 1.0))
             self._pitch_ns = now_ns
-        if not m.type_mask & 0x40:
+        if used & 0x40:
             self._throttle = clamp(m.thrust, 0.0, 1.0)
             self._throttle_ns = now_ns
 

@@ -32,12 +32,34 @@ class Command(NamedTuple):
 def from_long(packet: Packet) -> Command:
     """Of a COMMAND_LONG."""
     m = packet.message
-    return Command(m.command, m.param1, m.param2, m.param3, m.param4, m.param5, m.param6, m.param7, -1,
-                   packet.system, packet.component)
+    return Command(
+        m.command,
+        m.param1,
+        m.param2,
+        m.param3,
+        m.param4,
+        m.param5,
+        m.param6,
+        m.param7,
+        -1,
+        packet.system,
+        packet.component,
+    )
 
 
 def from_int(packet: Packet) -> Command:
     """Of a COMMAND_INT."""
     m = packet.message
-    return Command(m.command, m.param1, m.param2, m.param3, m.param4, m.x * 1e-7, m.y * 1e-7, m.z, m.frame,
-                   packet.system, packet.component)
+    return Command(
+        m.command,
+        m.param1,
+        m.param2,
+        m.param3,
+        m.param4,
+        m.x * 1e-7,
+        m.y * 1e-7,
+        m.z,
+        m.frame,
+        packet.system,
+        packet.component,
+    )

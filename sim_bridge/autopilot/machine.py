@@ -368,19 +368,38 @@ class Autopilot(ABC):
     def _obey(self, now_ns: int, command: Command) -> None:
         handler = self._commands.get(command.number)
         result = UNSUPPORTED if handler is None else handler(now_ns, command)
-        self.emit(dialect.MAVLink_command_ack_message(
-            command.number, result, 0, 0, command.system, command.component))
+        self.emit(
+            dialect.MAVLink_command_ack_message(
+                command.number, result, 0, 0, command.system, command.component
+            )
+        )
 
     def _on_set_mode(self, now_ns: int, packet: Packet) -> None:
         m = packet.message
         main, sub = m.custom_mode >> 16 & 0xFF, m.custom_mode >> 24
         px4 = self.autopilot_type == dialect.MAV_AUTOPILOT_PX4
         p2, p3 = (main, sub) if px4 else (m.custom_mode, 0)
-        result = self.set_mode_result(now_ns, Command(
-            dialect.MAV_CMD_DO_SET_MODE, m.base_mode, p2, p3, 0.0, 0.0, 0.0, 0.0, -1,
-            packet.system, packet.component))
-        self.emit(dialect.MAVLink_command_ack_message(
-            dialect.MAVLINK_MSG_ID_SET_MODE, result, 0, 0, packet.system, packet.component))
+        result = self.set_mode_result(
+            now_ns,
+            Command(
+                dialect.MAV_CMD_DO_SET_MODE,
+                m.base_mode,
+                p2,
+                p3,
+                0.0,
+                0.0,
+                0.0,
+                0.0,
+                -1,
+                packet.system,
+                packet.component,
+            ),
+        )
+        self.emit(
+            dialect.MAVLink_command_ack_message(
+                dialect.MAVLINK_MSG_ID_SET_MODE, result, 0, 0, packet.system, packet.component
+            )
+        )
 
     def _do_arm(self, now_ns: int, command: Command) -> int:
         forced = command.p2 == FORCE

@@ -91,8 +91,12 @@ class Px4Multicopter(Multicopter):
     @property
     def speeds(self) -> Speeds:
         p = self.parameters
-        return Speeds(p["MPC_XY_CRUISE"], min(3.0, p["MPC_Z_VEL_MAX_UP"]), min(1.5, p["MPC_Z_VEL_MAX_DN"]),
-                      p["MPC_LAND_SPEED"])
+        return Speeds(
+            p["MPC_XY_CRUISE"],
+            min(3.0, p["MPC_Z_VEL_MAX_UP"]),
+            min(1.5, p["MPC_Z_VEL_MAX_DN"]),
+            p["MPC_LAND_SPEED"],
+        )
 
     @property
     def linger_s(self) -> float:

@@ -31,8 +31,9 @@ def param_set(ap: Autopilot, now_ns: int, packet: Packet) -> None:
 
 
 def mission_list(ap: Autopilot, now_ns: int, packet: Packet) -> None:
-    ap.emit(dialect.MAVLink_mission_count_message(
-        packet.system, packet.component, 0, packet.message.mission_type))
+    ap.emit(
+        dialect.MAVLink_mission_count_message(packet.system, packet.component, 0, packet.message.mission_type)
+    )
 
 
 def mission_request(ap: Autopilot, now_ns: int, packet: Packet) -> None:
@@ -48,8 +49,11 @@ def mission_clear(ap: Autopilot, now_ns: int, packet: Packet) -> None:
 
 
 def _mission_ack(ap: Autopilot, packet: Packet, result: int) -> None:
-    ap.emit(dialect.MAVLink_mission_ack_message(
-        packet.system, packet.component, result, packet.message.mission_type))
+    ap.emit(
+        dialect.MAVLink_mission_ack_message(
+            packet.system, packet.component, result, packet.message.mission_type
+        )
+    )
 
 
 def file_transfer(ap: Autopilot, now_ns: int, packet: Packet) -> None:

@@ -64,9 +64,15 @@ def global_position(ap: Autopilot, now_ns: int) -> MavMessage | None:
     place, v = ap.place, ap.motion.velocity
     heading = round(degrees(ap.motion.yaw) * 100.0) % 36000
     message: MavMessage = dialect.MAVLink_global_position_int_message(
-        ap.boot_ms(now_ns), _e7(place.latitude_deg), _e7(place.longitude_deg), _i32(place.altitude_m * 1e3),
-        _i32((place.altitude_m - ap.home.altitude_m) * 1e3), _i16(v.x * 1e2), _i16(v.y * 1e2),
-        _i16(v.z * 1e2), heading,
+        ap.boot_ms(now_ns),
+        _e7(place.latitude_deg),
+        _e7(place.longitude_deg),
+        _i32(place.altitude_m * 1e3),
+        _i32((place.altitude_m - ap.home.altitude_m) * 1e3),
+        _i16(v.x * 1e2),
+        _i16(v.y * 1e2),
+        _i16(v.z * 1e2),
+        heading,
     )
     return message
 
@@ -96,8 +102,19 @@ def sys_status(ap: Autopilot, now_ns: int) -> MavMessage:
     good = h.sensor_health(ap.gps_fixed(now_ns), ap.positioned(now_ns), ap.healthy(now_ns))
     current = health.CURRENT_IDLE if ap.landed else health.CURRENT_FLYING
     message: MavMessage = dialect.MAVLink_sys_status_message(
-        health.SENSORS, health.SENSORS, good, 250, _u16(h.voltage * 1e3), _i16(current * 1e2),
-        round(h.battery * 100.0), 0, 0, 0, 0, 0, 0,
+        health.SENSORS,
+        health.SENSORS,
+        good,
+        250,
+        _u16(h.voltage * 1e3),
+        _i16(current * 1e2),
+        round(h.battery * 100.0),
+        0,
+        0,
+        0,
+        0,
+        0,
+        0,
     )
     return message
 
@@ -108,8 +125,15 @@ def battery_status(ap: Autopilot, now_ns: int) -> MavMessage:
     current = health.CURRENT_IDLE if ap.landed else health.CURRENT_FLYING
     used = (1.0 - h.battery) * ap.setup.battery_s * health.CURRENT_FLYING / 3.6  # [mAh]
     message: MavMessage = dialect.MAVLink_battery_status_message(
-        0, dialect.MAV_BATTERY_FUNCTION_ALL, dialect.MAV_BATTERY_TYPE_LIPO, 32767, cells, _i16(current * 1e2),
-        _i32(used), -1, round(h.battery * 100.0),
+        0,
+        dialect.MAV_BATTERY_FUNCTION_ALL,
+        dialect.MAV_BATTERY_TYPE_LIPO,
+        32767,
+        cells,
+        _i16(current * 1e2),
+        _i32(used),
+        -1,
+        round(h.battery * 100.0),
     )
     return message
 
@@ -120,11 +144,16 @@ def gps_raw(ap: Autopilot, now_ns: int) -> MavMessage:
     fix = dialect.GPS_FIX_TYPE_3D_FIX if fixed else dialect.GPS_FIX_TYPE_NO_FIX
     course = round(degrees(atan2(v.y, v.x)) * 100.0) % 36000
     message: MavMessage = dialect.MAVLink_gps_raw_int_message(
-        (ap.boot_ms(now_ns)) * 1000, fix, _e7(place.latitude_deg) if fixed else 0,
-        _e7(place.longitude_deg) if fixed else 0, _i32(place.altitude_m * 1e3) if fixed else 0,
-        121 if fixed else UNKNOWN_U16, 200 if fixed else UNKNOWN_U16,
+        (ap.boot_ms(now_ns)) * 1000,
+        fix,
+        _e7(place.latitude_deg) if fixed else 0,
+        _e7(place.longitude_deg) if fixed else 0,
+        _i32(place.altitude_m * 1e3) if fixed else 0,
+        121 if fixed else UNKNOWN_U16,
+        200 if fixed else UNKNOWN_U16,
         _u16(sqrt(v.x * v.x + v.y * v.y) * 1e2) if fixed else UNKNOWN_U16,
-        course if fixed else UNKNOWN_U16, 10 if fixed else 0,
+        course if fixed else UNKNOWN_U16,
+        10 if fixed else 0,
     )
     return message
 
@@ -148,8 +177,16 @@ def estimator_status(ap: Autopilot, now_ns: int) -> MavMessage:
     positioned = ap.positioned(now_ns)
     ratio = 0.05 if positioned else 1.5
     message: MavMessage = dialect.MAVLink_estimator_status_message(
-        ap.boot_ms(now_ns) * 1000, ap.health.ekf_flags(positioned), ratio, ratio, 0.03, 0.02, 0.0, 0.0,
-        0.3, 0.4,
+        ap.boot_ms(now_ns) * 1000,
+        ap.health.ekf_flags(positioned),
+        ratio,
+        ratio,
+        0.03,
+        0.02,
+        0.0,
+        0.0,
+        0.3,
+        0.4,
     )
     return message
 
@@ -184,8 +221,17 @@ def home_position(ap: Autopilot, now_ns: int) -> MavMessage | None:
     p: Vec = ap.local.ned_from_geodetic(*ap.home)
     q = [nan] * 4 if ap.autopilot_type != PX4 else [1.0, 0.0, 0.0, 0.0]
     message: MavMessage = dialect.MAVLink_home_position_message(
-        _e7(ap.home.latitude_deg), _e7(ap.home.longitude_deg), _i32(ap.home.altitude_m * 1e3), p.x, p.y, p.z,
-        q, 0.0, 0.0, 0.0, ap.boot_ms(now_ns) * 1000,
+        _e7(ap.home.latitude_deg),
+        _e7(ap.home.longitude_deg),
+        _i32(ap.home.altitude_m * 1e3),
+        p.x,
+        p.y,
+        p.z,
+        q,
+        0.0,
+        0.0,
+        0.0,
+        ap.boot_ms(now_ns) * 1000,
     )
     return message
 
@@ -206,8 +252,14 @@ def attitude_quaternion(ap: Autopilot, now_ns: int) -> MavMessage:
     cp, sp = cos(0.5 * m.pitch), sin(0.5 * m.pitch)
     cy, sy = cos(0.5 * m.yaw), sin(0.5 * m.yaw)
     message: MavMessage = dialect.MAVLink_attitude_quaternion_message(
-        ap.boot_ms(now_ns), cr * cp * cy + sr * sp * sy, sr * cp * cy - cr * sp * sy,
-        cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy, m.rates.x, m.rates.y, m.rates.z,
+        ap.boot_ms(now_ns),
+        cr * cp * cy + sr * sp * sy,
+        sr * cp * cy - cr * sp * sy,
+        cr * sp * cy + sr * cp * sy,
+        cr * cp * sy - sr * sp * cy,
+        m.rates.x,
+        m.rates.y,
+        m.rates.z,
     )
     return message
 
@@ -234,8 +286,11 @@ def autopilot_version(ap: Autopilot, now_ns: int) -> MavMessage:
         | dialect.MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_LOCAL_NED
         | dialect.MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_GLOBAL_INT
         | dialect.MAV_PROTOCOL_CAPABILITY_SET_ATTITUDE_TARGET
-        | (dialect.MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_BYTEWISE if ap.autopilot_type == PX4
-           else dialect.MAV_PROTOCOL_CAPABILITY_PARAM_FLOAT)
+        | (
+            dialect.MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_BYTEWISE
+            if ap.autopilot_type == PX4
+            else dialect.MAV_PROTOCOL_CAPABILITY_PARAM_FLOAT
+        )
     )
     message: MavMessage = dialect.MAVLink_autopilot_version_message(
         capabilities, ap.version, 0, 0, 0, [0] * 8, [0] * 8, [0] * 8, 0, 0, ap.system

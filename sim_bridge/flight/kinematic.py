@@ -69,10 +69,14 @@ class KinematicMulticopter:
         change = sub(wanted, old.velocity)
         size = norm(change)
         most = a.acceleration * dt
-        velocity = wanted if size <= most else Vec(
-            old.velocity.x + change.x * most / size,
-            old.velocity.y + change.y * most / size,
-            old.velocity.z + change.z * most / size,
+        velocity = (
+            wanted
+            if size <= most
+            else Vec(
+                old.velocity.x + change.x * most / size,
+                old.velocity.y + change.y * most / size,
+                old.velocity.z + change.z * most / size,
+            )
         )
         position = Vec(
             old.position.x + 0.5 * (old.velocity.x + velocity.x) * dt,

@@ -15,17 +15,29 @@ from sim_bridge.motion import CALM, Air, Airframe, Demand, Lateral
 
 DT = 0.02
 COPTER = VehicleSpec(position=(0.0, 0.0, 50.0), speed=5.0, speed_max=8.0, acceleration=4.0)
-PLANE = VehicleSpec(position=(0.0, 0.0, 100.0), speed=22.0, speed_min=10.0, speed_max=30.0,
-                    turn_rate_deg=40.0, pitch_min_deg=-20.0, pitch_max_deg=25.0, acceleration=4.0)
+PLANE = VehicleSpec(
+    position=(0.0, 0.0, 100.0),
+    speed=22.0,
+    speed_min=10.0,
+    speed_max=30.0,
+    turn_rate_deg=40.0,
+    pitch_min_deg=-20.0,
+    pitch_max_deg=25.0,
+    acceleration=4.0,
+)
 speeds = st.floats(-30.0, 30.0)
 
 
 def copter() -> Airframe:
-    return kinematic(COPTER, Kind.ARDUCOPTER, start_motion(COPTER.start(), 0.0, Kind.ARDUCOPTER, 5.0, CALM, True))
+    return kinematic(
+        COPTER, Kind.ARDUCOPTER, start_motion(COPTER.start(), 0.0, Kind.ARDUCOPTER, 5.0, CALM, True)
+    )
 
 
 def plane(air: Air = CALM) -> Airframe:
-    return kinematic(PLANE, Kind.ARDUPLANE, start_motion(PLANE.start(), 0.0, Kind.ARDUPLANE, 22.0, air, True), air)
+    return kinematic(
+        PLANE, Kind.ARDUPLANE, start_motion(PLANE.start(), 0.0, Kind.ARDUPLANE, 22.0, air, True), air
+    )
 
 
 def velocity(v: Vec) -> Demand:
@@ -38,7 +50,9 @@ def flown(lateral: Lateral, angle: float, climb: float = 0.0, airspeed: float = 
 
 @settings(max_examples=60, deadline=None)
 @given(st.lists(st.tuples(speeds, speeds, speeds), min_size=1, max_size=8))
-def test_a_multicopter_never_exceeds_its_speed_and_acceleration(targets: list[tuple[float, float, float]]) -> None:
+def test_a_multicopter_never_exceeds_its_speed_and_acceleration(
+    targets: list[tuple[float, float, float]],
+) -> None:
     airframe = copter()
     for target in targets:
         for _ in range(40):
@@ -52,9 +66,20 @@ def test_a_multicopter_never_exceeds_its_speed_and_acceleration(targets: list[tu
 
 
 @settings(max_examples=60, deadline=None)
-@given(st.lists(st.tuples(st.sampled_from((Lateral.ROLL, Lateral.HEADING, Lateral.COURSE)), st.floats(-pi, pi),
-                          st.floats(-40, 40), st.floats(1, 60)), min_size=1, max_size=8),
-       st.floats(0, 8), st.floats(-pi, pi))
+@given(
+    st.lists(
+        st.tuples(
+            st.sampled_from((Lateral.ROLL, Lateral.HEADING, Lateral.COURSE)),
+            st.floats(-pi, pi),
+            st.floats(-40, 40),
+            st.floats(1, 60),
+        ),
+        min_size=1,
+        max_size=8,
+    ),
+    st.floats(0, 8),
+    st.floats(-pi, pi),
+)
 def test_a_plane_keeps_turn_rate_climb_angle_acceleration_and_speeds(
     demands: list[tuple[Lateral, float, float, float]], wind: float, towards: float
 ) -> None:
@@ -97,7 +122,9 @@ def test_in_a_crosswind_a_heading_drifts_and_a_course_does_not(lateral: Lateral)
         assert course == pytest.approx(radians(-20.0), abs=1e-3)
     else:
         assert airframe.motion.yaw == pytest.approx(radians(-20.0), abs=1e-3)
-        assert course == pytest.approx(atan2(22 * sin(radians(-20.0)) + 6.0, 22 * cos(radians(-20.0))), abs=1e-3)
+        assert course == pytest.approx(
+            atan2(22 * sin(radians(-20.0)) + 6.0, 22 * cos(radians(-20.0))), abs=1e-3
+        )
 
 
 def test_the_wind_carries_a_plane_but_not_a_multicopter() -> None:
@@ -106,7 +133,8 @@ def test_the_wind_carries_a_plane_but_not_a_multicopter() -> None:
     for _ in range(500):
         airframe.step(flown(Lateral.HEADING, 0.0), air, DT)
         multicopter.step(velocity(ZERO), air, DT)
-    assert airframe.motion.position.x == pytest.approx(250.0) and airframe.motion.position.y == pytest.approx(40.0)
+    assert airframe.motion.position.x == pytest.approx(250.0)
+    assert airframe.motion.position.y == pytest.approx(40.0)
     assert multicopter.motion.position == COPTER.start()
     assert multicopter.motion.airspeed == pytest.approx(5.0)
 

@@ -20,8 +20,13 @@ EPOCH_NS = 1_700_000_000 * SECOND
 ORIGIN = Frame(47.397742, 8.545594, 488.0)
 MULTICOPTER = VehicleSpec(position=(0.0, 0.0, 50.0), speed=5.0, speed_max=8.0)
 PLANE = VehicleSpec(
-    position=(0.0, 0.0, 100.0), speed=22.0, speed_min=10.0, speed_max=30.0, turn_rate_deg=40.0,
-    pitch_min_deg=-20.0, pitch_max_deg=25.0,
+    position=(0.0, 0.0, 100.0),
+    speed=22.0,
+    speed_min=10.0,
+    speed_max=30.0,
+    turn_rate_deg=40.0,
+    pitch_min_deg=-20.0,
+    pitch_max_deg=25.0,
 )
 COMPANION = 191
 
@@ -120,12 +125,22 @@ class Flown:
         )
 
     def command_int(
-        self, number: int, p1: float = 0.0, p2: float = 0.0, p3: float = 0.0, p4: float = 0.0, x: int = 0,
-        y: int = 0, z: float = 0.0, frame: int = 0,
+        self,
+        number: int,
+        p1: float = 0.0,
+        p2: float = 0.0,
+        p3: float = 0.0,
+        p4: float = 0.0,
+        x: int = 0,
+        y: int = 0,
+        z: float = 0.0,
+        frame: int = 0,
     ) -> int:
         """COMMAND_INT; the result of its acknowledgement."""
-        return self._acknowledged(dialect.MAVLink_command_int_message(
-            self.system, 1, frame, number, 0, 0, p1, p2, p3, p4, x, y, z), number)
+        return self._acknowledged(
+            dialect.MAVLink_command_int_message(self.system, 1, frame, number, 0, 0, p1, p2, p3, p4, x, y, z),
+            number,
+        )
 
     def _acknowledged(self, message: Any, number: int) -> int:
         before = len(self.heard)
@@ -149,10 +164,12 @@ class Flown:
             mask = 0x9C7 if self.kind == Kind.PX4 else 0x0DC7
         target = self.system if system is None else system
         return dialect.MAVLink_set_position_target_local_ned_message(
-            0, target, 1, frame, mask, 0, 0, 0, v.x, v.y, v.z, 0, 0, 0, 0, 0)
+            0, target, 1, frame, mask, 0, 0, 0, v.x, v.y, v.z, 0, 0, 0, 0, 0
+        )
 
     def roll_target(self, roll_deg: float, mask: int = 198, thrust: float = 0.0) -> Any:
         """SET_ATTITUDE_TARGET with a roll alone."""
         half = 0.5 * radians(roll_deg)
         return dialect.MAVLink_set_attitude_target_message(
-            0, self.system, 1, mask, [cos(half), sin(half), 0.0, 0.0], 0, 0, 0, thrust)
+            0, self.system, 1, mask, [cos(half), sin(half), 0.0, 0.0], 0, 0, 0, thrust
+        )
