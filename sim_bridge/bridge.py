@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 
 from onboard.runtime.protocols import Bus, Clock, Link
 from onboard.runtime.scenario import Scenario
@@ -11,8 +12,8 @@ from onboard.wire import swarm
 from onboard.wire.topics import DEFAULT_GAME, TRACK, key
 from sim_bridge.master import BridgeMaster
 from sim_bridge.sensor import Sensor
-from sim_bridge.staging import Wind, generator
-from sim_bridge.world import RATE_HZ, Tap, World, calm
+from sim_bridge.staging import Wind, generator, wind_of
+from sim_bridge.world import RATE_HZ, Tap, World
 
 
 def mute(line: str) -> None:
@@ -23,7 +24,8 @@ class Bridge:
     """Everything that is simulated, and the game's master; `run` it, or `step` it yourself.
 
     `seed` overrides the scenario's; `nonce` tells this master from another one: a process in real time
-    draws it at random. With `referee` False another program is the master.
+    draws it at random. With `referee` False another program is the master. `wind` overrides the
+    scenario's, whose recordings lie in `folder`. Raises ConfigError for what cannot fly.
     """
 
     def __init__(
@@ -36,7 +38,8 @@ class Bridge:
         nonce: int,
         game: str = DEFAULT_GAME,
         seed: int | None = None,
-        wind: Wind = calm,
+        wind: Wind | None = None,
+        folder: Path | None = None,
         rate_hz: float = RATE_HZ,
         tap: Tap | None = None,
         say: Callable[[str], None] = mute,
@@ -45,6 +48,7 @@ class Bridge:
     ) -> None:
         seed = scenario.seed if seed is None else seed
         self.scenario = scenario
+        wind = wind_of(scenario, seed, folder) if wind is None else wind
         self.world = World(
             scenario, clock, links, wind=wind, rate_hz=rate_hz, tap=tap, battery_s=battery_s
         )

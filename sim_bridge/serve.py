@@ -50,18 +50,25 @@ def serve(
 
     Raises ConfigError: a wrong scenario, a port or a bus that cannot be.
     """
-    return asyncio.run(serve_scenario(load(scenario), options, say, tap))
+    return asyncio.run(serve_scenario(load(scenario), options, say, tap, scenario.parent))
 
 
 async def serve_scenario(
-    scenario: Scenario, options: Options, say: Callable[[str], None], tap: Tap | None = None
+    scenario: Scenario,
+    options: Options,
+    say: Callable[[str], None],
+    tap: Tap | None = None,
+    folder: Path | None = None,
 ) -> Outcome | None:
-    """`serve` on the running loop."""
+    """`serve` on the running loop; recordings of wind lie in `folder`."""
     loop, stop = asyncio.get_running_loop(), asyncio.Event()
     radios: dict[int, Radio] = {}
     bus: ZenohBus | None = None
     caught = (signal.SIGINT, signal.SIGTERM)
     try:
+        for number in caught:
+            with contextlib.suppress(ValueError, NotImplementedError):  # not on the main thread
+                loop.add_signal_handler(number, stop.set)
         ports = agent_ports(scenario.ids, options.host)
         for id in scenario.ids:
             peers = [(options.host, ports[id])]
@@ -78,14 +85,12 @@ async def serve_scenario(
             nonce=secrets.randbits(48),
             game=options.game,
             seed=options.seed,
+            folder=folder,
             tap=tap,
             say=say,
             referee=options.referee,
         )
         _introduce(scenario, options, ports, radios, bus, say)
-        for number in caught:
-            with contextlib.suppress(ValueError, NotImplementedError):  # not on the main thread
-                loop.add_signal_handler(number, stop.set)
         await _until_stopped(bridge, bus, options, stop, say)
         bridge.close()
         return bridge.master.rules.outcome if bridge.master is not None else None

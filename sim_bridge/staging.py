@@ -3,26 +3,52 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from zlib import crc32
 
 import numpy as np
 from numpy.random import Generator, SeedSequence
 
-from onboard.core.vectors import Vec, yaw_of
+from onboard.core.vectors import yaw_of
 from onboard.runtime.config import ConfigError
 from onboard.runtime.scenario import AirframeKind, Kind, Scenario, VehicleSpec
 from onboard.runtime.staging import staging_place
 from onboard.wire.geodesy import Frame
 from sim_bridge.flight.kinematic import kinematic, start_motion
-from sim_bridge.motion import Air, Airframe, Motion
+from sim_bridge.motion import CALM, Air, Airframe, Motion
 from sim_bridge.setup import start_headings
+from sim_bridge.wind.field import WindField
 
 Wind = Callable[[int, Motion, float], Air]  # (vehicle id, its motion, time since the start [s]) → its air
 
 
+def calm(id: int, motion: Motion, t: float) -> Air:
+    """No wind."""
+    return CALM
+
+
+def seeds(seed: int, concern: str) -> SeedSequence:
+    """The seeds of one concern: others for each, and the same whichever other concerns there are."""
+    return SeedSequence(seed, spawn_key=(crc32(concern.encode()),))
+
+
 def generator(seed: int, concern: str) -> Generator:
-    """The generator of one concern: another one for each, and the same whichever others there are."""
-    return np.random.default_rng(SeedSequence(seed, spawn_key=(crc32(concern.encode()),)))
+    """The generator of one concern."""
+    return np.random.default_rng(seeds(seed, concern))
+
+
+def wind_of(scenario: Scenario, seed: int, folder: Path | None = None) -> Wind:
+    """The scenario's wind; a recording's path is relative to `folder`. Raises ConfigError."""
+    spec = scenario.flight.wind
+    if spec.speed <= 0.0 and spec.gust_sigma <= 0.0 and not spec.recorded:
+        return calm
+    field = WindField(spec, seeds(seed, "wind"), len(scenario.ids), folder)
+    numbers = {id: number for number, id in enumerate(scenario.ids)}
+
+    def air(id: int, motion: Motion, t: float) -> Air:
+        return field.air(numbers[id], motion.position, motion.airspeed, t)
+
+    return air
 
 
 def frame_of(scenario: Scenario) -> Frame:
@@ -42,7 +68,7 @@ def starts(scenario: Scenario, wind: Wind) -> dict[int, Motion]:
     for id, spec, heading in zip(scenario.ids, scenario.vehicles, start_headings(scenario), strict=True):
         place, kind, yaw = staging_place(scenario, spec), kind_of(scenario, spec), yaw_of(heading)
         airborne = not scenario.flight.ground_start
-        still = start_motion(place, yaw, kind, spec.speed, Air(Vec(0, 0, 0), Vec(0, 0, 0)), airborne)
+        still = start_motion(place, yaw, kind, spec.speed, CALM, airborne)
         motions[id] = start_motion(place, yaw, kind, spec.speed, wind(id, still, 0.0), airborne)
     return motions
 

@@ -12,19 +12,14 @@ from onboard.runtime.protocols import Clock, Link
 from onboard.runtime.scenario import Scenario, VehicleSpec
 from sim_bridge.autopilot.machine import Autopilot
 from sim_bridge.autopilot.make import autopilot_for
-from sim_bridge.motion import CALM, Air, Airframe, Motion
-from sim_bridge.staging import Wind, airframe_of, frame_of, kind_of, starts
+from sim_bridge.motion import CALM, Airframe, Motion
+from sim_bridge.staging import Wind, airframe_of, calm, frame_of, kind_of, starts
 
 RATE_HZ = 100.0
 BEHIND_MAX = 50  # physics steps made up for in one call; beyond them time is lost, and counted
 _NS = 1_000_000_000
 
 Tap = Callable[[int, int, bytes, bool], None]  # (vehicle id, wall instant [ns], bytes, sent by the autopilot)
-
-
-def calm(id: int, motion: Motion, t: float) -> Air:
-    """No wind."""
-    return CALM
 
 
 class SimVehicle:

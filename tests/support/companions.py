@@ -1,0 +1,35 @@
+"""A companion computer of few words: hears one autopilot over a link and sends it what the test says."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Hashable
+
+from onboard.runtime.protocols import Link
+from onboard.wire.commands import Target
+from onboard.wire.mavlink import Framer, MavMessage, Packet, Sender
+
+COMPONENT = 191
+
+
+class Companion:
+    """Beside autopilot `system` on `link`."""
+
+    def __init__(self, link: Link, system: int) -> None:
+        self.target = Target(system)
+        self.packets: list[Packet] = []
+        self.bad: Counter[str] = Counter()
+        self._link = link
+        self._framer = Framer(causes=self.bad)
+        self._sender = Sender(system, COMPONENT)
+        link.receive(self._arrived)
+
+    def send(self, message: MavMessage) -> None:
+        self._link.send(self._sender.pack(message))
+
+    def heard(self, name: str) -> list[MavMessage]:
+        """All messages of a name, the oldest first."""
+        return [p.message for p in self.packets if p.message.get_type() == name]
+
+    def _arrived(self, data: bytes, peer: Hashable) -> None:
+        self.packets += self._framer.feed(data)
