@@ -37,6 +37,10 @@ KERNELS = (
     "onboard.core.game",
 )
 
+# Everything is inlined, or else the many small functions would pass whole games by value; but
+# this one is called from every rule and would swell the code.
+OUT_OF_LINE = frozenset({"free_ray_limited"})
+
 _registered: set[int] = set()
 
 
@@ -53,7 +57,7 @@ def _functions(module: ModuleType) -> list[FunctionType]:
 
 
 def _register(function: FunctionType) -> None:
-    if id(function) in _registered or function is each_module.each:
+    if id(function) in _registered or function.__module__ == each_module.__name__:
         return
     if not function.__module__.startswith(("onboard.core", "sim_bridge")):
         return
@@ -61,21 +65,32 @@ def _register(function: FunctionType) -> None:
     for cell in function.__closure__ or ():
         if isinstance(cell.cell_contents, FunctionType):
             _register(cell.cell_contents)
-    register_jitable(function)
+    register_jitable(forceinline=function.__name__ not in OUT_OF_LINE)(function)
 
 
 @cache
 def _overload_each() -> None:
-    def compiled_each(function: Any, items: Any, shared: Any) -> Callable[..., Any]:
-        count = len(items) if isinstance(items, types.BaseTuple) else 0
-        calls = "".join(f"function(items[{index}], {index}, shared), " for index in range(count))
-        names: dict[str, Any] = {}
-        exec(f"def written_out(function, items, shared):\n    return ({calls})", names)
-        written_out: Callable[..., Any] = names["written_out"]
-        return written_out
+    def compiled_each(function, items, shared):  # type: ignore[no-untyped-def]
+        calls = "".join(f"function(items[{k}], {k}, shared), " for k in range(_count(items)))
+        return _written_out("function, items, shared", calls)
 
-    compiled_each.__annotations__ = {}  # numba compares the signatures, annotations included
-    overload(each_module.each)(compiled_each)
+    def compiled_pair(function, items, others, shared):  # type: ignore[no-untyped-def]
+        calls = "".join(f"function(items[{k}], others[{k}], shared), " for k in range(_count(items)))
+        return _written_out("function, items, others, shared", calls)
+
+    options = {"forceinline": True}
+    overload(each_module.each, jit_options=options)(compiled_each)
+    overload(each_module.each_pair, jit_options=options)(compiled_pair)
+
+
+def _count(items: Any) -> int:
+    return len(items) if isinstance(items, types.BaseTuple) else 0
+
+
+def _written_out(arguments: str, calls: str) -> Any:
+    names: dict[str, Any] = {}
+    exec(f"def written_out({arguments}):\n    return ({calls})", names)
+    return names["written_out"]
 
 
 class Play(NamedTuple):

@@ -11,7 +11,7 @@ from math import pi
 from typing import NamedTuple
 
 from onboard.core.cones import blocked_cones
-from onboard.core.each import each
+from onboard.core.each import each, each_pair
 from onboard.core.evasion import EvaderView
 from onboard.core.knowledge import Decision
 from onboard.core.pursuit import PursuerView
@@ -55,12 +55,20 @@ class Decisions(NamedTuple):
     pursuers: tuple[Decision, ...]
 
 
-class Field(NamedTuple):
-    """What a pursuer's decision needs besides the pursuer itself."""
+class Seat(NamedTuple):
+    """One pursuer with what belongs to it."""
 
-    game: Game
-    evader: Vehicle
-    heading: Vec
+    own: Vehicle
+    limits: Limits
+    has_mate: bool
+    mate: Vec  # place of the nearest team mate [m]
+
+
+class Field(NamedTuple):
+    """What all pursuers' decisions share."""
+
+    evader: Vehicle  # with its new heading
+    heading: Vec  # ê
     params: Params
     decide: Callable[[PursuerView], Decision]
 
@@ -104,46 +112,59 @@ def evader_view(game: Game, params: Params) -> EvaderView:
     )
 
 
-def pursuer_view(
-    own: Vehicle, index: int, game: Game, evader: Vehicle, heading: Vec, params: Params
-) -> PursuerView:
-    """The situation as pursuer `index` sees it; the evader already has its new heading."""
+def alone(own: Vehicle, limits: Limits, _shared: float) -> Seat:
+    """A pursuer that need not look for team mates (for `each_pair`)."""
+    return Seat(own, limits, False, own.position)
+
+
+def beside_mates(seat: Seat, index: int, pursuers: tuple[Vehicle, ...]) -> Seat:
+    """The pursuer with its nearest team mate (for `each`)."""
     has_mate = False
-    mate = own.position
+    mate = seat.mate
+    nearest = 1e300
+    for other in range(len(pursuers)):
+        if other != index:
+            place = pursuers[other].position
+            x = place.x - seat.own.position.x
+            y = place.y - seat.own.position.y
+            z = place.z - seat.own.position.z
+            square = x * x + y * y + z * z
+            if square < nearest:
+                nearest = square
+                mate = place
+                has_mate = True
+    return Seat(seat.own, seat.limits, has_mate, mate)
+
+
+def seats(game: Game, params: Params) -> tuple[Seat, ...]:
+    """All pursuers; with their nearest team mates where a separation is kept."""
+    plain = each_pair(alone, game.pursuers, game.pursuer_limits, 0.0)
     if params.separation > 0.0:
-        nearest = 1e300
-        for other in range(len(game.pursuers)):
-            if other != index:
-                place = game.pursuers[other].position
-                x = place.x - own.position.x
-                y = place.y - own.position.y
-                z = place.z - own.position.z
-                square = x * x + y * y + z * z
-                if square < nearest:
-                    nearest = square
-                    mate = place
-                    has_mate = True
-    ahead = along(evader.position, heading, evader.speed * params.lookahead)
+        return each(beside_mates, plain, game.pursuers)
+    return plain
+
+
+def pursuer_view(seat: Seat, evader: Vehicle, heading: Vec, params: Params) -> PursuerView:
+    """The situation as a pursuer sees it; the evader already has its new heading."""
     return PursuerView(
-        own,
-        game.pursuer_limits[index],
+        seat.own,
+        seat.limits,
         evader,
         heading,
-        has_mate,
-        mate,
+        seat.has_mate,
+        seat.mate,
         params.separation,
         True,
-        ahead,
+        along(evader.position, heading, evader.speed * params.lookahead),
         params.lookahead,
         params.dt,
         params.planar,
     )
 
 
-def decide_one(own: Vehicle, index: int, field: Field) -> Decision:
-    """Pursuer `index`'s decision (for `each`)."""
-    view = pursuer_view(own, index, field.game, field.evader, field.heading, field.params)
-    return field.decide(view)
+def decide_one(seat: Seat, _index: int, field: Field) -> Decision:
+    """One pursuer's decision (for `each`)."""
+    return field.decide(pursuer_view(seat, field.evader, field.heading, field.params))
 
 
 def moved(vehicle: Vehicle, decision: Decision, dt: float) -> Vehicle:
@@ -152,16 +173,9 @@ def moved(vehicle: Vehicle, decision: Decision, dt: float) -> Vehicle:
     return Vehicle(along(vehicle.position, velocity, dt), velocity, vehicle.speed)
 
 
-class Step(NamedTuple):
-    """Decisions to move by (for `each`)."""
-
-    decisions: tuple[Decision, ...]
-    dt: float
-
-
-def move_one(vehicle: Vehicle, index: int, step: Step) -> Vehicle:
-    """Pursuer `index` after the step (for `each`)."""
-    return moved(vehicle, step.decisions[index], step.dt)
+def move_one(vehicle: Vehicle, decision: Decision, dt: float) -> Vehicle:
+    """A pursuer after the step (for `each_pair`)."""
+    return moved(vehicle, decision, dt)
 
 
 def decide(
@@ -170,8 +184,8 @@ def decide(
     """Everybody's decision: the evader first."""
     own = decide_evader(evader_view(game, params))
     turned = Vehicle(game.evader.position, scale(own.direction, own.speed), game.evader.speed)
-    field = Field(game, turned, own.direction, params, decide_pursuer)
-    return Decisions(own, each(decide_one, game.pursuers, field))
+    field = Field(turned, own.direction, params, decide_pursuer)
+    return Decisions(own, each(decide_one, seats(game, params), field))
 
 
 def judged(before: Game, evader: Vehicle, pursuers: tuple[Vehicle, ...], params: Params) -> Game:
@@ -201,7 +215,7 @@ def advance(
     """One step of `params.dt` seconds: decide, move by (7)–(8), judge."""
     decisions = decide(game, params, decide_evader, decide_pursuer)
     evader = moved(game.evader, decisions.evader, params.dt)
-    pursuers = each(move_one, game.pursuers, Step(decisions.pursuers, params.dt))
+    pursuers = each_pair(move_one, game.pursuers, decisions.pursuers, params.dt)
     return judged(game, evader, pursuers, params)
 
 
