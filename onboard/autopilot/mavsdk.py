@@ -155,10 +155,12 @@ class MavsdkAdapter:
 
     def step(self, now: float, telemetry: Telemetry, setpoint: Setpoint | None) -> Step:
         """Pass orders and setpoints on to the child; messages are those for arming alone."""
+        ended = self._ended()  # before the mode is judged: it was the child that changed it
         messages, notes = self._control.step(now, telemetry)
+        notes = ended + notes
         asking = any(message.command == 176 for message in messages)
         messages = [message for message in messages if message.command != 176]
-        courier = self._present(now, notes)
+        courier = self._present(now)
         if courier is None:
             return Step(tuple(messages), tuple(notes))
         notes += courier.said()
@@ -177,14 +179,19 @@ class MavsdkAdapter:
                 courier.send(LINE.pack(SETPOINT, now, v.x, v.y, v.z, yaw))
         return Step(tuple(messages), tuple(notes))
 
-    def _present(self, now: float, notes: list[Note]) -> Courier | None:
-        """The child, started when it is needed; an unexpected end gives control up."""
-        if self._courier is not None and not self._courier.alive():
-            notes += self._courier.said()
-            self.close()
-            if self._control.stage is Stage.ACTIVE:
-                self._control.release()
-                notes.append(Note("error", "mavsdk_ended", "the MAVSDK child has ended: offboard is over"))
+    def _ended(self) -> list[Note]:
+        """What there is to tell of a child that has ended: control is given up."""
+        if self._courier is None or self._courier.alive():
+            return []
+        notes = self._courier.said()
+        self.close()
+        if self._control.stage is Stage.ACTIVE:
+            self._control.release()
+            notes.append(Note("error", "mavsdk_ended", "the MAVSDK child has ended: offboard is over"))
+        return notes
+
+    def _present(self, now: float) -> Courier | None:
+        """The child, started when it is needed."""
         needed = self._control.stage in (Stage.ENTERING, Stage.ACTIVE, Stage.LEAVING)
         if self._courier is None and needed and now - self._launched_at >= RELAUNCH:
             self._launched_at = now

@@ -48,7 +48,7 @@ def test_each_autopilot_gets_its_own(
         (3, 22, "auto", "ArduPlane VTOL"),
         (3, 10, "auto", "unknown autopilot (autopilot 3, vehicle type 10)"),
         (8, 6, "auto", "unknown autopilot"),
-        (3, 1, "velocity", "ArduPlane cannot be flown by velocity: expected auto, arduplane, arduplane-plain"),
+        (3, 1, "velocity", "ArduPlane cannot be flown by velocity: expected auto, arduplane, ardu"),
         (12, 2, "arduplane", "PX4 multicopter cannot be flown by arduplane"),
         (3, 1, "mavsdk", "ArduPlane cannot be flown by mavsdk"),
         (3, 2, "mavsdk", "mavsdk needs a connection of its own"),

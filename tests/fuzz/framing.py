@@ -12,6 +12,8 @@ from onboard.wire.telemetry import decode
 from tests.fuzz import campaign
 from tests.fuzz.frames import befallen
 
+SWALLOWED = 23  # frames that one bad frame of 280 bytes can hide, if its checksum fits by chance (1 in 65536)
+
 
 def play(rng: np.random.Generator, count: int, totals: Counter[str]) -> None:
     """`count` frames into a datagram framer and a stream framer, in torn chunks; asserts what holds."""
@@ -43,7 +45,10 @@ def play(rng: np.random.Generator, count: int, totals: Counter[str]) -> None:
         pending = pending[cut:]
     for packet in stream.feed(pending + bytes(600)):
         sent_whole[packet.raw] -= 1
-    assert all(left <= 0 for left in sent_whole.values()), "a good frame was lost in the stream"
+    lost = sum(left for left in sent_whole.values() if left > 0)
+    chance = -sum(left for left in sent_whole.values() if left < 0)  # bad ones whose 16-bit checksum fits
+    totals["lost"], totals["passed_by_chance"] = totals["lost"] + lost, totals["passed_by_chance"] + chance
+    assert lost <= SWALLOWED * chance, "a good frame was lost in the stream"
     assert set(datagrams.causes) | set(stream.causes) <= set(CAUSES)
     totals["bad"] += datagrams.causes.total() - datagrams.causes["garbage_bytes"]
 
