@@ -164,7 +164,8 @@ def _link(vehicle: VehicleView, in_force: InForce, limits: Thresholds) -> Iterat
     if abs(health.clock_offset_s) > limit:
         unready = abs(health.clock_offset_s) > limits.clock_unready_s
         yield Finding(
-            "clock", vehicle.id, ERROR if unready else WARNING, f"{name}'s clock is off by {health.clock_offset_s:+.2f} s",
+            "clock", vehicle.id, ERROR if unready else WARNING,
+            f"{name}'s clock is off by {health.clock_offset_s:+.2f} s",
             "synchronise its clock (chrony, NTP): t₀ and tracks depend on it", 1.0,
         )  # fmt: skip
     if vehicle.missed_events > 0:

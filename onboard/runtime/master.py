@@ -175,14 +175,17 @@ class GameMaster:
         return lacking
 
     def observe(self, wall_ns: int, now_ns: int, positions: Mapping[int, Vec]) -> None:
-        """Judge the game on positions [m; NED] of `wall_ns`, over all the time since the last call."""
+        """Judge the game on positions [m; NED] of `wall_ns`, over all the time since the last call.
+
+        A pursuer without a position takes no part until it has one again.
+        """
         if self.phase is not Phase.RUNNING or self.standing is not Standing.HOLDING:
             return
-        if self._evader not in positions or any(id not in positions for id in self._pursuers):
+        if self._evader not in positions:
             return
-        here = {id: self._judged(positions[id]) for id in (self._evader, *self._pursuers)}
+        here = {id: self._judged(positions[id]) for id in (self._evader, *self._pursuers) if id in positions}
         if self.score is None:
-            self.score = opening(here[self._evader], tuple(here[id] for id in self._pursuers))
+            self.score = opening(here[self._evader], tuple(here[id] for id in self._pursuers if id in here))
         elif wall_ns > self._before_ns:
             self._judge(wall_ns, now_ns, here)
         self._before, self._before_ns = here, wall_ns
@@ -249,8 +252,9 @@ class GameMaster:
         assert self.score is not None
         setup, evader = self.setup, self._evader
         start, dt = (self._before_ns - self.t0_ns) / NS, (wall_ns - self._before_ns) / NS
-        before = tuple(self._before[id] for id in self._pursuers)
-        after = tuple(here[id] for id in self._pursuers)
+        ids = tuple(id for id in self._pursuers if id in self._before and id in here)
+        before = tuple(self._before[id] for id in ids)
+        after = tuple(here[id] for id in ids)
         target = ZERO if self._target is None else self._judged(self._target)
         self.score = score = judge(
             self.score, start, dt, self._before[evader], here[evader], before, after,
@@ -259,11 +263,11 @@ class GameMaster:
         )  # fmt: skip
         played = min(1.0, (score.time - start) / dt)  # a game ends within a step
         end = _part(self._before[evader], here[evader], played)
-        for id, p0, p1 in zip(self._pursuers, before, after, strict=True):
+        for id, p0, p1 in zip(ids, before, after, strict=True):
             seen = passage(p0, _part(p0, p1, played), self._before[evader], end, 0.0).smallest
             self.nearest[id] = min(self.nearest.get(id, seen), seen)
         if score.verdict != Verdict.RUNNING:
-            captor = self._pursuers[score.captor] if score.captor >= 0 else 0
+            captor = ids[score.captor] if score.captor >= 0 else 0
             self._end(_WORDS[Verdict(score.verdict)], score.time, captor, wall_ns, now_ns, "")
 
     def _judged(self, position: Vec) -> Vec:

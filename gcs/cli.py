@@ -1,0 +1,174 @@
+"""`gcs`: the ground station's program. Imports are lazy: `gcs --help` and `gcs status` load no console."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+from collections.abc import Coroutine
+from pathlib import Path
+from typing import Annotated, Any
+
+for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(_name, "1")
+
+import msgspec  # noqa: E402  (threads are set before anything imports NumPy)
+import typer  # noqa: E402
+
+from gcs import settings as gcs_settings  # noqa: E402
+from gcs.settings import Settings  # noqa: E402
+from onboard.runtime.config import ConfigError  # noqa: E402
+from onboard.runtime.program import run  # noqa: E402
+from onboard.wire.swarm import CommandKind, Role  # noqa: E402
+
+app = typer.Typer(
+    help="The ground station: picture, console, commands, recording, replay, report.",
+    epilog="Without a command: the console. Beside `sim-bridge serve SCENARIO` it needs no option.",
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+game_app = typer.Typer(help="Games with the ground station as their master.", no_args_is_help=True)
+app.add_typer(game_app, name="game")
+
+ConfigOption = Annotated[Path | None, typer.Option("--config", help="Settings file: see configs/gcs.toml.")]
+GameOption = Annotated[str | None, typer.Option("--game", help="Name of the game on the bus.")]
+BusOption = Annotated[str | None, typer.Option("--bus", help="Zenoh endpoint, e.g. tcp/192.168.1.10:7447.")]
+ZenohOption = Annotated[Path | None, typer.Option("--zenoh", help="Zenoh configuration file (TLS and more).")]
+OperatorOption = Annotated[str | None, typer.Option("--operator", help="Who signs the commands.")]
+RunsOption = Annotated[Path | None, typer.Option("--runs", help="Folder for recordings.")]
+RecordOption = Annotated[bool, typer.Option("--record/--no-record", help="Record everything heard.")]
+PlainOption = Annotated[bool, typer.Option("--plain", help="Lines in place of the console.")]
+
+
+def _settings(
+    config: Path | None,
+    game: str | None,
+    bus: str | None,
+    zenoh: Path | None = None,
+    operator: str | None = None,
+    runs: Path | None = None,
+) -> Settings:
+    """The file's settings with the options over them."""
+    found = gcs_settings.load(config)
+    replace = msgspec.structs.replace
+    if game is not None:
+        found = replace(found, game=game)
+    if bus is not None:
+        found = replace(found, bus=replace(found.bus, endpoint=bus))
+    if zenoh is not None:
+        found = replace(found, bus=replace(found.bus, zenoh=str(zenoh)))
+    if operator is not None:
+        found = replace(found, operator=operator)
+    if runs is not None:
+        found = replace(found, recording=replace(found.recording, folder=str(runs)))
+    return gcs_settings.check(found, "options" if config is None else str(config))
+
+
+def _play(program: Coroutine[Any, Any, int]) -> int:
+    """Run a program to its exit code; a ConfigError from within its tasks comes out as such."""
+    try:
+        return asyncio.run(program)
+    except* ConfigError as group:
+        errors = group
+    error: BaseException = errors
+    while isinstance(error, BaseExceptionGroup):
+        error = error.exceptions[0]
+    raise error
+
+
+@app.callback(invoke_without_command=True)
+def console(
+    ctx: typer.Context,
+    config: ConfigOption = None,
+    game: GameOption = None,
+    bus: BusOption = None,
+    zenoh: ZenohOption = None,
+    operator: OperatorOption = None,
+    runs: RunsOption = None,
+    record: RecordOption = True,
+    plain: PlainOption = False,
+) -> int:
+    """The ground station: picture, console, commands, recording, replay, report."""
+    if ctx.invoked_subcommand is not None:
+        return 0
+    from gcs import programs
+
+    found = _settings(config, game, bus, zenoh, operator, runs)
+    return _play(programs.watch(found, record=record and found.recording.enabled, plain=plain))
+
+
+@app.command()
+def status(
+    config: ConfigOption = None,
+    game: GameOption = None,
+    bus: BusOption = None,
+    zenoh: ZenohOption = None,
+    json: Annotated[bool, typer.Option("--json", help="One JSON object.")] = False,
+    wait: Annotated[float, typer.Option("--wait", help="How long to listen first [s].")] = 1.5,
+) -> int:
+    """Print the picture once; exit 1 when nobody is heard."""
+    from gcs import programs
+
+    if not 0.0 <= wait <= 60.0:
+        raise ConfigError(f"--wait: found {wait:g}, expected 0 to 60 s")
+    return _play(programs.status(_settings(config, game, bus, zenoh), json=json, wait_s=wait))
+
+
+@app.command()
+def command(
+    kind: Annotated[CommandKind, typer.Argument(help="What to do.")],
+    ids: Annotated[list[int] | None, typer.Argument(help="Vehicles.")] = None,
+    everybody: Annotated[bool, typer.Option("--all", help="All that are heard or in the game.")] = False,
+    role: Annotated[Role | None, typer.Option("--role", help="Every vehicle of a role.")] = None,
+    yes: Annotated[bool, typer.Option("--yes", help="Do not ask before return and land.")] = False,
+    within: Annotated[float, typer.Option("--within", help="How long to try [s].")] = 10.0,
+    config: ConfigOption = None,
+    game: GameOption = None,
+    bus: BusOption = None,
+    zenoh: ZenohOption = None,
+    operator: OperatorOption = None,
+) -> int:
+    """Command vehicles; exit 0 only when every one of them has confirmed."""
+    from gcs import programs
+
+    given = [name for name, there in (("ids", ids), ("--all", everybody), ("--role", role)) if there]
+    if len(given) != 1:
+        raise ConfigError(f"whom: found {' and '.join(given) or 'nothing'}, expected ids, --all or --role")
+    if not 0.1 <= within <= 3600.0:
+        raise ConfigError(f"--within: found {within:g}, expected 0.1 to 3600 s")
+    order = programs.Order(kind, tuple(ids or ()), role, everybody, within)
+    return _play(programs.command(_settings(config, game, bus, zenoh, operator), order, sure=yes))
+
+
+@game_app.command("run")
+def game_run(
+    scenario: Annotated[Path, typer.Argument(help="Scenario file.")],
+    config: ConfigOption = None,
+    game: GameOption = None,
+    bus: BusOption = None,
+    zenoh: ZenohOption = None,
+    operator: OperatorOption = None,
+    runs: RunsOption = None,
+    record: RecordOption = True,
+    plain: PlainOption = False,
+    start: Annotated[
+        bool, typer.Option("--start/--wait", help="Start when all are ready, or wait for `start all`.")
+    ] = True,
+) -> int:
+    """Stage, start, referee and end a game without the bridge; exit 0 when it has ended with a verdict."""
+    from gcs import programs
+    from onboard.runtime.scenario import load
+
+    found = _settings(config, game, bus, zenoh, operator, runs)
+    played = load(scenario)
+    recording = record and found.recording.enabled
+    return _play(programs.play(found, played, record=recording, plain=plain, auto_start=start))
+
+
+def main() -> None:
+    """Entry point."""
+    run(app, "gcs")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,190 @@
+"""What the subcommands do, once the settings are known. Each returns an exit code."""
+
+from __future__ import annotations
+
+import asyncio
+import signal
+import sys
+from collections.abc import Callable
+from contextlib import suppress
+from typing import NamedTuple
+
+from gcs.commands import ENDS_A_FLIGHT
+from gcs.export import to_json
+from gcs.picture import Leg, Picture
+from gcs.plain import Plain
+from gcs.plain import status as status_lines
+from gcs.session import Session, on_air
+from gcs.settings import Settings
+from onboard.runtime.config import ConfigError
+from onboard.runtime.scenario import Scenario
+from onboard.wire.swarm import CommandKind, Role
+
+LOOK_S = 0.25
+GATHER_S = 1.5  # to learn who is there
+
+
+class Order(NamedTuple):
+    """A command from a shell."""
+
+    kind: CommandKind
+    ids: tuple[int, ...]
+    role: Role | None
+    everybody: bool
+    within_s: float
+
+
+async def watch(settings: Settings, *, record: bool, plain: bool) -> int:
+    """The console, or lines, until one leaves."""
+    _demand_terminal(plain)
+    async with on_air(settings, listen=settings.bus.listen, record=record) as session:
+        if plain:
+            return await print_lines(session)
+        return await show_console(session)
+
+
+def _demand_terminal(plain: bool) -> None:
+    if not plain and not (sys.stdout.isatty() and sys.stdin.isatty()):
+        raise ConfigError("the console needs a terminal; without one: gcs --plain or gcs status --json")
+
+
+async def show_console(session: Session) -> int:
+    """The console on this terminal."""
+    from gcs.console.app import Console
+
+    return await Console(session).run_async() or 0
+
+
+async def print_lines(session: Session, over: Callable[[], bool] = lambda: False) -> int:
+    """Lines on standard output until ctrl-C, SIGTERM or `over()`."""
+    stop = asyncio.Event()
+    loop = asyncio.get_running_loop()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        loop.add_signal_handler(number, stop.set)
+    lines = Plain()
+    print(session.status(), flush=True)
+    try:
+        while not stop.is_set():
+            for line in lines.lines(session.picture()):
+                print(line, flush=True)
+            if over():
+                break
+            with suppress(TimeoutError):
+                async with asyncio.timeout(LOOK_S):
+                    await stop.wait()
+    finally:
+        for number in (signal.SIGINT, signal.SIGTERM):
+            loop.remove_signal_handler(number)
+    return 0
+
+
+async def status(settings: Settings, *, json: bool, wait_s: float) -> int:
+    """The picture once."""
+    async with on_air(settings, listen=False, record=False) as session:
+        await asyncio.sleep(wait_s)
+        picture = session.picture()
+        print(to_json(picture) if json else "\n".join(status_lines(picture)), flush=True)
+        if not picture.vehicles and picture.game.setup is None:
+            print(f"gcs: nobody heard in game {settings.game}: {session.bus.status()}", file=sys.stderr)
+            return 1
+    return 0
+
+
+async def command(settings: Settings, order: Order, *, sure: bool) -> int:
+    """Give a command and wait for the confirmations."""
+    async with on_air(settings, listen=False, record=False) as session:
+        told: dict[int, str] = {}  # vehicle → command id
+        ends_ns = session.station.now_ns() + round(order.within_s * 1e9)
+        if order.kind is not CommandKind.ABORT:
+            await _gather(session, order)
+            ids = _whom(session, order)
+            if ids and order.kind in ENDS_A_FLIGHT and not sure and not await _asked(order, ids):
+                print("gcs: not done", file=sys.stderr)
+                return 1
+            ends_ns = session.station.now_ns() + round(order.within_s * 1e9)
+        gathered_ns = session.station.now_ns()
+        if order.kind is CommandKind.ABORT:
+            gathered_ns += round(GATHER_S * 1e9)
+        while session.station.now_ns() < ends_ns:
+            fresh = [i for i in _whom(session, order) if i not in told]
+            if fresh:  # an abort goes out at once, to whoever is known so far, and to the rest as it appears
+                command_id = session.station.command(order.kind, fresh)
+                told.update(dict.fromkeys(fresh, command_id))
+            settled = all(not leg.open for leg in _legs(session, told))
+            complete = bool(order.ids) or session.station.now_ns() > gathered_ns
+            if settled and complete:
+                break
+            await asyncio.sleep(0.02)
+        return _told(session, order, told, settings.game)
+
+
+def _legs(session: Session, told: dict[int, str]) -> list[Leg]:
+    """How each vehicle has answered so far."""
+    legs = []
+    for vehicle_id, command_id in sorted(told.items()):
+        view = session.station.watch.book.view(command_id, session.station.now_ns())
+        legs += [leg for leg in view.legs if leg.id == vehicle_id] if view else []
+    return legs
+
+
+def _told(session: Session, order: Order, told: dict[int, str], game: str) -> int:
+    """Say who has confirmed; the exit code."""
+    if not told:
+        print(f"gcs: nobody to command in game {game}: {session.bus.status()}", file=sys.stderr)
+        return 1
+    legs = _legs(session, told)
+    confirmed = sum(leg.state == "confirmed" for leg in legs)
+    print(f"{order.kind.value}: {confirmed} of {len(legs)} confirmed", flush=True)
+    for leg in legs:
+        state = "no answer" if leg.state == "sent" else leg.state
+        parts = [f"  vehicle {leg.id}: {state}", f"({leg.reason})" if leg.reason else "", leg.mode]
+        print(" ".join(part for part in (*parts, f"after {leg.took_s:.2f} s") if part), flush=True)
+    return 0 if confirmed == len(legs) else 1
+
+
+async def _gather(session: Session, order: Order) -> None:
+    """Listen until who is meant is known: with ids there is nothing to wait for but the bus."""
+    for _ in range(round(GATHER_S / 0.05)):
+        if order.ids and session.bus.connected():
+            return
+        await asyncio.sleep(0.05)
+
+
+def _whom(session: Session, order: Order) -> tuple[int, ...]:
+    if order.ids:
+        return tuple(sorted(set(order.ids)))
+    return session.station.ids(order.role)
+
+
+async def _asked(order: Order, ids: tuple[int, ...]) -> bool:
+    if not sys.stdin.isatty():
+        raise ConfigError(f"{order.kind.value} ends a flight: found no terminal to ask, expected --yes")
+    print(f"{order.kind.value} {', '.join(map(str, ids))}? type yes: ", end="", flush=True)
+    answer: str = await asyncio.get_running_loop().run_in_executor(None, sys.stdin.readline)
+    return answer.strip().lower() == "yes"
+
+
+async def play(
+    settings: Settings, scenario: Scenario, *, record: bool, plain: bool, auto_start: bool
+) -> int:
+    """A game with the ground station as its master."""
+    from gcs.master import FieldMaster
+
+    _demand_terminal(plain)
+    async with on_air(settings, listen=settings.bus.listen, record=record) as session:
+        master = FieldMaster(session.station, scenario, auto_start=auto_start)
+        session.extra = master.status
+        async with asyncio.TaskGroup() as tasks:
+            task = tasks.create_task(master.run(), name="master")
+            try:
+                if plain:
+                    await print_lines(session, over=lambda: master.over)
+                else:
+                    await show_console(session)
+            finally:
+                task.cancel()
+        picture: Picture = session.picture()
+        if picture.game.outcome is not None:
+            by = f" by {picture.game.outcome.captor}" if picture.game.outcome.captor else ""
+            print(f"evader {picture.game.outcome.verdict}{by} after {picture.game.outcome.time:.1f} s")
+        return master.exit_code

@@ -1,0 +1,106 @@
+"""A ground station at work: bus, station, recorder and whatever else runs beside them, under one owner."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator, Callable, Iterable
+from contextlib import AsyncExitStack, asynccontextmanager
+from importlib import metadata
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from gcs.console.source import Key
+from gcs.picture import Picture
+from gcs.settings import Settings
+from gcs.station import Station
+from onboard.runtime.bus_zenoh import ZenohBus, open_zenoh
+from onboard.runtime.clock import RealClock
+from onboard.wire.swarm import CommandKind, Severity
+
+if TYPE_CHECKING:
+    from gcs.recorder_shell import Keeper
+
+
+def version() -> str:
+    """The version of this distribution; "" in a tree that is not installed."""
+    try:
+        return metadata.version("apollonius")
+    except metadata.PackageNotFoundError:
+        return ""
+
+
+class Session:
+    """What a program of the ground station works with; it is also what a console shows."""
+
+    title = "live"
+    keys: tuple[Key, ...] = ()
+
+    def __init__(self, bus: ZenohBus, station: Station, keeper: Keeper | None) -> None:
+        self.bus = bus
+        self.station = station
+        self.keeper = keeper
+        self.extra: Callable[[], str] = str  # the master's line, where there is one
+
+    def picture(self) -> Picture:
+        """The picture now."""
+        return self.station.picture()
+
+    def status(self) -> str:
+        """Bus and recording in a line."""
+        parts = [self.extra(), self.bus.status()]
+        if self.keeper is not None:
+            status = self.keeper.status()
+            parts.append(f"recording {status.size / 1e6:.1f} MB" if not status.trouble else "NOT RECORDING")
+        return ", ".join(part for part in parts if part)
+
+    def act(self, action: str) -> str:
+        """A live station has no keys of its own."""
+        return ""
+
+    def command(self, kind: CommandKind, ids: Iterable[int]) -> str:
+        """Give a command."""
+        self.station.command(kind, ids)
+        return ""
+
+    def acknowledge(self, alert: str) -> None:
+        """The operator has seen an alert."""
+        self.station.acknowledge(alert)
+
+
+@asynccontextmanager
+async def on_air(settings: Settings, *, listen: bool, record: bool) -> AsyncIterator[Session]:
+    """A station on the bus, recording if asked; all of it ends with the block. Raises ConfigError."""
+    from gcs.recorder_shell import Keeper, new_run
+    from onboard.runtime.links import open_link
+
+    clock = RealClock()
+    zenoh = Path(settings.bus.zenoh) if settings.bus.zenoh else None
+    async with AsyncExitStack() as stack:
+        bus = await open_zenoh(settings.bus.endpoint or None, listen=listen, config_file=zenoh)
+        stack.push_async_callback(bus.close)
+        station = Station(
+            bus, clock, settings.game, operator=settings.signature, limits=settings.alerts, version=version()
+        )
+        keeper = None
+        if record:
+            links = []
+            for url in settings.recording.mavlink:
+                link = await open_link(url)
+                stack.callback(link.close)
+                links.append(link)
+            folder = new_run(Path(settings.recording.folder), settings.game, station.now_ns())
+            keeper = Keeper(station, folder, links)
+            stack.callback(keeper.close)
+            station.remark(Severity.INFO, "recording", f"recording into {folder}")
+        if bus.how == "joined":
+            station.remark(Severity.INFO, "bus", bus.status())
+        station.open()
+        tasks = await stack.enter_async_context(asyncio.TaskGroup())
+        running = [tasks.create_task(station.run(), name="station")]
+        if keeper is not None:
+            running.append(tasks.create_task(keeper.run(), name="recorder"))
+        try:
+            yield Session(bus, station, keeper)
+        finally:
+            for task in running:
+                task.cancel()
