@@ -273,3 +273,6 @@ _READERS: dict[int, Callable[[Any], Value | None]] = {
     dialect.MAVLINK_MSG_ID_ADSB_VEHICLE: _adsb_vehicle,
     dialect.MAVLINK_MSG_ID_RADIO_STATUS: _radio_status,
 }
+
+READ = frozenset(_READERS)
+"""Numbers of the messages that `decode` has a value for."""

@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from onboard.wire.mavlink import dialect
+from onboard.wire.telemetry import READ
 
 KINDS = sorted(dialect.mavlink_map)
+DECODED = sorted(READ)
 EXTRA = {number: bytes([dialect.mavlink_map[number].crc_extra]) for number in KINDS}
 FATES = ("good", "bad_crc", "truncated", "flipped", "unknown", "junk", "long", "incompatible")
 
@@ -23,7 +25,8 @@ def frame(rng: np.random.Generator, number: int, *, size: int | None = None, fla
 def befallen(rng: np.random.Generator) -> tuple[bytes, str]:
     """A frame and its fate."""
     fate = FATES[int(rng.integers(len(FATES)))]
-    number = KINDS[int(rng.integers(len(KINDS)))]
+    kinds = KINDS if rng.random() < 0.5 else DECODED
+    number = kinds[int(rng.integers(len(kinds)))]
     if fate == "junk":
         return rng.bytes(int(rng.integers(1, 300))), fate
     if fate == "unknown":
