@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 EVENTS_KEPT = 256  # events a publisher keeps of each key
 CALLS_MAX = 4096  # calls under way to one connection before LATEST messages to it are dropped
+ROUTES_MAX = 10_000  # keys whose hearers are remembered
 RECONNECT_S = 0.5  # a connection is back at most this long after the broker
 RESEND_S = 0.2  # what an impaired connection loses of reliable messages comes this much later
 _NS = 1_000_000_000
@@ -82,14 +83,16 @@ class MemoryBroker:
         self._rng = rng
         self.up = True
         self.buses: list[MemoryBus] = []
-        self._routes: dict[str, list[tuple[MemoryBus, _Listener]]] = {}
+        self._routes: dict[str, list[tuple[MemoryBus, tuple[_Listener, ...]]]] = {}
+        self._made = 0
 
     def connect(self, name: str = "") -> MemoryBus:
         """A new connection, with an impaired channel of its own where the broker is impaired."""
         channel = None
         if self._impairment is not None and self._rng is not None:
             channel = Channel(self._impairment, self._rng.spawn(1)[0])
-        bus = MemoryBus(self, name or f"bus {len(self.buses) + 1}", channel)
+        self._made += 1
+        bus = MemoryBus(self, self._made, name or f"bus {self._made}", channel)
         self.buses.append(bus)
         bus._online = self.up
         return bus
@@ -108,16 +111,17 @@ class MemoryBroker:
         for bus in self.buses:
             asyncio.get_running_loop().call_later(RECONNECT_S, bus._returned)
 
-    def route(self, key: str) -> list[tuple[MemoryBus, _Listener]]:
-        """Who hears a key."""
+    def route(self, key: str) -> list[tuple[MemoryBus, tuple[_Listener, ...]]]:
+        """Who hears a key: connections, and their subscriptions to it."""
         found = self._routes.get(key)
         if found is None:
-            found = self._routes[key] = [
-                (bus, listener)
+            if len(self._routes) >= ROUTES_MAX:
+                self._routes.clear()
+            heard = (
+                (bus, tuple(listener for listener in bus.listeners if matches(listener.pattern, key)))
                 for bus in self.buses
-                for listener in bus.listeners
-                if matches(listener.pattern, key)
-            ]
+            )
+            found = self._routes[key] = [(bus, listeners) for bus, listeners in heard if listeners]
         return found
 
     def changed(self) -> None:
@@ -137,7 +141,8 @@ class MemoryBroker:
 class MemoryBus:
     """One connection to a `MemoryBroker`. `channel` is its impairment, of what comes in."""
 
-    def __init__(self, broker: MemoryBroker, name: str, channel: Channel | None) -> None:
+    def __init__(self, broker: MemoryBroker, number: int, name: str, channel: Channel | None) -> None:
+        self.number = number  # of the connection, for as long as the broker exists
         self.name = name
         self.channel = channel
         self.listeners: list[_Listener] = []
@@ -172,9 +177,9 @@ class MemoryBus:
             return
         self._counts["published"] += 1
         sample = Sample(key, payload)
-        for bus, listener in self._broker.route(key):
+        for bus, listeners in self._broker.route(key):
             if bus._online:
-                bus._hand(listener, sample, delivery, (id(self), key), number)
+                bus._hand(listeners, sample, delivery, (self.number, key), number)
 
     def subscribe(self, pattern: str, receiver: Callable[[Sample], None]) -> _Undo:
         """Call `receiver` for what matches; what publishers keep comes first."""
@@ -205,22 +210,25 @@ class MemoryBus:
             for served, handler in (bus._servers if bus._online else ())
             if matches(key, served)
         ]
-        replies: list[bytes] = []
+        replies: dict[int, bytes] = {}
+        answered: set[int] = set()
         complete = asyncio.Event()
 
-        def answer(bus: MemoryBus, handler: Callable[[bytes], bytes], question: bytes) -> None:
-            reply = handler(question)
-            bus._counts["answered"] += 1
-            self._soon(Delivery.LATEST, reply, arrived)
+        def answer(number: int, question: bytes) -> None:
+            bus, handler = asked[number]
+            if number not in answered and bus._online:
+                answered.add(number)
+                bus._counts["answered"] += 1
+                self._soon(Delivery.LATEST, handler(question), partial(arrived, number))
 
-        def arrived(reply: bytes) -> None:
-            replies.append(reply)
-            if len(replies) >= len(asked):
+        def arrived(number: int, reply: bytes) -> None:
+            replies.setdefault(number, reply)
+            if len(replies) == len(asked):
                 complete.set()
 
         self._counts["requests" if self._online else "no_bus"] += 1
-        for bus, handler in asked:
-            bus._soon(Delivery.LATEST, payload, partial(answer, bus, handler))
+        for number, (bus, _) in enumerate(asked):
+            bus._soon(Delivery.LATEST, payload, partial(answer, number))
         if asked:
             try:
                 async with asyncio.timeout(timeout_s):
@@ -229,7 +237,7 @@ class MemoryBus:
                 self._counts["request_timeout"] += 1
         else:
             self._counts["request_unserved"] += 1
-        return list(replies)
+        return list(replies.values())
 
     def announce(self, key: str) -> _Undo:
         """Declare a liveliness token."""
@@ -305,23 +313,30 @@ class MemoryBus:
     def _take_kept(self, publisher: MemoryBus, listener: _Listener) -> None:
         for key, kept in publisher._kept.items():
             if matches(listener.pattern, key):
+                source = (publisher.number, key)
                 for number, payload in kept.entries:
-                    self._hand(listener, Sample(key, payload), Delivery.CACHED, (id(publisher), key), number)
+                    self._hand((listener,), Sample(key, payload), Delivery.CACHED, source, number)
 
     def _hand(
-        self, listener: _Listener, sample: Sample, delivery: Delivery, source: tuple[int, str], number: int
+        self,
+        listeners: tuple[_Listener, ...],
+        sample: Sample,
+        delivery: Delivery,
+        source: tuple[int, str],
+        number: int,
     ) -> None:
-        """Bring a sample to one of the own listeners, through the impairment."""
+        """Bring a sample to own listeners, through the impairment: all of them hear it, or none."""
 
         def arrived(payload: bytes) -> None:
-            if not self._online or not listener.open:
-                return
-            if number:
-                if listener.had.get(source, 0) >= number:
-                    return
-                listener.had[source] = number
-            self._counts["received"] += 1
-            listener.receiver(Sample(sample.key, payload))
+            for listener in listeners:
+                if not self._online or not listener.open:
+                    continue
+                if number:
+                    if listener.had.get(source, 0) >= number:
+                        continue
+                    listener.had[source] = number
+                self._counts["received"] += 1
+                listener.receiver(Sample(sample.key, payload))
 
         self._soon(delivery, sample.payload, arrived)
 

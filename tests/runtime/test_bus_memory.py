@@ -121,3 +121,46 @@ async def test_a_flood_is_bounded_and_counted() -> None:
 def test_an_impaired_broker_asks_for_its_generator() -> None:
     with pytest.raises(ValueError, match="needs a generator"):
         MemoryBroker(CLEAR)
+
+
+@virtual
+async def test_duplicates_of_a_request_are_answered_once() -> None:
+    broker = impaired(Impairment(duplication=1.0, jitter_s=0.01))
+    vehicle, other, station = broker.connect("2"), broker.connect("3"), broker.connect("gcs")
+    asked: list[bytes] = []
+
+    def obey(payload: bytes) -> bytes:
+        asked.append(payload)
+        return b"accepted"
+
+    vehicle.serve(COMMAND, obey)
+    other.serve(COMMAND.replace("2", "3"), obey)
+    replies = await station.request(COMMAND.replace("2", "*"), b"hold", 1.0)
+    assert replies == [b"accepted", b"accepted"]
+    assert asked == [b"hold", b"hold"]
+
+
+@virtual
+async def test_two_subscriptions_of_one_session_lose_the_same_messages() -> None:
+    broker = impaired(Impairment(loss=0.5))
+    vehicle, station = broker.connect("2"), broker.connect("gcs")
+    one, all_of_them = Heard(station, STATE), Heard(station, "apollonius/**")
+    for tick in range(100):
+        vehicle.publish(STATE, bytes([tick]), Delivery.LATEST)
+        await asyncio.sleep(0.05)
+    assert one.payloads == all_of_them.payloads
+    assert 25 < len(one.samples) < 75
+
+
+@virtual
+async def test_a_process_started_again_is_another_publisher() -> None:
+    broker = MemoryBroker()
+    station = broker.connect("gcs")
+    events = Heard(station, EVENTS)
+    for life in range(50):  # a new object may well lie where a dead one lay
+        vehicle = broker.connect("2")
+        vehicle.publish(EVENTS, b"life %d" % life, Delivery.EVENT)
+        await asyncio.sleep(0.01)
+        await vehicle.close()
+        del vehicle
+    assert events.payloads == [b"life %d" % life for life in range(50)]
