@@ -101,7 +101,7 @@ class FieldMaster:
         flight = scenario.flight
         timing = Timing(flight.ready_s, flight.timeout_s if auto_start else 0.0, RECOVERY_S, auto_start)
         self.rules = GameMaster(
-            setup_of(scenario, station.game, station.operator),
+            setup_of(scenario, station.game, NAME),
             target_of(scenario),
             NAME,
             secrets.randbits(48) if nonce is None else nonce,

@@ -1,0 +1,239 @@
+"""The ground station as master: a game in the field, refereed from what the vehicles say."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from contextlib import asynccontextmanager
+
+import msgspec
+import pytest
+
+from gcs.master import FieldMaster, Fix, Positions
+from gcs.station import Station
+from onboard.core.vectors import Vec
+from onboard.runtime.bus_memory import MemoryBroker
+from onboard.runtime.loop import virtual_clock
+from onboard.runtime.master import Standing
+from onboard.runtime.protocols import Bus
+from onboard.runtime.scenario import Flight, Parameters, Scenario, VehicleSpec
+from onboard.wire import swarm, topics
+from onboard.wire.swarm import CommandKind, Phase
+from tests.support.crews import Crew
+from tests.support.radio import GAME, NS, health, on_bus, state, track
+from tests.support.virtual import virtual
+
+MEETING = Scenario(
+    name="meeting",
+    evader=VehicleSpec(position=(0.0, 0.0, 50.0), speed=5.0, target=(300.0, 0.0, 50.0)),
+    pursuers=(
+        VehicleSpec(position=(100.0, 0.0, 50.0), speed=5.0),
+        VehicleSpec(position=(0.0, 200.0, 50.0), speed=5.0),
+    ),
+    parameters=Parameters(R=2.0, horizon=30.0),
+    flight=Flight(ready_s=2.0, timeout_s=20.0),
+)
+
+
+class Flyer:
+    """A vehicle on a straight line, whose agent says how it is."""
+
+    def __init__(self, bus: Bus, i: int, start: Vec, velocity: Vec, late_s: float = 0.0) -> None:
+        self.bus, self.id, self.start, self.velocity, self.late_s = bus, i, start, velocity, late_s
+        self.stage = "ready"
+        self.silent = False
+        self.by_track = False
+        self.t0_ns = 0
+        bus.subscribe(topics.key(GAME, topics.PHASE), self._on_phase)
+
+    def _on_phase(self, sample) -> None:
+        phase = msgspec.msgpack.Decoder(tuple[int, swarm.PhaseChange]).decode(sample.payload)[1]
+        self.t0_ns = phase.t0_ns
+        if phase.phase is Phase.RUNNING:
+            self.stage = "acting"
+
+    async def fly(self) -> None:
+        clock = virtual_clock()
+        while True:
+            now_ns = clock.wall_ns()
+            t = max(0, now_ns - self.t0_ns) / NS if self.t0_ns else 0.0
+            v = self.velocity if t > 0 else Vec(0.0, 0.0, 0.0)
+            place = tuple(s + w * t for s, w in zip(self.start, v, strict=True))
+            own = state(self.id, now_ns, position=place, velocity=tuple(v))
+            await asyncio.sleep(self.late_s)
+            if not self.silent:
+                if self.by_track:
+                    seen = track(self.id, now_ns, position=place, velocity=tuple(v))
+                    self.bus.publish(*on_bus(seen), topics.TRACK.delivery)
+                else:
+                    self.bus.publish(*on_bus(own), topics.STATE.delivery)
+                lacks = ("a fix",) if self.stage == "waiting" else ()
+                well = health(self.id, now_ns, stage=self.stage, lacks=lacks)
+                self.bus.publish(*on_bus(well), topics.HEALTH.delivery)
+            await asyncio.sleep(0.1 - self.late_s)
+
+
+@asynccontextmanager
+async def field(scenario: Scenario = MEETING, auto_start: bool = True, late_s: float = 0.02):
+    """A station that is master, and three vehicles: the evader flies north at 5 m/s, pursuer 2 meets it."""
+    broker = MemoryBroker()
+    clock = virtual_clock()
+    station = Station(broker.connect("gcs"), clock, GAME, operator="anna", new_id=iter("abcdefgh").__next__)
+    master = FieldMaster(station, scenario, auto_start=auto_start, nonce=5)
+    flyers = [
+        Flyer(broker.connect(), 1, Vec(0.0, 0.0, -50.0), Vec(5.0, 0.0, 0.0), late_s),
+        Flyer(broker.connect(), 2, Vec(100.0, 0.0, -50.0), Vec(-5.0, 0.0, 0.0)),
+        Flyer(broker.connect(), 3, Vec(0.0, 200.0, -50.0), Vec(0.0, 0.0, 0.0)),
+    ]
+    tasks = [asyncio.create_task(coro) for coro in (station.run(), master.run(), *(f.fly() for f in flyers))]
+    try:
+        yield station, master, flyers, broker
+    finally:
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+
+
+async def until(condition: Callable[[], object], within_s: float) -> None:
+    async with asyncio.timeout(within_s):
+        while not condition():  # noqa: ASYNC110 - the condition is anybody's, it sets no event
+            await asyncio.sleep(0.02)
+
+
+@virtual
+async def test_a_game_is_staged_started_judged_and_ended_without_the_bridge():
+    async with field() as (station, master, _, _):
+        await until(lambda: station.picture().game.phase is Phase.READY, 3.0)
+        assert {v.id for v in station.picture().vehicles} == {1, 2, 3}
+        await until(lambda: station.picture().game.phase is Phase.RUNNING, 3.0)
+        assert not master.over
+        await until(lambda: station.picture().game.phase is Phase.ENDED, 15.0)
+        outcome = station.picture().game.outcome
+        assert outcome is not None
+        # 100 m at 10 m/s, less the capture radius
+        assert (outcome.verdict, outcome.captor) == ("captured", 2)
+        assert outcome.time == pytest.approx(9.8, abs=0.02)
+        assert master.exit_code == 0
+        await until(lambda: station.picture().game.phase is Phase.RECOVERY, 5.0)
+        assert master.over
+
+
+@virtual
+async def test_what_comes_late_is_judged_where_it_was():
+    async with field(late_s=0.09) as (station, _, _, _):
+        await until(lambda: station.picture().game.outcome, 20.0)
+        outcome = station.picture().game.outcome
+        assert outcome is not None
+        assert outcome.time == pytest.approx(9.8, abs=0.02)
+
+
+@virtual
+async def test_the_game_waits_for_a_vehicle_that_is_not_ready_and_names_it():
+    async with field() as (station, master, flyers, _):
+        flyers[2].stage = "waiting"
+        await asyncio.sleep(5.0)
+        assert station.picture().game.phase is Phase.STAGING
+        assert master.status() == "master: vehicle 3: waiting: a fix"
+        flyers[2].stage = "ready"
+        await until(lambda: station.picture().game.phase is Phase.RUNNING, 5.0)
+
+
+@virtual
+async def test_who_never_becomes_ready_ends_the_game_with_the_reason():
+    async with field() as (station, master, flyers, _):
+        flyers[1].silent = True
+        await until(lambda: master.over, 40.0)
+        outcome = station.picture().game.outcome
+        assert outcome is not None
+        assert outcome.verdict == "aborted"
+        assert outcome.reason == "not ready in time: vehicle 2: no agent heard"
+        assert master.exit_code == 1
+
+
+@virtual
+async def test_a_game_can_wait_for_the_word_start():
+    async with field(auto_start=False) as (station, _, _, broker):
+        crews = [Crew(broker.connect(), virtual_clock(), i) for i in (1, 2, 3)]
+        await asyncio.sleep(30.0)
+        assert station.picture().game.phase is Phase.STAGING
+        station.command(CommandKind.START, (1, 2, 3))
+        await until(lambda: station.picture().game.phase is Phase.RUNNING, 5.0)
+        assert all(crew.obeyed for crew in crews)
+
+
+@virtual
+async def test_an_abort_of_everybody_ends_the_game():
+    async with field() as (station, master, _, _):
+        await until(lambda: station.picture().game.phase is Phase.RUNNING, 8.0)
+        await asyncio.sleep(2.0)
+        station.command(CommandKind.ABORT, (1, 2))
+        await asyncio.sleep(0.5)
+        assert station.picture().game.phase is Phase.RUNNING  # not everybody
+        station.command(CommandKind.ABORT, station.ids())
+        await asyncio.sleep(0.5)
+        outcome = station.picture().game.outcome
+        assert outcome is not None
+        assert (outcome.verdict, outcome.reason) == ("aborted", "abort by anna")
+        assert master.exit_code == 1
+
+
+@virtual
+async def test_the_evader_is_judged_by_its_track_when_its_own_word_fails():
+    async with field() as (station, _, flyers, _):
+        flyers[0].by_track = True
+        await until(lambda: station.picture().game.outcome, 20.0)
+        outcome = station.picture().game.outcome
+        assert outcome is not None
+        assert (outcome.verdict, outcome.captor) == ("captured", 2)
+
+
+@virtual
+async def test_a_lost_pursuer_neither_stops_the_referee_nor_captures():
+    async with field() as (station, _, flyers, _):
+        await until(lambda: station.picture().game.phase is Phase.RUNNING, 8.0)
+        await asyncio.sleep(3.0)
+        flyers[1].silent = True  # it would have met the evader
+        await until(lambda: station.picture().game.outcome, 40.0)
+        outcome = station.picture().game.outcome
+        assert outcome is not None
+        assert outcome.verdict == "escaped"
+        assert outcome.time == 30.0
+
+
+@virtual
+async def test_where_there_is_a_master_already_this_one_yields():
+    async with field() as (station, master, _, broker):
+        other = broker.connect()
+        for _ in range(20):
+            lease = swarm.Master("sim-bridge", virtual_clock().wall_ns(), nonce=1)
+            other.publish(*on_bus(lease), topics.MASTER.delivery)
+            await asyncio.sleep(0.2)
+        assert master.rules.standing is Standing.YIELDED
+        assert master.over
+        assert master.exit_code == 1
+        assert any("another master" in line.text for line in station.picture().log)
+        assert station.picture().game.setup is None
+
+
+@virtual
+async def test_who_leaves_in_mid_game_ends_it():
+    async with field() as (station, _, _, broker):
+        listener = Station(broker.connect(), virtual_clock(), GAME)
+        listener.open()
+        await until(lambda: station.picture().game.phase is Phase.RUNNING, 8.0)
+        await asyncio.sleep(1.0)
+    await asyncio.sleep(0.1)
+    outcome = listener.picture().game.outcome
+    assert outcome is not None
+    assert outcome.reason == "the ground station left"
+
+
+def test_positions_are_put_side_by_side_at_one_instant():
+    positions = Positions()
+    positions.add(1, Fix(1 * NS, Vec(0.0, 0.0, 0.0), Vec(10.0, 0.0, 0.0)))
+    positions.add(1, Fix(2 * NS, Vec(20.0, 0.0, 0.0), Vec(10.0, 0.0, 0.0)))
+    positions.add(1, Fix(1 * NS + 5, Vec(99.0, 0.0, 0.0), Vec(0.0, 0.0, 0.0)))  # late: no news
+    assert positions.at(1 * NS + NS // 2) == {1: Vec(10.0, 0.0, 0.0)}
+    assert positions.at(2 * NS + NS // 2) == {1: Vec(25.0, 0.0, 0.0)}
+    assert positions.at(3 * NS + 1) == {}
+    assert positions.at(NS // 2) == {}
