@@ -15,7 +15,7 @@ from onboard.wire import commands
 from onboard.wire.commands import Target
 from onboard.wire.mavlink import Packet
 from onboard.wire.swarm import Severity
-from onboard.wire.values import CommandAck, GlobalPosition, Heartbeat, ParamValue, StatusText
+from onboard.wire.values import CommandAck, GlobalPosition, Heartbeat, ParamValue, StatusText, Version
 
 AUTOPILOT = 1  # MAV_COMP_ID_AUTOPILOT1
 RATE_WINDOW_S = 2.0  # over which rates are measured
@@ -60,6 +60,7 @@ class Craft:
         self.sent_at = NEVER  # of the last setpoint [s]
         self.handed_back = False  # a pilot gave control back since somebody last looked
         self.taken = False  # somebody else took it since somebody last looked
+        self.version: Version | None = None  # of the autopilot, once it has said so
         self.to = Target(config.id)
         self._journal = journal
         self._heartbeat: Heartbeat | None = None
@@ -107,6 +108,8 @@ class Craft:
             self.adapter.acknowledge(now, value)
         elif isinstance(value, ParamValue) and self._asking is not None:
             self._asking.parameter(value)
+        elif isinstance(value, Version):
+            self.version = value
         elif isinstance(value, StatusText) and value.severity <= 4:
             self._journal.warning("autopilot", value.text)
         return False

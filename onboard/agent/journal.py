@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from datetime import UTC, datetime
 
-from onboard.runtime.protocols import Bus, Clock
+from onboard.runtime.protocols import Clock
 from onboard.wire import swarm
 from onboard.wire.swarm import Event, Severity
-from onboard.wire.topics import EVENTS, key
+from onboard.wire.topics import EVENTS, Delivery, key
 
 BURST = 20  # events of one kind within `WINDOW_S` before the rest are only counted
 WINDOW_S = 10.0
@@ -19,13 +19,19 @@ class Journal:
     """Says what happened, once, to everybody."""
 
     def __init__(
-        self, id: int, game: str, nonce: int, clock: Clock, bus: Bus, log: Callable[[str], None]
+        self,
+        id: int,
+        game: str,
+        nonce: int,
+        clock: Clock,
+        publish: Callable[[str, bytes, Delivery], None],
+        log: Callable[[str], None],
     ) -> None:
         self._id = id
         self._key = key(game, EVENTS, id)
         self._nonce = nonce
         self._clock = clock
-        self._bus = bus
+        self._publish = publish
         self._log = log
         self._number = 0
         self._recent: dict[str, list[int]] = {}
@@ -60,6 +66,6 @@ class Journal:
             id=self._id, number=self._number, stamp_ns=stamp, severity=severity, kind=kind, text=text,
             level=level, module=module, nonce=self._nonce,
         )  # fmt: skip
-        self._bus.publish(self._key, swarm.EVENT.encode(event), EVENTS.delivery)
+        self._publish(self._key, swarm.EVENT.encode(event), EVENTS.delivery)
         when = datetime.fromtimestamp(stamp / _NS, UTC).strftime("%H:%M:%S.%f")[:-3]
         self._log(f"{when} {severity.value:7} vehicle {self._id} {kind}: {text}")
