@@ -47,6 +47,7 @@ class ArduPlane(ArduPilot):
         self._radius = 0.0  # [m] 0 = WP_LOITER_RAD
         self._turn = 1.0  # clockwise
         self._altitude_z = setup.start.position.z  # [m; down] sought
+        self._altitude_given = False  # by 43001
         self._climb_most = FAST  # [m/s]
         self._airspeed = setup.speed_cruise  # [m/s] demanded now
         self._airspeed_target = setup.speed_cruise
@@ -109,6 +110,7 @@ class ArduPlane(ArduPilot):
         self._roll_ns = self._pitch_ns = self._throttle_ns = -1
         self._centre = position
         self._altitude_z = position.z
+        self._altitude_given = False
         self._climb_most = FAST
         self._radius, self._turn = 0.0, 1.0
         self._airspeed_target = self.parameters["AIRSPEED_CRUISE"]
@@ -303,6 +305,7 @@ class ArduPlane(ArduPilot):
         else:
             return DENIED
         self._seek(altitude, abs(command.p3) or FAST)
+        self._altitude_given = True
         return ACCEPTED
 
     def _do_guided_heading(self, now_ns: int, command: Command) -> int:
@@ -319,7 +322,7 @@ class ArduPlane(ArduPilot):
         return ACCEPTED
 
     def _do_reposition(self, now_ns: int, command: Command) -> int:
-        """Circle a point. After a 43002 only the altitude is followed, until GUIDED is entered again."""
+        """Circle a point. A 43002 and a 43001 stay stronger until GUIDED is entered again."""
         place = self.place_of(command)
         if place is None:
             return DENIED
@@ -329,7 +332,8 @@ class ArduPlane(ArduPilot):
         if self.request_mode(now_ns, M["GUIDED"]):
             return FAILED
         self._centre = self.game_of(place)
-        self._seek(place.altitude_m, FAST)
+        if not self._altitude_given:
+            self._seek(place.altitude_m, FAST)
         if isfinite(command.p3) and command.p3 > 0.0:
             self._radius = command.p3
             self._turn = -1.0 if command.p4 == 1.0 else 1.0
