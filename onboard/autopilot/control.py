@@ -23,6 +23,7 @@ SLOW_RETRY = 0.5  # [s] this pace
 AFTER_YES = 1.5  # [s] an accepted command waits for the heartbeat (1 Hz)
 AFTER_NO = 1.0  # [s] a refused one waits before it is tried again
 ARM_AFTER_NO = 2.0  # [s] arming may be refused for many seconds although the pre-arm bit is set
+RESTART = 3.0  # [s] between the first mode and the first clock of an autopilot that started again
 SET_MODE, ARM = 176, 400  # MAV_CMD_DO_SET_MODE, MAV_CMD_COMPONENT_ARM_DISARM
 COMPANION = 191  # MAV_COMP_ID_ONBOARD_COMPUTER: the agent's component
 RESULTS = {0: "accepted", 1: "temporarily rejected", 2: "denied", 3: "unsupported", 4: "failed"}
@@ -75,6 +76,7 @@ class Control:
         self._heard = (NEVER, "")  # arrival and mode of the heartbeat last judged
         self._guided_beats = 0  # heartbeats in a row that report the guided mode
         self._reboots = 0
+        self._taken_at = NEVER
 
     def enter(self, now: float) -> None:
         """Ask for the guided mode; nothing to do where it is ours already."""
@@ -115,11 +117,13 @@ class Control:
     ) -> tuple[list[MavMessage], list[Note]]:
         """Commands due now, and what changed. `ready` False holds the request for the guided mode back."""
         messages: list[MavMessage] = []
+        if telemetry.reboots != self._reboots:
+            self._restarted(now, telemetry)
         heard = (telemetry.heartbeat_at, telemetry.mode)
         known = telemetry.heartbeat_at != NEVER
         if known and heard != self._heard:
             self._heard = heard
-            self._judge(telemetry)
+            self._judge(now, telemetry)
         asking = self.stage is Stage.LEAVING or (self.stage is Stage.ENTERING and ready)
         if asking and known and self._mode.due(now):
             number = MODES[self.kind][self._wanted]
@@ -140,12 +144,18 @@ class Control:
         self._mode = Pacer()
         self._heard = (NEVER, "")  # judge the present mode again in the light of the new wish
 
-    def _judge(self, telemetry: Telemetry) -> None:
+    def _restarted(self, now: float, telemetry: Telemetry) -> None:
+        """The autopilot started again: that ended our control, and no pilot did (its new mode may have been
+        heard before its new clock)."""
+        self._reboots = telemetry.reboots
+        if self.stage is Stage.ACTIVE or (self.stage is Stage.TAKEN and now - self._taken_at < RESTART):
+            self._wanted = ""
+            self._now(Stage.IDLE, "error", "reboot", "the autopilot has started again: control is given up")
+
+    def _judge(self, now: float, telemetry: Telemetry) -> None:
         """One new heartbeat: what does its mode mean?"""
         mode, stage = telemetry.mode, self.stage
         self._guided_beats = self._guided_beats + 1 if mode == self.guided else 0
-        rebooted = telemetry.reboots != self._reboots
-        self._reboots = telemetry.reboots
         if self._arm is not None and telemetry.armed:
             self._arm = None
             self._notes.append(Note("info", "armed", "the autopilot reports armed"))
@@ -154,25 +164,23 @@ class Control:
             if mode == self.guided:
                 self._now(Stage.ACTIVE, "info", "control", f"{mode} confirmed: this agent flies")
             elif mode != self._from:
-                self._taken(mode)
+                self._taken(now, mode)
         elif stage is Stage.ACTIVE and mode != self.guided:
-            if rebooted:
-                self._now(Stage.IDLE, "error", "reboot", f"the autopilot started again, in {mode}")
-            else:
-                self._taken(mode)
+            self._taken(now, mode)
         elif stage is Stage.LEAVING:
             if mode == self._wanted:
                 self._now(Stage.LEFT, "info", "released", f"{mode} confirmed: the autopilot flies alone")
             elif mode not in (self._from, self.guided):
-                self._taken(mode)
+                self._taken(now, mode)
         elif stage is Stage.IDLE and mode == self.guided:
             self._now(Stage.ACTIVE, "info", "control", f"found in {mode}: setpoints count")
         elif stage in (Stage.LEFT, Stage.TAKEN) and self._guided_beats >= 2:
             self._now(Stage.ACTIVE, "info", "handed_back", f"{mode} chosen by another hand: setpoints count")
 
-    def _taken(self, mode: str) -> None:
+    def _taken(self, now: float, mode: str) -> None:
         was = self._wanted if self.stage is Stage.LEAVING else self.guided
         text = f"{mode} in place of {was}, not by this agent: hands off"
+        self._taken_at = now
         self._now(Stage.TAKEN, "warning", "take_over", text)
         self._arm = None
 

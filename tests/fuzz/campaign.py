@@ -24,7 +24,14 @@ def resident_kib() -> int:
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 
 
-def run(play: Play, count: int, seed: int, resume: Path | None, say: Callable[[str], None]) -> Counter[str]:
+def run(
+    play: Play,
+    count: int,
+    seed: int,
+    resume: Path | None,
+    say: Callable[[str], None],
+    block: int = BLOCK,
+) -> Counter[str]:
     """Play `count` frames in blocks, continuing where the file `resume` says; totals by cause.
 
     Raises whatever `play` raises, and AssertionError where memory grows."""
@@ -36,8 +43,8 @@ def run(play: Play, count: int, seed: int, resume: Path | None, say: Callable[[s
     settled = 0
     played = 0
     while done < count:
-        block, size = done // BLOCK, min(BLOCK, count - done)
-        play(np.random.default_rng((seed, block)), size, totals)
+        size = min(block, count - done)
+        play(np.random.default_rng((seed, done // block)), size, totals)
         done, played = done + size, played + 1
         if played == WARM:
             settled = resident_kib()
