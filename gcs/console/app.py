@@ -112,6 +112,10 @@ class Console(App[int]):
         self.set_interval(1.0 / REFRESH_HZ, self.refresh_picture)
         self.refresh_picture()
 
+    def on_resize(self) -> None:
+        """Panels have other sizes now."""
+        self.call_after_refresh(self.show)
+
     def refresh_picture(self) -> None:
         """Take the picture and show it."""
         self.picture = self.source.picture()

@@ -29,7 +29,8 @@ class HelpScreen(ModalScreen[None]):
     #help { width: 78; max-width: 100%; height: 90%; border: round; padding: 0 1; background: $surface; }
     """
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("escape,question_mark,f1,q,enter", "app.pop_screen", "back", show=False)
+        Binding("escape,question_mark,f1,q,enter", "app.pop_screen", "back", show=False),
+        Binding("x", "app.abort_all", "abort all", show=False),
     ]
 
     def __init__(self, keys: Iterable[tuple[str, str, str]], own: Iterable[Key]) -> None:

@@ -79,8 +79,8 @@ def round_up(value: float) -> float:
 
 def zoomed(view: View, closer: bool) -> View:
     """One round step closer or farther, within a centimetre and 10 km a dot."""
-    factor = 0.499 if closer else 1.5
-    return view._replace(scale=min(1e4, max(0.01, round_up(view.scale * factor))))
+    scale = round_up(view.scale * 1.01) if not closer else round_up(view.scale / 2.51)
+    return view._replace(scale=min(1e4, max(0.01, scale)))
 
 
 class _Canvas:
