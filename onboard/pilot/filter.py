@@ -11,6 +11,7 @@ Nothing here raises on bad input: `add` says what became of a sample.
 
 from __future__ import annotations
 
+from bisect import bisect_left, bisect_right
 from collections import Counter
 from enum import IntEnum
 from math import exp, isfinite, log, sqrt
@@ -62,7 +63,8 @@ class FilterSettings(NamedTuple):
     density_min: float = 0.01
     density_max: float = 2000.0
     adaptation: float = 0.08  # how fast the density follows the innovations (per sample, logarithmic)
-    history: int = 64  # samples kept for late ones
+    history: float = 5.0  # samples this much older than the newest are kept for late ones [s]
+    history_max: int = 400  # but no more of them
     speed_max: float = 150.0  # no target is faster [m/s]
     gap_max: float = 10.0  # a longer silence needs the samples after it to agree [s]
     agreeing: int = 3  # doubtful samples in a row that must agree before the filter restarts
@@ -113,6 +115,11 @@ class TrackFilter:
         """Instant of the oldest sample of the history [s]; +inf before the first."""
         return self._steps[0].sample.t if self._steps else float("inf")
 
+    def before(self, t: float) -> float:
+        """Instant of the newest sample before `t` [s]; −inf where the history has none."""
+        index = bisect_left(self._steps, t, key=_instant) - 1
+        return self._steps[index].sample.t if index >= 0 else float("-inf")
+
     @property
     def count(self) -> int:
         """Samples in the history."""
@@ -151,14 +158,14 @@ class TrackFilter:
         numbers = (t, *position, *variance, *(velocity or ()))
         if not all(-BOUND < number < BOUND for number in numbers) or min(variance[:3]) < 0.0:
             return Fate.NOT_FINITE
-        sample = _Sample(t, Vec(*position), velocity or ZERO, self._floored(variance, velocity is not None))
+        sample = _Sample(t, Vec(*map(float, position)), velocity or ZERO, self._floored(variance, velocity is not None))
         steps = self._steps
         if not steps:
             self._restart([sample])
             return Fate.TAKEN
-        if any(_same(step.sample, sample) for step in reversed(steps)):
-            return Fate.DUPLICATE
         index = self._index_before(t)
+        if any(_same(step.sample, sample) for step in steps[max(0, index - 3) : index + 2]):
+            return Fate.DUPLICATE
         if index < 0:
             return self._doubt(sample, Fate.STALE)
         if not self._plausible(steps[index], sample):
@@ -168,7 +175,11 @@ class TrackFilter:
         del steps[index + 1 :]
         for one in (sample, *late):
             steps.append(self._update(steps[-1], one))
-        del steps[: -self.settings.history]
+        keep = steps[-1].sample.t - self.settings.history
+        drop = max(0, len(steps) - self.settings.history_max)
+        while drop < len(steps) - 1 and steps[drop].sample.t < keep:
+            drop += 1
+        del steps[:drop]
         return Fate.LATE if late else Fate.TAKEN
 
     def _floored(self, variance: Variance, with_velocity: bool) -> Variance:
@@ -180,10 +191,7 @@ class TrackFilter:
 
     def _index_before(self, t: float) -> int:
         """Index of the newest step at or before `t`, −1 where there is none."""
-        index = len(self._steps) - 1
-        while index >= 0 and self._steps[index].sample.t > t:
-            index -= 1
-        return index
+        return bisect_right(self._steps, t, key=_instant) - 1
 
     def _plausible(self, step: _Step, sample: _Sample) -> bool:
         """Whether the target can have come from `step` to `sample`."""
@@ -258,6 +266,10 @@ class TrackFilter:
         low, high = log(self.settings.density_min), log(self.settings.density_max)
         level = log(step.density) + self.settings.adaptation * (ratio - 1.0)
         return _Step(sample, (axes[0], axes[1], axes[2]), exp(min(max(level, low), high)))
+
+
+def _instant(step: _Step) -> float:
+    return step.sample.t
 
 
 def _same(a: _Sample, b: _Sample) -> bool:

@@ -107,7 +107,7 @@ def test_a_kilometre_jump_is_refused_until_it_repeats_itself() -> None:
 
 
 def test_time_running_backwards_restarts_only_when_it_goes_on() -> None:
-    track = TrackFilter(FilterSettings(history=8))
+    track = TrackFilter(FilterSettings(history=0.8))
     for k in range(20):
         track.add(100.0 + 0.1 * k, straight(0.1 * k), None, EXACT)
     assert track.add(5.0, straight(2.0), None, EXACT) is Fate.STALE

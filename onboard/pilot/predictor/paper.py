@@ -79,7 +79,7 @@ class PaperNetwork:
         return abs(wanted - out)
 
     def fit(self, series: Array) -> list[Epoch]:
-        """Train on a series, shape (samples,); returns the epochs, the last with error NaN where it diverged."""
+        """Train on a series, shape (samples,); returns the epochs, the last with error NaN if it diverged."""
         inputs, targets = self._scaled(np.asarray(series, dtype=np.float64))
         epochs: list[Epoch] = []
         with np.errstate(over="ignore", invalid="ignore"):

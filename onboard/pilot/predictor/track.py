@@ -1,30 +1,69 @@
-"""The predictor of one track: filter, resample, choose, predict."""
+"""The predictor of one track: filter, resample, learn, predict."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Generator
 from math import sqrt
+from typing import NamedTuple
 
-from onboard.core.vectors import ZERO, Vec
+import numpy as np
+
+from onboard.core.vectors import ZERO, Vec, norm
 from onboard.pilot.filter import Fate, FilterSettings, TrackFilter, Variance
+from onboard.pilot.predictor import model as flying
+from onboard.pilot.predictor.grid import Grid
+from onboard.pilot.predictor.model import Model, ModelSettings
+from onboard.pilot.predictor.path import Path, at, path, sound
 from onboard.pilot.predictor.prediction import REFUSAL, Prediction, PredictorKind
 
 FARTHEST = 600.0  # nothing is said about instants farther from the newest sample than this [s]
+
+
+class PredictorSettings(NamedTuple):
+    """Settings of a track's predictor."""
+
+    filter: FilterSettings = FilterSettings()
+    model: ModelSettings = ModelSettings()
+    step: float = 0.2  # of the grid [s]
+    window: int = 200  # points of the grid that are kept
+    gap: float = 2.0  # a longer silence makes the grid begin anew [s]
 
 
 class TrackPredictor:
     """Predicts one target from its samples, for any instant.
 
     Never raises on bad samples and never answers NaN: `add` tells the fate of a sample, `predict`
-    answers with a large stated error, or refuses by `usable`."""
+    answers with a large stated error, or refuses by `usable`. The same samples, trainings and seed
+    give the same answers."""
 
-    def __init__(self, seed: int = 0, settings: FilterSettings | None = None) -> None:
-        self.filter = TrackFilter(settings)
-        self.seed = seed
+    def __init__(self, seed: int = 0, settings: PredictorSettings | None = None) -> None:
+        self.settings = PredictorSettings() if settings is None else settings
+        self.filter = TrackFilter(self.settings.filter)
+        self.grid = Grid(self.settings.step, self.settings.window, self.settings.gap)
+        self.model: Model | None = None
+        self.trainings = 0
+        self._seed = seed
+        self._life = 0  # counts restarts: a training that began before one is thrown away
+        self._fitted = -1  # grid points at the last fit of the ridge
+        self._path: Path | None = None
+        self._fresh = False  # whether _path is of the newest sample and model
 
     def add(self, t: float, position: Vec, velocity: Vec | None, variance: Variance) -> Fate:
         """Take a sample of instant `t` [s] (see TrackFilter.add)."""
-        return self.filter.add(t, position, velocity, variance)
+        fate = self.filter.add(t, position, velocity, variance)
+        if fate is Fate.TAKEN:
+            self.grid.extend(self.filter)
+        elif fate is Fate.LATE:
+            self.grid.revise(self.filter, t)
+        elif fate is Fate.RESTARTED:
+            self.grid.clear()
+            self.grid.extend(self.filter)
+            self.model = None
+            self._life += 1
+        else:
+            return fate
+        self._fresh = False
+        return fate
 
     def predict(self, t: float) -> Prediction:
         """The target at instant `t` [s], before or after the newest sample."""
@@ -35,15 +74,63 @@ class TrackPredictor:
             blind = self.filter.settings.velocity_unknown * abs(t - self.filter.newest)
             sigma = sqrt(estimate.sigma * estimate.sigma + blind * blind)
             return Prediction(estimate.position, ZERO, sigma, PredictorKind.LAST_KNOWN, True)
-        return Prediction(
-            estimate.position, estimate.velocity, estimate.sigma, PredictorKind.CONSTANT_VELOCITY, True
-        )
+        line = self._line() if t > self.filter.newest else None
+        if line is not None:
+            return at(line, t, estimate.sigma)
+        kind = PredictorKind.CONSTANT_VELOCITY
+        return Prediction(estimate.position, estimate.velocity, estimate.sigma, kind, True)
+
+    @property
+    def longest(self) -> float:
+        """The longest horizon [s]; beyond it constant velocity goes on."""
+        return max(self.settings.model.horizons) * self.settings.step
 
     @property
     def trainable(self) -> bool:
         """Whether there are enough points to train on."""
-        return False
+        return len(self.grid) >= self.settings.model.ladder[0]
 
-    def train(self) -> Iterator[None]:
-        """Train in slices of about 1 ms: each `next` does one."""
-        return iter(())
+    def train(self) -> Generator[None, None, None]:
+        """Train on the grid in slices of about 1 ms: each `next` does one; the last puts the model to use."""
+        life = self._life
+        count = self.grid.added
+        self.trainings += 1
+        rng = np.random.default_rng([self._seed, self.trainings])
+        trained = yield from flying.fit(*self.grid.arrays(), self.settings.model, rng)
+        if trained is not None and life == self._life:
+            self.model = trained
+            self._fitted = count
+            self._fresh = False
+
+    @property
+    def stale(self) -> bool:
+        """Whether grid points came since the ridge was last fitted."""
+        return self.model is not None and self.grid.added != self._fitted
+
+    def refresh(self) -> None:
+        """Fit the ridge anew to the grid: a slice of less than 1 ms."""
+        if self.model is not None:
+            self.model = flying.refresh(*self.grid.arrays(), self.model, self.settings.model)
+            self._fitted = self.grid.added
+            self._fresh = False
+
+    def _line(self) -> Path | None:
+        """The path from the newest sample on; None where the model cannot speak."""
+        if not self._fresh:
+            self._path = self._forecast()
+            self._fresh = True
+        return self._path
+
+    def _forecast(self) -> Path | None:
+        model, step, newest = self.model, self.settings.step, self.filter.newest
+        places = None if model is None else self.grid.window(self.filter, model.points)
+        if model is None or places is None:
+            return None
+        here = self.filter.estimate(newest)
+        with np.errstate(over="ignore", invalid="ignore"):
+            said = flying.forecast(model, places, np.array(here.velocity) * step, self.settings.model)
+        horizons = self.settings.model.horizons
+        line = path(newest, here.position, here.velocity, here.sigma, said, horizons, step)
+        moves = np.diff(places, axis=0)
+        fastest = float(np.sqrt((moves * moves).sum(axis=1)).max()) / step
+        return line if sound(line, max(fastest, norm(here.velocity))) else None

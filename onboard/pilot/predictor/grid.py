@@ -1,0 +1,82 @@
+"""A track on a regular grid of instants: what the model learns from."""
+
+from __future__ import annotations
+
+from collections import deque
+from itertools import islice
+from math import floor
+
+import numpy as np
+
+from onboard.core.vectors import Vec
+from onboard.pilot.filter import TrackFilter
+from onboard.pilot.predictor.activation import Array
+
+
+class Grid:
+    """The filtered track at the newest multiples of `step`, at most `capacity` of them, without a hole.
+
+    A silence longer than `gap` breaks it: the points before are forgotten."""
+
+    def __init__(self, step: float, capacity: int, gap: float) -> None:
+        self.step = step  # [s]
+        self.gap = gap  # [s]
+        self.added = 0  # points ever added
+        self._rows: deque[tuple[Vec, Vec]] = deque(maxlen=capacity)  # position [m], velocity [m/s]
+        self._last = 0  # the newest point is at instant _last · step
+        self._seen = float("-inf")  # newest sample that was taken in [s]
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    def clear(self) -> None:
+        """Forget everything."""
+        self._rows.clear()
+        self._seen = float("-inf")
+
+    def extend(self, track: TrackFilter) -> None:
+        """Add the points up to the newest sample."""
+        newest = track.newest
+        if newest - self._seen > self.gap:
+            self._rows.clear()
+            self._last = floor(newest / self.step + 1e-9) - 1
+        self._seen = newest
+        while (self._last + 1) * self.step <= newest + 1e-9:
+            self._last += 1
+            here = track.estimate(self._last * self.step)
+            self._rows.append((here.position, here.velocity))
+            self.added += 1
+
+    def revise(self, track: TrackFilter, t: float) -> None:
+        """A late sample of instant `t` came: compute the points after its predecessor anew."""
+        since = max(track.before(t), track.oldest)
+        while self._rows and self._last * self.step > since:
+            self._rows.pop()
+            self._last -= 1
+            self.added -= 1
+        self.extend(track)
+
+    def arrays(self) -> tuple[Array, Array]:
+        """Positions (n, 3) [m] and velocities (n, 3) [m a step], oldest first."""
+        both = np.array([(*position, *velocity) for position, velocity in self._rows]).reshape(-1, 6)
+        return both[:, :3], both[:, 3:] * self.step
+
+    def window(self, track: TrackFilter, points: int) -> Array | None:
+        """Positions (points, 3) [m] at the newest sample and each `step` before it, oldest first; None where
+        the grid is too short. Cubic between the grid's points; the two newest come from the filter."""
+        newest = track.newest
+        shift = newest / self.step - self._last  # of the newest sample past the newest point, in steps
+        if len(self._rows) < points or not -1e-6 <= shift < 1.0 + 1e-6:
+            return None
+        out = np.empty((points, 3))
+        out[-1] = track.estimate(newest).position
+        out[-2] = track.estimate(newest - self.step).position
+        rows = [(*position, *velocity) for position, velocity in islice(reversed(self._rows), 1, points)]
+        both = np.array(rows)[::-1]  # (points − 1, 6): the points around each instant
+        place, speed = both[:, :3], both[:, 3:] * self.step
+        u = shift
+        h = u * u * (3.0 - 2.0 * u)
+        near, far = u * (1.0 - u) * (1.0 - u), u * u * (1.0 - u)
+        between = place[:-1] * (1.0 - h) + place[1:] * h + speed[:-1] * near - speed[1:] * far
+        out[:-2] = between
+        return out

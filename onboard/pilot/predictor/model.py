@@ -1,0 +1,349 @@
+"""The predictor that flies: a ridge base and an s-parabola network over it, chosen by held-out error.
+
+Positions on a regular grid in, mean velocities to several horizons out, each horizon predicted
+directly. The target is the innovation: the mean velocity to the horizon minus the constant
+velocity now, in the heading frame. The ladder: below 8 points constant velocity; up to 30 a small
+network over constant velocity; from then on the ridge with the network over its rest. Every
+horizon keeps constant velocity unless the last 30 % of the points, held out, say that the model is
+better by a margin.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from onboard.pilot.predictor import network, ridge
+from onboard.pilot.predictor.activation import Array, SParabola
+from onboard.pilot.predictor.heading import Indices, Windows, turn, windows
+from onboard.pilot.predictor.prediction import PredictorKind
+
+Known = npt.NDArray[np.bool_]
+
+
+class ModelSettings(NamedTuple):
+    """Settings of the predictor that flies."""
+
+    horizons: tuple[int, ...] = (1, 2, 5, 10, 20)  # [steps]
+    points: int = 16  # of a window
+    ladder: tuple[int, int] = (8, 30)  # from here the network over constant velocity; from here the ridge
+    penalties: tuple[float, ...] = (3e-3, 1e-6, 1e-4, 3e-2)  # of the ridge; the first is preferred
+    preference: float = 0.9  # another penalty must bring the held-out error below this share
+    held_out: float = 0.3  # share of the points, the newest
+    margin: float = 0.03  # by which a model must beat constant velocity
+    activation: SParabola = SParabola()
+    neurons: int = 5
+    lags: int = 6  # moves of a window that the network sees
+    epsilon: float = 0.05  # smoothing of the slope at 0 in training
+    decay: float = 0.1  # pull of the weights towards zero
+    iterations: int = 15  # of Levenberg–Marquardt before the choice
+    finishing: int = 5  # and after it, on all points
+    networks: bool = True  # off: the ridge base alone
+
+
+class Model(NamedTuple):
+    """What training came to: frozen, used by `forecast`."""
+
+    points: int  # of a window
+    coefficients: Array  # (H, 3, L + 1) of the ridge; zeros on the lower ladder
+    kinds: tuple[PredictorKind, ...]  # (H,) who speaks at each horizon
+    penalty: tuple[int, ...]  # (H,) index of the chosen penalty
+    shrink: Array  # (H,) share of the network's answer that is believed, 0…1
+    believed: Array  # (H,) share of the whole innovation that is believed, 0…1
+    weights: network.Weights
+    lags: tuple[int, ...]
+    axes: tuple[int, ...]  # the network's axes: forward, right and, in space, down
+    middle: Array  # (inputs,) subtracted from the network's inputs
+    scale: Array  # (inputs,) and divided by
+    spread: Array  # (H, axes) scale of the network's outputs [m a step]
+    sigma: Array  # (H,) root mean square distance error, held out [m]; NaN where nothing was held out
+
+
+class Forecast(NamedTuple):
+    """Mean velocities to the horizons."""
+
+    velocities: Array  # (H, 3) [m a step], game frame
+    kinds: tuple[PredictorKind, ...]
+    sigma: Array  # (H,) [m]
+
+
+SQUEEZE = 0.15  # outputs have this standard deviation about 0.5: on the upper branch, as in 3.5.2
+REACH = 2.5  # inputs are clipped to this many standard deviations: no answer far from what was seen
+
+
+def fit(
+    positions: Array, velocities: Array, settings: ModelSettings, rng: np.random.Generator
+) -> Generator[None, None, Model | None]:
+    """Train on a grid: positions (n, 3) [m], velocities (n, 3) [m a step].
+
+    Yields after each slice of about 1 ms; returns None where there are too few points."""
+    total = len(positions)
+    if total < settings.ladder[0]:
+        return None
+    horizons = np.array(settings.horizons)
+    points = min(settings.points, max(4, total // 5))
+    origins = np.arange(points - 1, total)
+    view = windows(positions, velocities, origins, points)
+    wanted, known = _targets(positions, view, origins, horizons)
+    rows = ridge.features(view.moves)
+    cut = total - max(2, round(settings.held_out * total))  # index of the first point held out
+    early = [max(0, int(cut - h - origins[0])) for h in horizons]  # rows whose target lies before the cut
+    late = [slice(max(0, int(cut - origins[0])), max(0, int(total - h - origins[0]))) for h in horizons]
+    yield
+
+    linear = total >= settings.ladder[1]
+    enough = [linear and count >= points for count in early]
+    chosen, base = _base(rows, wanted, early, late, enough, settings)
+    yield
+
+    net = _prepare(view, wanted - base, early, horizons, settings)
+    data = _batch(net, wanted - base, known, early)
+    act = settings.activation
+    weights = network.start(act, data, settings.neurons, rng, settings.epsilon, 1e-3)
+    yield
+    if settings.networks:
+        weights = yield from network.train(
+            act, weights, data, settings.iterations, settings.epsilon, settings.decay
+        )
+    answer = _answer(act, weights, net, len(horizons)) * settings.networks
+    verdict = [_judge(wanted[part, i], base[part, i], answer[part, i], int(h), enough[i], settings)
+               for i, (h, part) in enumerate(zip(horizons, late, strict=True))]
+    kinds = tuple(one.kind for one in verdict)
+    yield
+
+    every = [max(0, int(total - h - origins[0])) for h in horizons]
+    coefficients, base = _final(rows, wanted, every, enough, chosen, settings)
+    if PredictorKind.NETWORK in kinds:
+        yield
+        data = _batch(net, wanted - base, known, every)
+        weights = yield from network.train(
+            act, weights, data, settings.finishing, settings.epsilon, settings.decay
+        )
+    return Model(
+        points,
+        coefficients,
+        kinds,
+        chosen,
+        np.array([one.shrink for one in verdict]),
+        np.array([one.believed for one in verdict]),
+        weights,
+        net.lags,
+        net.axes,
+        net.middle,
+        net.scale,
+        net.spread,
+        np.array([one.sigma for one in verdict]),
+    )
+
+
+def refresh(positions: Array, velocities: Array, model: Model, settings: ModelSettings) -> Model:
+    """The model with its ridge fitted anew to a grid; choice and network stay."""
+    total = len(positions)
+    if total < max(settings.ladder[1], 2 * model.points) or not model.coefficients.any():
+        return model
+    origins = np.arange(model.points - 1, total)
+    view = windows(positions, velocities, origins, model.points)
+    horizons = np.array(settings.horizons)
+    wanted, _ = _targets(positions, view, origins, horizons)
+    counts = [max(0, int(total - h - origins[0])) for h in horizons]
+    enough = [bool(model.coefficients[i].any()) and counts[i] >= model.points for i in range(len(horizons))]
+    fresh, _ = _final(ridge.features(view.moves), wanted, counts, enough, model.penalty, settings)
+    return model._replace(coefficients=fresh)
+
+
+def forecast(model: Model, positions: Array, velocity: Array, settings: ModelSettings) -> Forecast:
+    """Predict from the last positions (at least model.points, 3) and the velocity now (3,) [m a step]."""
+    last = np.array([model.points - 1])
+    recent = positions[-model.points :]
+    newest = np.broadcast_to(velocity, recent.shape)
+    view = windows(recent, newest, last, model.points)
+    innovation = ridge.predict(model.coefficients, ridge.features(view.moves))[0]  # (H, 3)
+    if PredictorKind.NETWORK in model.kinds:
+        inputs = (_inputs(view.moves, model.lags, model.axes) - model.middle) / model.scale
+        inputs = np.clip(inputs, -REACH, REACH)
+        raw = network.output(settings.activation, model.weights, np.hstack([np.ones((1, 1)), inputs]))[0]
+        said = (raw.reshape(len(model.kinds), -1) - 0.5) / SQUEEZE * model.spread
+        by_net = np.array([kind is PredictorKind.NETWORK for kind in model.kinds]) * model.shrink
+        innovation[:, model.axes] += said * by_net[:, None]
+    steady = np.array([kind is PredictorKind.CONSTANT_VELOCITY for kind in model.kinds])
+    innovation[steady] = 0.0
+    turned = turn((innovation * model.believed[:, None])[None], view.cos, -view.sin)[0]
+    return Forecast(velocity + turned, model.kinds, model.sigma)
+
+
+class _Net(NamedTuple):
+    """The network's view of the windows."""
+
+    inputs: Array  # (k, n) scaled
+    mirrored: Array  # (k, n) of the mirrored copies
+    lags: tuple[int, ...]
+    axes: tuple[int, ...]
+    middle: Array
+    scale: Array
+    spread: Array  # (H, axes)
+
+
+def _targets(positions: Array, view: Windows, origins: Indices, horizons: Indices) -> tuple[Array, Known]:
+    """Innovations (k, H, 3) [m a step] in the heading frames, and which are known (k, H)."""
+    ahead = origins[:, None] + horizons  # (k, H)
+    known = ahead < len(positions)
+    ends = positions[np.minimum(ahead, len(positions) - 1)]
+    mean = (ends - positions[origins][:, None]) / horizons[None, :, None]
+    out = turn(mean, view.cos, view.sin) - view.moves[:, :1]
+    return np.where(known[..., None], out, 0.0), known
+
+
+def _base(
+    rows: Array,
+    wanted: Array,
+    early: list[int],
+    late: list[slice],
+    enough: list[bool],
+    settings: ModelSettings,
+) -> tuple[tuple[int, ...], Array]:
+    """The penalty chosen for each horizon, and the ridge's answers (k, H, 3) learnt before the cut."""
+    base = np.zeros_like(wanted)
+    chosen = (0,) * len(early)
+    if not any(enough):
+        return chosen, base
+    tried = ridge.fit(rows, wanted, early, settings.penalties)
+    answers = [ridge.predict(coefficients, rows) for coefficients in tried]
+    score = np.zeros(len(tried))
+    count = 0
+    for i in range(len(early)):
+        if enough[i]:
+            errors = [_mean(wanted[late[i], i] - answer[late[i], i]) for answer in answers]
+            if np.isfinite(errors[0]):
+                score += np.log(np.array(errors) + 1e-9)
+                count += 1
+    best = int(np.argmin(score))
+    if count and score[best] - score[0] < count * np.log(settings.preference):
+        chosen = (best,) * len(early)
+    for i in range(len(early)):
+        if enough[i]:
+            base[:, i] = answers[chosen[i]][:, i]
+    return chosen, base
+
+
+class _Verdict(NamedTuple):
+    """What the points held out say of one horizon."""
+
+    kind: PredictorKind
+    shrink: float
+    believed: float
+    sigma: float
+
+
+def _judge(
+    fact: Array, base: Array, said: Array, horizon: int, linear: bool, settings: ModelSettings
+) -> _Verdict:
+    """Choose between constant velocity, ridge and network: innovations (k, 3) held out, the base's and the
+    network's answers, and the shares of them to be believed (least squares, clipped to 0…1)."""
+    count = len(fact)
+    if count < max(3, horizon // 2):
+        return _Verdict(PredictorKind.CONSTANT_VELOCITY, 0.0, 1.0, float("nan"))
+    rest = fact - base
+    independent = count / horizon  # overlapping horizons are no independent evidence
+    shrink = _share(said, rest) * independent / (independent + 1.0)
+    by_net = _mean(rest - shrink * said) if shrink > 0.0 else np.inf
+    by_ridge = _mean(rest) if linear else np.inf
+    if min(by_net, by_ridge) < np.inf:
+        kind = PredictorKind.NETWORK if by_net < by_ridge else PredictorKind.RIDGE
+        whole = base + shrink * said if kind is PredictorKind.NETWORK else base
+        share = _share(whole, fact)
+        if _mean(fact - share * whole) < (1.0 - settings.margin) * _mean(fact):
+            believed = float(np.sqrt(share))  # judged on 70 % of the points, it flies with all of them
+            return _Verdict(kind, shrink, believed, horizon * _root_mean_square(fact - believed * whole))
+    return _Verdict(PredictorKind.CONSTANT_VELOCITY, 0.0, 1.0, horizon * _root_mean_square(fact))
+
+
+def _final(
+    rows: Array,
+    wanted: Array,
+    counts: list[int],
+    enough: list[bool],
+    chosen: tuple[int, ...],
+    settings: ModelSettings,
+) -> tuple[Array, Array]:
+    """Coefficients (H, 3, F) learnt from all points, and their answers (k, H, 3)."""
+    out = np.zeros((len(counts), 3, rows.shape[2]))
+    for penalty in set(chosen):
+        which = [i for i in range(len(counts)) if enough[i] and chosen[i] == penalty]
+        if which:
+            out[which] = ridge.fit(
+                rows, wanted[:, which], [counts[i] for i in which], (settings.penalties[penalty],)
+            )[0]
+    return out, ridge.predict(out, rows)
+
+
+def _inputs(moves: Array, lags: tuple[int, ...], axes: tuple[int, ...]) -> Array:
+    """(k, axes · lags): the chosen moves, axis by axis."""
+    out: Array = moves[:, lags][:, :, axes].transpose(0, 2, 1).reshape(len(moves), -1)
+    return out
+
+
+def _prepare(
+    view: Windows, rest: Array, early: list[int], horizons: Indices, settings: ModelSettings
+) -> _Net:
+    """Inputs and scales of the network, from the rows before the cut."""
+    moves = view.moves
+    length = moves.shape[1]
+    lags = tuple(sorted({round(i * (length - 1) / (settings.lags - 1)) for i in range(settings.lags)}))
+    power = np.abs(moves).mean(axis=(0, 1))
+    axes = (0, 1, 2) if power[2] > 1e-6 * power.max() + 1e-12 else (0, 1)
+    first = max(1, max(early))
+    raw = _inputs(moves, lags, axes)
+    side = np.repeat([axis == 1 for axis in axes], len(lags))
+    middle = np.where(side, 0.0, raw[:first].mean(axis=0))
+    centred = raw - middle
+    scale = np.sqrt((centred[:first] ** 2).mean(axis=0))
+    scale = np.where(scale < 1e-6 * (power.max() + 1e-9), 1.0, scale)
+    spread = np.ones((len(horizons), len(axes)))
+    for i, count in enumerate(early):
+        if count > 0:
+            spread[i] = np.sqrt((rest[:count, i][:, axes] ** 2).mean(axis=0))
+    spread = np.where(spread < 1e-9, 1e-9, spread)
+    inputs = np.clip(centred / scale, -REACH, REACH)
+    return _Net(inputs, np.where(side, -inputs, inputs), lags, axes, middle, scale, spread)
+
+
+def _batch(net: _Net, rest: Array, known: Known, counts: list[int]) -> network.Batch:
+    """Windows and their mirrored copies, with the targets that may be learnt from."""
+    first = max(1, max(counts))
+    scaled = rest[:first][:, :, net.axes] / net.spread  # (k, H, axes)
+    mask = known[:first] & (np.arange(first)[:, None] < np.array(counts))
+    masks = np.repeat(mask[:, :, None], len(net.axes), axis=2).reshape(first, -1).astype(np.float64)
+    mirror = np.where(np.array(net.axes) == 1, -1.0, 1.0)
+    both = np.concatenate([scaled, scaled * mirror]).reshape(2 * first, -1)
+    return network.batch(
+        np.concatenate([net.inputs[:first], net.mirrored[:first]]),
+        0.5 + SQUEEZE * np.clip(both, -6.0, 6.0),
+        np.concatenate([masks, masks]),
+    )
+
+
+def _answer(act: SParabola, weights: network.Weights, net: _Net, count: int) -> Array:
+    """The network's answers (k, H, 3) [m a step]."""
+    ones = np.ones((len(net.inputs), 1))
+    raw = network.output(act, weights, np.hstack([ones, net.inputs]))
+    out = np.zeros((len(raw), count, 3))
+    out[:, :, net.axes] = (raw.reshape(len(raw), count, -1) - 0.5) / SQUEEZE * net.spread
+    return out
+
+
+def _share(said: Array, fact: Array) -> float:
+    """The multiple of `said` nearest to `fact`, both (k, 3), clipped to 0…1."""
+    power = float((said * said).sum())
+    return min(max(float((said * fact).sum()) / power, 0.0), 1.0) if power > 0.0 else 0.0
+
+
+def _root_mean_square(errors: Array) -> float:
+    return float(np.sqrt((errors * errors).sum(axis=1).mean()))
+
+
+def _mean(errors: Array) -> float:
+    """Mean distance of error vectors (k, 3); infinite for none."""
+    return float(np.sqrt((errors * errors).sum(axis=1)).mean()) if len(errors) else float("inf")

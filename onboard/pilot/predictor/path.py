@@ -1,0 +1,113 @@
+"""From mean velocities at a few horizons to a place and a velocity at any time between."""
+
+from __future__ import annotations
+
+from math import isfinite, isnan
+from typing import NamedTuple
+
+import numpy as np
+
+from onboard.core.vectors import Vec, along, norm
+from onboard.pilot.predictor.activation import Array
+from onboard.pilot.predictor.model import Forecast
+from onboard.pilot.predictor.prediction import Prediction, PredictorKind
+
+
+class Knot(NamedTuple):
+    """One horizon of a path."""
+
+    time: float  # ahead of the path's start [s]
+    move: Vec  # displacement until then [m]
+    velocity: Vec  # there [m/s]
+    sigma: float  # root mean square distance error of the displacement [m]; NaN: not known
+    kind: PredictorKind
+
+
+class Path(NamedTuple):
+    """A predicted path: cubic between knots, smooth in place and velocity."""
+
+    t: float  # start [s]
+    position: Vec
+    sigma: float  # error of the start [m]
+    knots: tuple[Knot, ...]  # the first at time 0
+
+    @property
+    def longest(self) -> float:
+        """The longest horizon [s]."""
+        return self.knots[-1].time
+
+
+def path(
+    t: float,
+    position: Vec,
+    velocity: Vec,
+    sigma: float,
+    forecast: Forecast,
+    horizons: tuple[int, ...],
+    step: float,
+) -> Path:
+    """The path of a forecast that starts at instant `t` with position, velocity [m/s] and error."""
+    ahead = np.array((0, *horizons))
+    moves = np.vstack([np.zeros(3), forecast.velocities * ahead[1:, None]])
+    slopes = (_slopes(ahead, moves, np.array(velocity) * step) / step).tolist()
+    kinds = (forecast.kinds[0], *forecast.kinds)
+    errors = (0.0, *forecast.sigma.tolist())
+    rows = zip((ahead * step).tolist(), moves.tolist(), slopes, errors, kinds, strict=True)
+    return Path(t, position, sigma, tuple(Knot(at, Vec(*m), Vec(*v), e, k) for at, m, v, e, k in rows))
+
+
+def sound(line: Path, speed: float) -> bool:
+    """Whether every number is finite and no mean velocity exceeds twice the given speed [m/s]."""
+    for knot in line.knots:
+        if not all(map(isfinite, (*knot.move, *knot.velocity))):
+            return False
+        if norm(knot.move) > (2.0 * speed + 1.0) * knot.time:
+            return False
+    return True
+
+
+def at(line: Path, t: float, steady_sigma: float) -> Prediction:
+    """The prediction at instant `t` ≥ line.t [s]; `steady_sigma` is the error of constant velocity then [m],
+    which stands in where no error was held out."""
+    ahead = t - line.t
+    knots = line.knots
+    if ahead > line.longest:
+        return _beyond(line, ahead, steady_sigma)
+    index = 1
+    while knots[index].time < ahead:
+        index += 1
+    a, b = knots[index - 1], knots[index]
+    width = b.time - a.time
+    u = (ahead - a.time) / width
+    # Hermite's cubic and its derivative
+    h, near, far = u * u * (3.0 - 2.0 * u), u * (1.0 - u) * (1.0 - u) * width, -u * u * (1.0 - u) * width
+    dh, dnear, dfar = 6.0 * u * (1.0 - u) / width, (1.0 - u) * (1.0 - 3.0 * u), u * (3.0 * u - 2.0)
+    place, speed = [], []
+    for i in range(3):
+        rise = b.move[i] - a.move[i]
+        place.append(line.position[i] + a.move[i] + rise * h + a.velocity[i] * near + b.velocity[i] * far)
+        speed.append(rise * dh + a.velocity[i] * dnear + b.velocity[i] * dfar)
+    grown = a.sigma * (1.0 - u) + b.sigma * u
+    sigma = steady_sigma if isnan(grown) else (line.sigma * line.sigma + grown * grown) ** 0.5
+    return Prediction(Vec(*place), Vec(*speed), sigma, b.kind, True)
+
+
+def _beyond(line: Path, ahead: float, steady_sigma: float) -> Prediction:
+    """Past the longest horizon: on with the last velocity, ever less sure."""
+    end = line.knots[-1]
+    known = (line.sigma * line.sigma + end.sigma * end.sigma) ** 0.5 * (ahead / end.time) ** 1.5
+    sigma = steady_sigma if isnan(known) else known
+    place = along(along(line.position, end.move, 1.0), end.velocity, ahead - end.time)
+    return Prediction(place, end.velocity, sigma, PredictorKind.CONSTANT_VELOCITY, True)
+
+
+def _slopes(ahead: Array, moves: Array, first: Array) -> Array:
+    """Velocities (k, 3) at the knots: given at the first, of the parabola through three neighbours between,
+    and at the last half as far beyond the last stretch's mean as that is beyond the knot before."""
+    width = np.diff(ahead)[:, None]
+    mean = np.diff(moves, axis=0) / width
+    out = np.empty_like(moves)
+    out[0] = first
+    out[1:-1] = (width[:-1] * mean[1:] + width[1:] * mean[:-1]) / (width[:-1] + width[1:])
+    out[-1] = mean[-1] + 0.5 * (mean[-1] - out[-2])
+    return out

@@ -1,0 +1,53 @@
+"""The ridge base: linear regression of the innovation over constant velocity, one fit a horizon.
+
+Learning from mirrored copies of every window makes the forward and the vertical answer independent
+of the lateral moves, and the lateral answer free of a constant: so each axis is regressed on its own
+moves, which is the same solution for a fraction of the work.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from onboard.pilot.predictor.activation import Array
+
+
+def features(moves: Array) -> Array:
+    """(3, k, L + 1): each axis' own moves (k, L, 3) and a constant (none for the lateral axis)."""
+    count, length, _ = moves.shape
+    out = np.empty((3, count, length + 1))
+    out[:, :, :-1] = moves.transpose(2, 0, 1)
+    out[:, :, -1] = np.array([1.0, 0.0, 1.0])[:, None]
+    return out
+
+
+def fit(rows: Array, targets: Array, counts: Sequence[int], penalties: Sequence[float]) -> Array:
+    """Coefficients (penalties, H, 3, L + 1) from features (3, k, L + 1) and targets (k, H, 3).
+
+    Horizon h learns from its first counts[h] rows (the later ones have no known target). A penalty is
+    relative to the features' own mean squares, which amounts to features of unit variance."""
+    size = rows.shape[2]
+    gram = np.empty((len(counts), 3, size, size))
+    right = np.empty((len(counts), 3, size))
+    for h, count in enumerate(counts):
+        known = rows[:, :count]
+        gram[h] = known.transpose(0, 2, 1) @ known
+        right[h] = np.einsum("akf,ka->af", known, targets[:count, h])
+    each = np.arange(size)
+    power = gram[..., each, each]
+    floor = 1e-9 * power.max(initial=0.0) + 1e-12
+    power = np.where(power < floor, np.maximum(floor, 1.0), power)
+    out = np.empty((len(penalties), *right.shape))
+    for i, penalty in enumerate(penalties):
+        loaded = gram.copy()
+        loaded[..., each, each] += penalty * power
+        out[i] = np.linalg.solve(loaded, right[..., None])[..., 0]
+    return out
+
+
+def predict(coefficients: Array, rows: Array) -> Array:
+    """Innovations (k, H, 3) [m a step] from coefficients (H, 3, F) and features (3, k, F)."""
+    out: Array = (rows @ coefficients.transpose(1, 2, 0)).transpose(1, 2, 0)  # (3, k, H) → (k, H, 3)
+    return out
