@@ -1,0 +1,1 @@
+"""Campaigns: many flights and games over paired seeds, compiled from the kernels that fly onboard."""

@@ -1,0 +1,219 @@
+"""The tracking comparison: one route, many seeds, four ways to fly it, on the aircraft as flown.
+
+J = mean deviation at the waypoints / 10 m + mean |time error| / 1 s, fixed in advance. The deviation is the
+distance at the closest approach to a waypoint, the time error its instant less the waypoint's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from math import sqrt
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from onboard.core.tracking import Setting, Strategy, Waypoint, pseudo_target
+from onboard.core.tracking_choice import follow, fresh
+from onboard.core.vectors import NORTH, add, distance, sub, unit, yaw_of
+from onboard.runtime.route import Route
+from onboard.runtime.scenario import WindSpec
+from sim_bridge.campaign.flown import GUST_EVERY, Climate, blown, command_for, fly, gust_at, launched, wind_at
+from sim_bridge.compiled import register
+from sim_bridge.flight import KERNELS as FLIGHT
+from sim_bridge.flight.aircraft import named, within
+from sim_bridge.flight.plane import PlaneModel, PlaneState, start_state, trimmed
+from sim_bridge.wind import KERNELS as WIND
+from sim_bridge.wind.dryden import GustNoise
+from sim_bridge.wind.field import wind_vector
+
+CONTROL_EVERY = 5  # samples between two decisions: 20 Hz
+OVERTIME = 90.0  # [s] after the last waypoint's instant at which a flight ends at the latest
+AHEAD = {"nose": 6.0, "slip": 15.0, "coordinated": 6.0}  # [s] how far pursuit looks ahead, by path model
+WAYS = {
+    "Strategy 1 (30)": Strategy.POINT_BY_POINT,
+    "Strategy 2 (31)": Strategy.PURSUIT,
+    "intelligent module": Strategy.CHOOSE,
+    "straight flight": Strategy.STRAIGHT,
+}
+KERNELS = (
+    *FLIGHT,
+    *WIND,
+    "onboard.core.apollonius",
+    "onboard.core.tracking",
+    "onboard.core.tracking_choice",
+    "sim_bridge.campaign.flown",
+)
+
+Array = NDArray[np.float64]
+
+
+class Tracked(NamedTuple):
+    """How a flight along a route went."""
+
+    passed: int  # waypoints
+    pursuing: float  # share of the time under Strategy 2
+    switches: int
+    away: float  # mean distance to the pseudo-target [m]
+
+
+def fly_route(
+    plane: PlaneState,
+    model: PlaneModel,
+    route: tuple[Waypoint, ...],
+    setting: Setting,
+    climate: Climate,
+    noise: Array,
+    out: Array,
+) -> Tracked:
+    """Fly a route; `noise` (ticks, 5), `out` (waypoints, 2): deviation [m] and time error [s].
+
+    Kernel style.
+    """
+    flown = launched(plane, GustNoise(noise[0, 0], noise[0, 1], noise[0, 2], noise[0, 3], noise[0, 4]))
+    memory = fresh()
+    command = command_for(sub(plane.velocity, wind_at(climate, plane.position)), plane)
+    last = len(route) - 1
+    count = int((route[last].time + OVERTIME) / model.dt)
+    best = 1e300
+    when = 0.0
+    pursued = 0
+    switches = 0
+    away = 0.0
+    steps = 0
+    for k in range(count):
+        time = k * model.dt
+        if k % GUST_EVERY == 0 and k > 0:
+            i = k // GUST_EVERY
+            tick = GustNoise(noise[i, 0], noise[i, 1], noise[i, 2], noise[i, 3], noise[i, 4])
+            flown = blown(flown, GUST_EVERY * model.dt, tick)
+        state = flown.plane
+        far = distance(state.position, route[memory.leg].position)
+        if far < best:
+            best = far
+            when = time
+        if k % CONTROL_EVERY == 0:
+            air = add(wind_at(climate, state.position), gust_at(climate, flown))
+            before = memory
+            step = follow(route, setting, memory, time, state.position, state.velocity, air)
+            memory = step.memory
+            if memory.leg != before.leg:
+                out[before.leg - 1, 0] = best
+                out[before.leg - 1, 1] = when - route[before.leg].time
+                best = 1e300
+            if step.finished:
+                break
+            if step.strategy == Strategy.PURSUIT:
+                pursued += 1
+            if step.strategy != before.strategy:
+                switches += 1
+            away += distance(pseudo_target(route, time).position, state.position)
+            steps += 1
+            command = command_for(step.steering.velocity, state)
+        flown = fly(flown, model, command, climate)
+    total = max(steps, 1)
+    return Tracked(memory.leg - 1, pursued / total, switches, away / total)
+
+
+@cache
+def compiled_route() -> Callable[..., Tracked]:
+    """`fly_route` compiled; once for each number of waypoints."""
+    import numba
+
+    register(KERNELS)
+    compiled: Callable[..., Tracked] = numba.njit(nogil=True)(fly_route)
+    return compiled
+
+
+class Flight(NamedTuple):
+    """One seed flown one way."""
+
+    deviations: Array  # (waypoints,) [m]
+    time_errors: Array  # (waypoints,) [s]
+    tracked: Tracked
+
+
+def climate_of(wind: WindSpec) -> Climate:
+    """The wind of a scenario for the kernels."""
+    reference = wind_vector(wind.speed, wind.from_deg)
+    axis = unit(reference, NORTH)
+    return Climate(reference, wind.shear, wind.gust_sigma, axis.x, axis.y)
+
+
+def fly_seed(
+    route: Route, aircraft: str, way: Strategy, seed: int, wind: WindSpec, interpreted: bool = False
+) -> Flight:
+    """Fly a route once. The mean wind comes from a direction drawn from the seed, as do the gusts."""
+    rng = np.random.default_rng(seed)
+    climate = climate_of(_from(wind, float(rng.uniform(0.0, 360.0))))
+    points = route.waypoints
+    model = within(named(aircraft).model, route.limits)
+    leg = sub(points[1].position, points[0].position)
+    plane = trimmed(
+        start_state(points[0].position, yaw_of(leg), route.nominal, wind_at(climate, points[0].position)),
+        model,
+    )
+    ticks = int((points[-1].time + OVERTIME) / model.dt) // GUST_EVERY + 2
+    out = np.full((len(points) - 1, 2), np.nan)
+    setting = Setting(route.limits, route.nominal, AHEAD[aircraft], way)
+    play = fly_route if interpreted else compiled_route()
+    tracked = play(plane, model, points, setting, climate, rng.standard_normal((ticks, 5)), out)
+    return Flight(out[:, 0], out[:, 1], Tracked(*tracked))
+
+
+def _from(wind: WindSpec, from_deg: float) -> WindSpec:
+    return WindSpec(speed=wind.speed, from_deg=from_deg, shear=wind.shear, gust_sigma=wind.gust_sigma)
+
+
+class Row(NamedTuple):
+    """One way over all seeds."""
+
+    way: str
+    deviation: float  # mean over waypoints and seeds [m]
+    time_error: float  # mean |…| [s]
+    J: float
+    J_half_width: float  # of the 95 % confidence interval of J over seeds
+    away: float  # mean distance to the pseudo-target on the way [m]
+    pursuing: float  # share of the time under Strategy 2
+    switches: float  # per flight
+    missed: int  # waypoints never passed
+
+
+def compare(route: Route, aircraft: str, seeds: range, wind: WindSpec) -> list[Row]:
+    """All four ways over the same seeds."""
+    rows = []
+    for way, ordered in WAYS.items():
+        flights = [fly_seed(route, aircraft, ordered, seed, wind) for seed in seeds]
+        deviation = np.array([f.deviations for f in flights])  # (seeds, waypoints)
+        error = np.abs(np.array([f.time_errors for f in flights]))
+        each = np.mean(deviation, axis=1) / 10.0 + np.mean(error, axis=1)
+        rows.append(
+            Row(
+                way,
+                float(np.mean(deviation)),
+                float(np.mean(error)),
+                float(np.mean(each)),
+                1.96 * float(np.std(each, ddof=1)) / sqrt(len(each)) if len(each) > 1 else 0.0,
+                float(np.mean([f.tracked.away for f in flights])),
+                float(np.mean([f.tracked.pursuing for f in flights])),
+                float(np.mean([f.tracked.switches for f in flights])),
+                int(np.sum(np.isnan(deviation))),
+            )
+        )
+    return rows
+
+
+def table(rows: list[Row]) -> str:
+    """A comparison as a Markdown table."""
+    lines = [
+        "| way | deviation at waypoints [m] | time error [s] | J (95 %) | to the pseudo-target [m] |"
+        " time in Strategy 2 | switches |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    for r in rows:
+        lines.append(
+            f"| {r.way} | {r.deviation:.2f} | {r.time_error:.3f} | {r.J:.3f} ± {r.J_half_width:.3f} |"
+            f" {r.away:.0f} | {100.0 * r.pursuing:.0f} % | {r.switches:.1f} |"
+        )
+    return "\n".join(lines)
