@@ -1,0 +1,308 @@
+"""A whole game in one process on virtual time: bridge, agents, memory links and bus, recorder.
+
+The composition root: it alone in this package may import everything. `fly --fast` plays a
+scenario with it; the tests read as flight stories on it. The same seed gives the same bytes.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import msgspec
+
+from gcs.recorder import Recorder
+from onboard.agent.agent import Agent
+from onboard.agent.config import AgentConfig
+from onboard.runtime.bus_memory import MemoryBroker, MemoryBus
+from onboard.runtime.impairment import Impaired, Impairment, impairment_of
+from onboard.runtime.links import memory_pair
+from onboard.runtime.protocols import Clock, Link, Sample
+from onboard.runtime.scenario import Scenario
+from onboard.wire import swarm
+from onboard.wire.swarm import Event, Health, Outcome, Phase, Role
+from onboard.wire.tlog import TlogWriter
+from onboard.wire.topics import EVENTS, HEALTH, everything, key
+from sim_bridge.bridge import Bridge, mute
+from sim_bridge.staging import generator
+from sim_bridge.summary import Summary, VehicleSummary, kept, reached
+
+GAME = "rehearsal"
+EVENTS_MAX = 100_000
+LOOK_S = 0.05
+
+
+class Rehearsal:
+    """One game; use it as `async with Rehearsal(…) as game: await game.until_ended()`.
+
+    `folder` receives one `.tlog` a vehicle and `recording.mcap`; None records nothing. `configure`
+    changes single agents' configurations. `say` hears what master and agents have to tell.
+    """
+
+    def __init__(
+        self,
+        scenario: Scenario,
+        clock: Clock,
+        *,
+        seed: int | None = None,
+        folder: Path | None = None,
+        scenario_folder: Path | None = None,
+        game: str = GAME,
+        agents: bool = True,
+        configure: Mapping[int, Mapping[str, Any]] | None = None,
+        say: Callable[[str], None] = mute,
+        version: str = "",
+        battery_s: float = 1200.0,
+    ) -> None:
+        self.scenario = scenario
+        self.clock = clock
+        self.game = game
+        self.seed = scenario.seed if seed is None else seed
+        self.events: list[Event] = []
+        self.health: dict[int, Health] = {}
+        self.told: list[str] = []
+        self.agents: dict[int, Agent] = {}
+        self._tasks: dict[int, asyncio.Task[None]] = {}
+        self._configure = configure or {}
+        self._with_agents = agents
+        self._version = version
+        self._say = say
+        self._folder = folder
+        self._tlogs: dict[int, tuple[BinaryIO, TlogWriter]] = {}
+        impairment = impairment_of(scenario.flight.impairment)
+        on_bus = scenario.flight.impairment.bus
+        self.broker = MemoryBroker(
+            impairment if on_bus else None, generator(self.seed, "bus") if on_bus else None
+        )
+        self._nonces = generator(self.seed, "nonces")
+        self.links: dict[int, Impaired] = {}
+        sides: dict[int, tuple[Link, ...]] = {}
+        for id in scenario.ids:
+            autopilot, agent = memory_pair(f"vehicle-{id}")
+            self.links[id] = Impaired(agent, impairment, generator(self.seed, f"link-{id}"))
+            sides[id] = (autopilot,)
+        self.bus: MemoryBus = self.broker.connect("observer")
+        self.bridge = Bridge(
+            scenario,
+            clock,
+            self.broker.connect("sim-bridge"),
+            sides,
+            nonce=self._nonce(),
+            game=game,
+            seed=self.seed,
+            folder=scenario_folder,
+            say=self._tell,
+            battery_s=battery_s,
+        )
+        self._world: asyncio.Task[None] | None = None
+        self._recorder: Recorder | None = None
+
+    # ------------------------------------------------------------------ life
+
+    async def __aenter__(self) -> Rehearsal:
+        if self._folder is not None:
+            self._recorder = Recorder(self._folder / "recording.mcap", self.game)
+            for id in self.scenario.ids:
+                file = (self._folder / f"vehicle-{id}.tlog").open("wb")
+                self._tlogs[id] = (file, TlogWriter(file))
+            self.bus.subscribe(everything(self.game), self._record)
+        self.bus.subscribe(key(self.game, EVENTS), self._on_event)
+        self.bus.subscribe(key(self.game, HEALTH), self._on_health)
+        self._world = asyncio.create_task(self.bridge.run(), name="world")  # ended in __aexit__
+        if self._with_agents:
+            for id in self.scenario.ids:
+                self.start_agent(id)
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        for id in list(self._tasks):
+            self.kill_agent(id)
+        if self._world is not None:
+            self._world.cancel()
+            await asyncio.gather(self._world, return_exceptions=True)
+        self.bridge.close()
+        if self._recorder is not None:
+            self._recorder.close()
+        for file, _ in self._tlogs.values():
+            file.close()
+        await self.bus.close()
+
+    async def until(self, holds: Callable[[], bool], within_s: float) -> bool:
+        """Let time pass until a condition holds; False where it did not within `within_s`."""
+        end_ns = self.clock.monotonic_ns() + round(within_s * 1e9)
+        while not holds():
+            if self.clock.monotonic_ns() >= end_ns:
+                return False
+            self._look_after_tasks()
+            await asyncio.sleep(LOOK_S)
+        return True
+
+    async def until_ended(self) -> Outcome:
+        """Let the game go to its end; the master's patience bounds the wait."""
+        flight, horizon = self.scenario.flight, self.scenario.parameters.horizon
+        bound = flight.timeout_s + 10.0 * flight.ready_s + horizon + 30.0
+        await self.until(lambda: self.phase is Phase.RECOVERY, bound)
+        if self.outcome is None:
+            raise RuntimeError("the game did not end: " + "; ".join(self.told[-3:]))
+        return self.outcome
+
+    async def land_agents(self) -> None:
+        """End all agents as SIGTERM would: each leaves its vehicle in a mode it can hold alone."""
+        for agent in self.agents.values():
+            agent.stop()
+        await self.until(lambda: all(task.done() for task in self._tasks.values()), 5.0)
+
+    # ------------------------------------------------------------------ what may happen to it
+
+    def start_agent(self, id: int) -> Agent:
+        """Start (or start again) the agent of a vehicle."""
+        role = Role.EVADER if id == self.scenario.ids[0] else Role.PURSUER
+        spec = self.scenario.vehicles[self.scenario.ids.index(id)]
+        settings: dict[str, Any] = {
+            "id": id,
+            "role": role,
+            "game": self.game,
+            "take_control": True,
+            "may_arm": self.scenario.flight.ground_start,
+            "control_rate_hz": self.scenario.flight.control_rate_hz,
+            "strategy": spec.strategy,
+        }
+        config = AgentConfig(**(settings | dict(self._configure.get(id, {}))))
+        record = None
+        if id in self._tlogs:
+            record = self._tlogs[id][1].write
+        agent = Agent(
+            config,
+            self.clock,
+            [self.links[id]],
+            self.broker.connect(f"agent-{id}"),
+            nonce=self._nonce(),
+            version=self._version,
+            log=self._tell,
+            record=record,
+        )
+        self.agents[id] = agent
+        self._tasks[id] = asyncio.create_task(agent.run(), name=f"agent-{id}")  # ended by kill_agent
+        return agent
+
+    def kill_agent(self, id: int) -> None:
+        """The agent falls silent at once, as after `kill -9`."""
+        task = self._tasks.pop(id, None)
+        if task is not None:
+            task.cancel()
+            self.links[id].receive(lambda data, peer: None)
+
+    def impair(self, id: int, impairment: Impairment) -> None:
+        """Change what happens to a vehicle's datagrams."""
+        self.links[id].change(impairment)
+
+    # ------------------------------------------------------------------ what there is to see
+
+    @property
+    def now(self) -> float:
+        """Time since t₀ [s]; negative before it, 0 while it is not fixed."""
+        t0 = self.master.t0_ns
+        return (self.clock.wall_ns() - t0) / 1e9 if t0 else 0.0
+
+    @property
+    def master(self) -> Any:
+        """The game's master."""
+        assert self.bridge.master is not None
+        return self.bridge.master.rules
+
+    @property
+    def phase(self) -> Phase:
+        """The game's phase."""
+        phase: Phase = self.master.phase
+        return phase
+
+    @property
+    def outcome(self) -> Outcome | None:
+        """How it ended, once it has."""
+        outcome: Outcome | None = self.master.outcome
+        return outcome
+
+    def kinds(self, id: int) -> list[str]:
+        """Kinds of a vehicle's events so far, in order."""
+        return [event.kind for event in self.events if event.id == id]
+
+    def summary(self) -> Summary:
+        """The run in figures, all of virtual time."""
+        vehicles = []
+        for id, spec in zip(self.scenario.ids, self.scenario.vehicles, strict=True):
+            health = self.health.get(id)
+            role = "evader" if spec is self.scenario.evader else "pursuer"
+            vehicles.append(VehicleSummary(
+                id=id,
+                role=role,
+                autopilot=health.autopilot if health else "",
+                stage=health.stage if health else "never heard",
+                mode=health.mode if health else "",
+                smallest_distance=kept(self.master.nearest.get(id)),
+                telemetry_rate_hz=round(health.telemetry_rate_hz, 3) if health else 0.0,
+                setpoint_rate_hz=round(health.setpoint_rate_hz, 3) if health else 0.0,
+                counters=dict(sorted(health.counters.items())) if health else {},
+                link={k: v for k, v in sorted(self.links[id].counters().items()) if v},
+                events=len([e for e in self.events if e.id == id]),
+            ))
+        outcome = self.outcome
+        return Summary(
+            scenario=self.scenario.name,
+            scenario_hash=self.scenario.hash(),
+            seed=self.seed,
+            mode="fast",
+            verdict=outcome.verdict if outcome else "none",
+            reason=outcome.reason if outcome else "",
+            time=round(outcome.time, 6) if outcome else 0.0,
+            captor=outcome.captor if outcome else 0,
+            smallest_distance=kept(outcome.smallest_distance if outcome else None),
+            expected=reached(self.scenario),
+            tracks_measured=self.bridge.sensor.measured,
+            tracks_dropped=self.bridge.sensor.dropped,
+            vehicles=tuple(vehicles),
+        )
+
+    # ------------------------------------------------------------------ inside
+
+    def _nonce(self) -> int:
+        return int(self._nonces.integers(1, 1 << 48))
+
+    def _tell(self, line: str) -> None:
+        self.told.append(line)
+        del self.told[:-EVENTS_MAX]
+        self._say(line)
+
+    def _record(self, sample: Sample) -> None:
+        if self._recorder is not None:
+            self._recorder.record(sample.key, sample.payload, self.clock.wall_ns())
+
+    def _on_event(self, sample: Sample) -> None:
+        event = swarm.EVENT.decode(sample.payload, self.bridge_drops)
+        if event is not None and len(self.events) < EVENTS_MAX:
+            self.events.append(event)
+
+    def _on_health(self, sample: Sample) -> None:
+        health = swarm.HEALTH.decode(sample.payload, self.bridge_drops)
+        if health is not None:
+            self.health[health.id] = health
+
+    @property
+    def bridge_drops(self) -> Any:
+        """Bad payloads by cause, as the bridge counts them."""
+        assert self.bridge.master is not None
+        return self.bridge.master.drops
+
+    def _look_after_tasks(self) -> None:
+        """A task that failed ends the rehearsal: nothing is swallowed."""
+        for task in (self._world, *self._tasks.values()):
+            if task is not None and task.done() and not task.cancelled():
+                error = task.exception()
+                if error is not None:
+                    raise error
+
+
+def as_json(value: object) -> bytes:
+    """Indented JSON with a newline at the end."""
+    return msgspec.json.format(msgspec.json.encode(value), indent=1) + b"\n"
