@@ -16,6 +16,7 @@ INT8: int = dialect.MAV_PARAM_TYPE_INT8
 INT16: int = dialect.MAV_PARAM_TYPE_INT16
 INT32: int = dialect.MAV_PARAM_TYPE_INT32
 REAL32: int = dialect.MAV_PARAM_TYPE_REAL32
+LARGEST = 3.4e38  # that a float of the wire can carry
 UNNUMBERED = 65535  # param_index of an answer to a write
 RANGES = {INT8: (-(2**7), 2**7 - 1), INT16: (-(2**15), 2**15 - 1), INT32: (-(2**31), 2**31 - 1)}
 
@@ -56,7 +57,7 @@ class Parameters:
         """Change a value from within. Raises KeyError for a name it does not know."""
         if name not in self._numbers:
             raise KeyError(name)
-        self._values[name] = value
+        self._values[name] = min(max(value, -LARGEST), LARGEST)
 
     def list_all(self) -> None:
         """Begin to send the whole table."""

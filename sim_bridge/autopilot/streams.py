@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 NEVER = 1 << 62
 SHORTEST_NS = 2_000_000  # 500 Hz: what no link asks for
+LONGEST_NS = 2_147_483_647_000  # that MESSAGE_INTERVAL can report
 
 
 class Streams:
@@ -22,7 +23,7 @@ class Streams:
         if interval_us == 0:
             interval = self._defaults.get(number, 0)
         else:
-            interval = max(SHORTEST_NS, round(interval_us * 1000)) if interval_us > 0 else 0
+            interval = round(min(max(SHORTEST_NS, interval_us * 1000), LONGEST_NS)) if interval_us > 0 else 0
         if interval:
             if self._intervals.get(number) != interval:
                 self._intervals[number] = interval

@@ -7,7 +7,8 @@ autopilot goes on flying, and what it sends is sound.
 from __future__ import annotations
 
 from collections import Counter
-from math import isfinite
+from math import inf, isfinite, nan
+from struct import pack
 
 import numpy as np
 
@@ -21,37 +22,40 @@ STEP = 20  # frames between two ticks of the autopilot
 SPEED = 200.0  # [m/s] that no vehicle exceeds
 
 
-def addressed(data: bytes, system: int) -> bytes:
-    """The frame of a known kind with its target fields, if it has any, set to the vehicle."""
-    if len(data) < 12 or data[0] != 0xFD:
-        return data
-    kind = dialect.mavlink_map.get(int.from_bytes(data[7:10], "little"))
-    size = data[1]
-    if kind is None or len(data) != 12 + size:
-        return data
-    payload = bytearray(data[10 : 10 + size])
-    at = 0
-    for field, length in zip(kind.ordered_fieldnames, widths(kind), strict=True):
-        if field == "target_system" and at < size:
-            payload[at] = system
-        if field == "target_component" and at < size:
-            payload[at] = 1
-        at += length
-    body = data[1:10] + bytes(payload)
-    return b"\xfd" + body + int(dialect.x25crc(body + EXTRA[kind.id]).crc).to_bytes(2, "little")
+INTERESTING = (0.0, 1.0, -1.0, 4.0, 6.0, 15.0, 22.0, 90.0, 360.0, 1e-30, 3e38, -3e38, nan, inf, -inf)
+WIDTH = {"char": 1, "uint8_t": 1, "int8_t": 1, "uint16_t": 2, "int16_t": 2, "uint32_t": 4, "int32_t": 4}
+WIDTH |= {"float": 4, "uint64_t": 8, "int64_t": 8, "double": 8}
 
 
-_WIDTH = {"char": 1, "uint8_t": 1, "int8_t": 1, "uint16_t": 2, "int16_t": 2, "uint32_t": 4, "int32_t": 4}
-_WIDTH |= {"float": 4, "uint64_t": 8, "int64_t": 8, "double": 8}
-
-
-def widths(kind: type[dialect.MAVLink_message]) -> list[int]:
-    """Bytes of each field in the order of the wire."""
+def aimed(rng: np.random.Generator, flown: Flown) -> bytes:
+    """A sound frame of a kind that the autopilot acts on, addressed to it: any payload, but with numbers
+    likely to matter, and commands that it knows."""
+    handled = sorted(flown.autopilot._handlers)
+    known = sorted(flown.autopilot._commands)
+    kind = dialect.mavlink_map[handled[int(rng.integers(len(handled)))]]
+    if rng.random() < 0.3:
+        long, integer = dialect.MAVLink_command_long_message, dialect.MAVLink_command_int_message
+        kind = long if rng.random() < 0.5 else integer
     types = dict(zip(kind.fieldnames, kind.fieldtypes, strict=True))
-    return [
-        _WIDTH[types[name]] * max(1, array)
-        for name, array in zip(kind.ordered_fieldnames, kind.array_lengths, strict=True)
-    ]
+    payload = b""
+    for name, array in zip(kind.ordered_fieldnames, kind.array_lengths, strict=True):
+        width = WIDTH[types[name]]
+        for _ in range(max(1, array)):
+            part = rng.bytes(width)
+            if name == "target_system":
+                part = bytes([flown.system])
+            elif name == "target_component":
+                part = b"\1"
+            elif name == "command" and rng.random() < 0.9:
+                part = known[int(rng.integers(len(known)))].to_bytes(2, "little")
+            elif types[name] == "float" and rng.random() < 0.7:
+                part = pack("<f", INTERESTING[int(rng.integers(len(INTERESTING)))])
+            elif width < 4 and rng.random() < 0.5:
+                part = int(rng.integers(16)).to_bytes(width, "little")
+            payload += part
+    header = bytes([len(payload), 0, 0, int(rng.integers(256)), 255, 190]) + kind.id.to_bytes(3, "little")
+    crc = int(dialect.x25crc(header + payload + EXTRA[kind.id]).crc)
+    return b"\xfd" + header + payload + crc.to_bytes(2, "little")
 
 
 def play(rng: np.random.Generator, count: int, totals: Counter[str]) -> None:
@@ -60,8 +64,8 @@ def play(rng: np.random.Generator, count: int, totals: Counter[str]) -> None:
         flown, framer = Flown(kind), Framer()
         for k in range(count // len(Kind)):
             data, fate = befallen(rng)
-            if fate == "good" and rng.random() < 0.5:
-                data = addressed(data, flown.system)
+            if fate == "good":
+                data = aimed(rng, flown)
                 totals["addressed"] += 1
             flown.autopilot.receive(flown.now_ns, data, int(rng.integers(8)))
             totals["frames"] += 1

@@ -10,13 +10,15 @@ from onboard.wire.telemetry import READ
 KINDS = sorted(dialect.mavlink_map)
 DECODED = sorted(READ)
 EXTRA = {number: bytes([dialect.mavlink_map[number].crc_extra]) for number in KINDS}
+SENDERS = ((1, 1), (1, 191), (2, 1), (255, 190))  # an autopilot, its companion, a neighbour, a ground station
 FATES = ("good", "bad_crc", "truncated", "flipped", "unknown", "junk", "long", "incompatible")
 
 
 def frame(rng: np.random.Generator, number: int, *, size: int | None = None, flags: int = 0) -> bytes:
     """A frame with a right checksum and any payload, NaN and infinities included."""
     size = int(rng.integers(0, 256)) if size is None else size
-    header = bytes([size, flags, 0, int(rng.integers(256)), 1, 1])
+    system, component = SENDERS[int(rng.integers(len(SENDERS)))]
+    header = bytes([size, flags, 0, int(rng.integers(256)), system, component])
     body = header + number.to_bytes(3, "little") + rng.bytes(size)
     crc = dialect.x25crc(body + EXTRA.get(number, b"\0")).crc
     return b"\xfd" + body + int(crc).to_bytes(2, "little")
