@@ -41,7 +41,8 @@ class Plain:
 
 
 def _entry(entry: LogLine) -> str:
-    who = f"vehicle {entry.id}: " if entry.id else ""
+    named = f"vehicle {entry.id}"
+    who = f"{named}: " if entry.id and not entry.text.startswith((named, f"over: {named}")) else ""
     return f"{clock(entry.at_ns)} {WORDS[entry.severity]}{who}{entry.text}"
 
 

@@ -1,0 +1,245 @@
+"""`gcs` from a shell: real processes, Zenoh on loopback."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+from contextlib import asynccontextmanager
+from pathlib import Path
+
+import msgspec
+import pytest
+
+from gcs import cli, settings
+from gcs.export import document
+from gcs.plain import Plain
+from gcs.rules import Thresholds
+from onboard.runtime import config
+from onboard.runtime.bus_zenoh import open_zenoh
+from onboard.runtime.clock import RealClock
+from onboard.runtime.resources import configs
+from onboard.wire import topics
+from onboard.wire.swarm import CommandKind, Phase
+from tests.support.crews import Crew
+from tests.support.radio import GAME, START_NS, Tower, on_bus, phase, setup
+
+ROOT = Path(cli.__file__).parent.parent
+PATIENCE_S = 30.0
+
+
+def gcs(*arguments: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+    """Run the program to its end."""
+    return subprocess.run(
+        [sys.executable, "-m", "gcs.cli", *arguments],
+        capture_output=True, text=True, timeout=PATIENCE_S, cwd=cwd, env=environment(), check=False,
+        stdin=subprocess.DEVNULL,
+    )  # fmt: skip
+
+
+def environment() -> dict[str, str]:
+    return {**os.environ, "PYTHONPATH": str(ROOT)}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("--config", "nowhere.toml", "--plain"), "nowhere.toml: no such file or directory"),
+        (("--config", "wrong.toml", "--plain"), "wrong.toml: alerts.battery_lo: unknown key"),
+        (("--config", "order.toml", "--plain"), "order.toml: alerts.battery_critical: found 0.5, expected"),
+        (("--game", "a/b", "--plain"), "options: game: found 'a/b', expected a name without"),
+        (("--bus", "nonsense", "--plain"), "bus: "),
+        ((), "the console needs a terminal; without one: gcs --plain or gcs status --json"),
+        (("command", "abort"), "whom: found nothing, expected ids, --all or --role"),
+        (("command", "abort", "2", "--all"), "whom: found ids and --all, expected"),
+        (("command", "hold", "--all", "--within", "0"), "--within: found 0, expected"),
+        (("command", "jump", "--all"), "'jump' is not one of"),
+        (("status", "--wait", "-1"), "--wait: found -1, expected"),
+        (("game", "run", "nowhere.toml", "--plain"), "nowhere.toml: no such file or directory"),
+    ],
+)
+def test_a_mistake_is_one_line_and_exit_code_2(tmp_path, arguments, message):
+    (tmp_path / "wrong.toml").write_text("[alerts]\nbattery_lo = 0.3\n")
+    (tmp_path / "order.toml").write_text("[alerts]\nbattery_critical = 0.5\n")
+    done = gcs(*arguments, cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert len(done.stderr.strip().splitlines()) == 1
+    assert done.stderr.startswith("gcs: ")
+    assert message in done.stderr
+    assert not (tmp_path / "runs").exists()
+
+
+def test_the_help_loads_no_console_no_recorder_and_no_bus():
+    done = subprocess.run(
+        [sys.executable, "-c", "import gcs.cli, sys; print(sorted(sys.modules))"],
+        capture_output=True, text=True, timeout=PATIENCE_S, env=environment(), check=True,
+    )  # fmt: skip
+    for heavy in ("textual", "rich.console", "mcap", "plotly", "matplotlib", "zenoh", "scipy", "numba"):
+        assert f"'{heavy}'" not in done.stdout
+
+
+def test_the_settings_file_that_comes_along_holds_every_key_with_its_default():
+    path = configs() / "gcs.toml"
+    assert config.read(path, settings.Settings) == settings.Settings()
+    text = path.read_text()
+    for part in (settings.Settings, settings.BusSettings, settings.RecordingSettings, Thresholds):
+        for key in part.__struct_fields__:
+            assert f"{key} = " in text or f"[{key}]" in text
+
+
+def test_nobody_there_is_said_with_exit_code_1(free_endpoint):
+    done = gcs("status", "--bus", free_endpoint, "--wait", "0.1")
+    assert done.returncode == 1
+    assert f"nobody heard in game game: waiting for a bus at {free_endpoint}" in done.stderr
+    done = gcs("command", "abort", "--all", "--bus", free_endpoint, "--within", "0.5")
+    assert done.returncode == 1
+    assert "nobody to command" in done.stderr
+
+
+@pytest.fixture
+def free_endpoint() -> str:
+    """A place for a bus that nobody has taken."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    return f"tcp/127.0.0.1:{port}"
+
+
+@asynccontextmanager
+async def field(endpoint: str, count: int = 3, deaf: int = 0):
+    """`count` vehicles on a bus that listens, and `deaf` more in the game that are not there."""
+    bus = await open_zenoh(endpoint, listen=True)
+    clock = RealClock()
+    crews = [Crew(bus, clock, i) for i in range(1, count + 1)]
+    bus.publish(*on_bus(setup(count + deaf)), topics.SETUP.delivery)
+    bus.publish(*on_bus(phase(Phase.STAGING)), topics.PHASE.delivery)
+
+    async def speak() -> None:
+        while True:
+            for crew in crews:
+                crew.speak()
+            await asyncio.sleep(0.1)
+
+    task = asyncio.create_task(speak())
+    try:
+        yield crews
+    finally:
+        task.cancel()
+        await asyncio.gather(task, return_exceptions=True)
+        await bus.close()
+
+
+async def shell(*arguments: str, endpoint: str) -> tuple[int, str, str]:
+    """Run the program beside a bus; exit code, output, errors."""
+    process = await asyncio.create_subprocess_exec(
+        sys.executable, "-m", "gcs.cli", *arguments, "--bus", endpoint, "--game", GAME,
+        stdin=asyncio.subprocess.DEVNULL, stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE,
+        env=environment(),
+    )  # fmt: skip
+    async with asyncio.timeout(PATIENCE_S):
+        out, err = await process.communicate()
+    assert process.returncode is not None
+    return process.returncode, out.decode(), err.decode()
+
+
+@pytest.mark.real
+async def test_status_prints_the_picture_once_as_json(free_endpoint):
+    async with field(free_endpoint):
+        code, out, err = await shell("status", "--json", endpoint=free_endpoint)
+    assert (code, err) == (0, "")
+    picture = json.loads(out)
+    assert picture["format"] == 1
+    assert [v["id"] for v in picture["vehicles"]] == [1, 2, 3]
+    assert picture["vehicles"][1]["presence"] == "present"
+    assert picture["vehicles"][1]["state"]["mode"] == "GUIDED"
+    assert picture["game"]["setup"]["scenario"] == "meeting"
+    assert picture["game"]["phase"] == "staging"
+    assert "lambda" in picture["game"]["setup"]
+
+
+@pytest.mark.real
+async def test_abort_from_a_shell_ends_with_0_only_when_every_vehicle_has_confirmed(free_endpoint):
+    async with field(free_endpoint) as crews:
+        code, out, _ = await shell("command", "abort", "--all", endpoint=free_endpoint)
+        assert code == 0
+        assert out.startswith("abort: 3 of 3 confirmed")
+        assert out.count("LOITER") == 3
+        assert all([c.kind for c in crew.obeyed] == [CommandKind.ABORT] for crew in crews)
+
+
+@pytest.mark.real
+async def test_who_does_not_confirm_is_named_and_the_exit_code_is_1(free_endpoint):
+    async with field(free_endpoint, count=2, deaf=1):
+        code, out, _ = await shell("command", "abort", "--all", "--within", "3", endpoint=free_endpoint)
+        assert code == 1
+        assert "abort: 2 of 3 confirmed" in out
+        assert "vehicle 3: no answer" in out
+
+
+@pytest.mark.real
+async def test_what_ends_a_flight_wants_a_yes_from_a_shell_too(free_endpoint):
+    async with field(free_endpoint) as crews:
+        code, _, err = await shell("command", "land", "--role", "pursuer", endpoint=free_endpoint)
+        assert code == 2
+        assert "land ends a flight: found no terminal to ask, expected --yes" in err
+        assert not any(crew.obeyed for crew in crews)
+        code, out, _ = await shell("command", "land", "--role", "pursuer", "--yes", endpoint=free_endpoint)
+        assert code == 0
+        assert [len(crew.obeyed) for crew in crews] == [0, 1, 1]
+        assert "land: 2 of 2 confirmed" in out
+
+
+@pytest.mark.real
+async def test_lines_for_logs_and_a_recording_until_it_is_told_to_stop(free_endpoint, tmp_path):
+    async with field(free_endpoint):
+        process = await asyncio.create_subprocess_exec(
+            sys.executable, "-m", "gcs.cli", "--plain", "--bus", free_endpoint, "--game", GAME,
+            "--runs", str(tmp_path), stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE,
+            env=environment(),
+        )  # fmt: skip
+        assert process.stdout is not None
+        seen = []
+        async with asyncio.timeout(PATIENCE_S):
+            while not any("STATUS vehicle 3" in line for line in seen):
+                seen.append((await process.stdout.readline()).decode())
+            process.send_signal(signal.SIGTERM)
+            _, err = await process.communicate()
+        assert process.returncode == 0
+        assert err == b""
+    said = "".join(seen)
+    assert f"joined {free_endpoint} as a client: its port was taken" in said
+    assert "recording into" in said
+    assert list(tmp_path.glob("*/recording.mcap"))
+
+
+def test_lines_say_each_event_once_and_how_all_are_every_five_seconds():
+    tower = Tower()
+    lines = Plain()
+    tower.hear(setup(2))
+    tower.fly(1.0, 1, 2)
+    first = lines.lines(tower.picture)
+    assert any("game meeting: 2 vehicles, from bridge" in line for line in first)
+    status = "STATUS vehicle 2 pursuer ok GUIDED acting battery 90% heard 0.1 s ago"
+    assert any(status in line for line in first)
+    assert lines.lines(tower.picture) == []
+    tower.fly(2.0, 1)
+    assert [line.split(" ", 1)[1] for line in lines.lines(tower.picture)] == [
+        "ERROR vehicle 2 is lost: silent from all sources. look for it, keep others away; "
+        "its autopilot's failsafe acts on its own"
+    ]
+    tower.wait(3.0)
+    assert any("STATUS vehicle 2 pursuer LOST" in line for line in lines.lines(tower.picture))
+
+
+def test_the_document_has_a_name_for_every_field_and_no_infinity():
+    tower = Tower()
+    tower.hear(setup(2))
+    told = document(tower.picture)
+    assert msgspec.json.decode(msgspec.json.encode(told)) == told
+    assert told["vehicles"][0]["age_s"] is None
+    assert told["now_ns"] == START_NS
