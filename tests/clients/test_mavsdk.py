@@ -12,6 +12,7 @@ import pytest
 
 from onboard.core.vectors import Vec, norm, sub
 from onboard.runtime.scenario import Kind
+from tests.support import waiting
 from tests.support.udp_fleet import Fleet, fleet, free_port
 
 mavsdk = pytest.importorskip("mavsdk.asyncio", reason="MAVSDK is not installed (extra `mavsdk`)")
@@ -37,7 +38,7 @@ async def client(port: int) -> AsyncIterator[Any]:
 
 async def systems(sdk: Any, count: int) -> dict[int, Any]:
     """All vehicles by their system id, as soon as there are so many."""
-    while True:
+    while True:  # noqa: ASYNC110 - the library tells of new ones, but not which have an autopilot
         found = {await s.get_system_id(): s for s in await sdk.get_systems() if await s.has_autopilot()}
         if len(found) == count:
             return found
@@ -47,9 +48,7 @@ async def systems(sdk: Any, count: int) -> dict[int, Any]:
 async def until(condition: Callable[[], bool], what: str, seconds: float = 12.0) -> None:
     """Wait for something to become true."""
     try:
-        async with asyncio.timeout(seconds):
-            while not condition():
-                await asyncio.sleep(0.02)
+        await waiting.until(condition, seconds)
     except TimeoutError:
         pytest.fail(f"not within {seconds:g} s: {what}")
 

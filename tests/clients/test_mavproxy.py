@@ -1,0 +1,140 @@
+"""MAVProxy, a ground station nobody here wrote: parameters, modes, arming; its log is read back whole.
+
+It lives in an environment of its own (`make mavproxy`), for it is heavy.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import os
+from collections import Counter
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from pathlib import Path
+
+import pytest
+
+from onboard.runtime.scenario import Kind
+from onboard.wire.tlog import read_tlog
+from tests.support.udp_fleet import HOST, fleet, free_port
+from tests.support.waiting import until
+
+PROGRAM = Path(__file__).parents[2] / ".venv-mavproxy" / "bin" / "mavproxy.py"
+KINDS = pytest.mark.parametrize("kind", list(Kind), ids=lambda kind: kind.value)
+DEADLINE_S = 30.0
+pytestmark = [
+    pytest.mark.real,
+    pytest.mark.timeout(60),
+    pytest.mark.skipif(
+        not PROGRAM.exists() and not os.environ.get("CI"),
+        reason="MAVProxy is not installed: run `make mavproxy`",
+    ),
+]
+MODES = {  # what is typed → the mode it leads to; `mode OFFBOARD` is broken in MAVProxy for PX4
+    Kind.PX4: ("long DO_SET_MODE 129 4 5", "RTL"),
+    Kind.ARDUCOPTER: ("mode GUIDED", "GUIDED"),
+    Kind.ARDUPLANE: ("mode FBWA", "FBWA"),
+}
+PARAMETER = {Kind.PX4: "NAV_DLL_ACT", Kind.ARDUCOPTER: "FS_GCS_ENABLE", Kind.ARDUPLANE: "FS_GCS_ENABL"}
+
+
+class Console:
+    """MAVProxy's terminal: what it says, and typing into it."""
+
+    def __init__(self, process: asyncio.subprocess.Process) -> None:
+        self._process = process
+        self.said = ""
+
+    async def listen(self) -> None:
+        assert self._process.stdout is not None
+        while data := await self._process.stdout.read(4096):
+            self.said += data.decode(errors="replace")
+
+    def type(self, line: str) -> None:
+        assert self._process.stdin is not None
+        self._process.stdin.write(line.encode() + b"\n")
+
+    def leave(self) -> None:
+        """The end of what is typed ends it."""
+        assert self._process.stdin is not None
+        self._process.stdin.close()
+
+
+@asynccontextmanager
+async def mavproxy(port: int, folder: Path) -> AsyncIterator[Console]:
+    """MAVProxy listening on a port, with its state and its log in a folder."""
+    process = await asyncio.create_subprocess_exec(
+        str(PROGRAM.with_name("python")),
+        "-u",
+        str(PROGRAM),
+        f"--master=udpin:{HOST}:{port}",
+        f"--state-basedir={folder}",
+        "--logfile=flight.tlog",
+        "--cmd=set flushlogs 1",
+        "--default-modules=log,param,arm,mode,cmdlong,misc",
+        cwd=folder,
+        env={**os.environ, "HOME": str(folder), "TERM": "dumb"},
+        stdin=asyncio.subprocess.PIPE,
+        stdout=asyncio.subprocess.PIPE,
+        stderr=asyncio.subprocess.STDOUT,
+    )
+    console = Console(process)
+    listening = asyncio.create_task(console.listen())
+    try:
+        yield console
+        console.leave()
+        await asyncio.wait_for(process.wait(), 5.0)
+    except TimeoutError:
+        pytest.fail(f"MAVProxy said:\n{console.said}")
+    finally:
+        if process.returncode is None:
+            process.kill()
+            await process.wait()
+        listening.cancel()
+        await asyncio.wait([listening])
+
+
+@KINDS
+async def test_it_fetches_parameters_changes_the_mode_and_arms(kind: Kind, tmp_path: Path) -> None:
+    port = free_port()
+    async with fleet(kind, [[port], []], ground=True) as vehicles:
+        autopilot = vehicles.autopilot(1)
+        try:
+            async with asyncio.timeout(DEADLINE_S), mavproxy(port, tmp_path) as console:
+                received = f"Received {len(autopilot.parameters)} parameters"
+                await until(lambda: received in console.said)
+                console.type(f"param set {PARAMETER[kind]} 1")
+                await until(lambda: autopilot.parameters[PARAMETER[kind]] == 1.0)
+                console.type("arm throttle")
+                await until(lambda: autopilot.armed)
+                typed, mode = MODES[kind]
+                console.type(typed)
+                await until(lambda: autopilot.mode_name == mode)
+                console.type("disarm")
+                await until(lambda: not autopilot.armed)
+                await until(lambda: console.said.count("COMPONENT_ARM_DISARM: ACCEPTED") == 2)
+        except TimeoutError:
+            pytest.fail(f"MAVProxy said:\n{console.said}")
+        assert not vehicles.autopilot(2).armed
+        assert vehicles.autopilot(2).mode == vehicles.autopilot(2).first_mode
+        parameters = len(autopilot.parameters)
+    await asyncio.to_thread(check_log, tmp_path, parameters)
+
+
+def check_log(folder: Path, parameters: int) -> None:
+    """Both readers, pymavlink's own and ours, find the same messages in its log, none bad."""
+    from pymavlink import mavutil  # noqa: TID251
+
+    [path] = folder.rglob("flight.tlog")
+    theirs: Counter[str] = Counter()
+    log = mavutil.mavlink_connection(str(path), dialect="ardupilotmega")
+    while (message := log.recv_msg()) is not None:
+        theirs[message.get_type()] += 1
+    causes: Counter[str] = Counter()
+    ours = Counter(entry.packet.message.get_type() for entry in read_tlog(path.read_bytes(), causes))
+    assert theirs["BAD_DATA"] == 0
+    assert not causes
+    assert ours == theirs
+    assert theirs["HEARTBEAT"] >= 3
+    assert theirs["PARAM_VALUE"] >= parameters
+    assert theirs["COMMAND_ACK"] >= 3
