@@ -130,7 +130,9 @@ def facts(run: Run) -> str:
     pursuers = sum(f.role is Role.PURSUER for f in run.flown.values())
     found.append((str(pursuers), "pursuer" if pursuers == 1 else "pursuers"))
     worst = sum(alert.severity is Severity.ERROR for alert in run.alerts)
-    found.append((str(len(run.alerts)), f"alerts, {worst} of them errors" if worst else "alerts"))
+    found.append(
+        (str(len(run.alerts)), f"{_count('alert', run.alerts)}{f', {worst} severe' if worst else ''}")
+    )
     boxes = "".join(f"<div><b>{escape(value)}</b><span>{escape(what)}</span></div>" for value, what in found)
     return f"<div class='facts'>{boxes}</div>\n"
 
@@ -238,24 +240,41 @@ def parameters(run: Run) -> str:
 
 
 def facts_table(values: dict[str, Any]) -> str:
-    """Any nested values as rows."""
-    rows = [[escape(look.words(key)), escape(text)] for key, text in _flat(values, "")]
-    return _table(["", ""], rows) if rows else ""
+    """Any nested values: plain ones as rows, each list of records as a table of its own."""
+    rows, tables = [], []
+    for key, value in _flat(values, ""):
+        if isinstance(value, list):
+            tables.append(f"<p class='sub'>{escape(look.words(key))}</p>{_records(value)}")
+        else:
+            rows.append([escape(look.words(key)), escape(value)])
+    return (_table(["", ""], rows) if rows else "") + "".join(tables)
 
 
-def _flat(value: Any, key: str) -> list[tuple[str, str]]:
+def _flat(value: Any, key: str) -> list[tuple[str, str | list[dict[str, Any]]]]:
     if isinstance(value, dict):
         return [pair for k, v in value.items() for pair in _flat(v, f"{key}.{k}" if key else str(k))]
-    if isinstance(value, list) and any(isinstance(item, (dict, list)) for item in value):
-        return [pair for n, item in enumerate(value) for pair in _flat(item, f"{key}[{n}]")]
-    if isinstance(value, list):
-        return [(key, ", ".join(_text(item) for item in value))]
+    if isinstance(value, list) and value and all(isinstance(item, dict) for item in value):
+        return [(key, value)]
     return [(key, _text(value))]
+
+
+def _records(records: list[dict[str, Any]]) -> str:
+    heads = list(dict.fromkeys(str(key) for record in records for key in record))
+    rows = [[escape(_text(record[key])) if key in record else "" for key in heads] for record in records]
+    return _table([escape(look.words(head)) for head in heads], rows)
+
+
+def _count(what: str, things: tuple[Any, ...]) -> str:
+    return what if len(things) == 1 else f"{what}s"
 
 
 def _text(value: Any) -> str:
     if isinstance(value, bool) or value is None:
         return {True: "yes", False: "no", None: "–"}[value]
+    if isinstance(value, dict):
+        return ", ".join(f"{look.words(str(k))} {_text(v)}" for k, v in value.items())
+    if isinstance(value, list):
+        return ", ".join(_text(item) for item in value)
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 

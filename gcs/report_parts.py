@@ -98,11 +98,8 @@ def named_phases(run: Run) -> list[tuple[float, str]]:
     start, end = run.span
     inside = [pair for pair in run.phases if start <= pair[0] <= end]
     room = 0.08 * (end - start)
-    return [
-        (at, phase)
-        for (at, phase), (later, _) in zip(inside, [*inside[1:], (end + room, "")], strict=True)
-        if later - at >= room or later > end
-    ]
+    nexts = [at for at, _ in inside[1:]] + [end + room]
+    return [pair for pair, later in zip(inside, nexts, strict=False) if later - pair[0] >= room]
 
 
 def phases(run: Run) -> tuple[list[Trace], list[Trace]]:
