@@ -80,9 +80,15 @@ class Asking:
     """Asks one autopilot for rates, and adapts them to what arrives."""
 
     def __init__(
-        self, kind: Kind, to: Target, capacity: float | None = None, *, signed: bool = False
+        self,
+        kind: Kind,
+        to: Target,
+        capacity: float | None = None,
+        *,
+        signed: bool = False,
+        needs: Sequence[Need] | None = None,
     ) -> None:
-        self._needs = NEEDS[kind]
+        self._needs = NEEDS[kind] if needs is None else needs
         self._to = to
         self._signed = signed
         most = sum(need.rate * frame_size(need.message, signed) for need in self._needs)

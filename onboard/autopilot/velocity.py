@@ -38,6 +38,8 @@ def yaw_along(velocity: Vec, present: float) -> float:
 class VelocityAdapter:
     """PX4 multicopter or ArduCopter; see `base.Adapter`.
 
+    After TAKEN or LEFT a pilot hands an ArduCopter back by choosing GUIDED. PX4 lets nobody into OFFBOARD
+    without a stream of targets, and none is sent then: there `enter` (an operator's resume) takes it back.
     ArduCopter's LOITER needs a pilot's throttle stick in the middle: without a transmitter hold by "BRAKE".
     """
 

@@ -145,23 +145,24 @@ _NEEDED = (
     | dialect.ESTIMATOR_VELOCITY_VERT
     | dialect.ESTIMATOR_POS_HORIZ_ABS
 )
-_FAULTS = dialect.ESTIMATOR_CONST_POS_MODE | dialect.ESTIMATOR_ACCEL_ERROR
+# The two reports agree on what is estimated and part ways on what is wrong.
+_FAULTS = dialect.ESTIMATOR_CONST_POS_MODE | dialect.ESTIMATOR_GPS_GLITCH | dialect.ESTIMATOR_ACCEL_ERROR
+_EKF_FAULTS = dialect.EKF_CONST_POS_MODE | dialect.EKF_UNINITIALIZED | dialect.EKF_GPS_GLITCHING
 
 
-def _ekf(flags: int, ratios: tuple[float, ...]) -> EkfStatus:
+def _ekf(flags: int, faults: int, ratios: tuple[float, ...]) -> EkfStatus:
     """A ratio that is not a number is one that the estimator does not compute."""
     worst = max((abs(ratio) for ratio in ratios if isfinite(ratio)), default=0.0)
-    return EkfStatus(flags, flags & _NEEDED == _NEEDED and not flags & _FAULTS and worst <= 1.0, worst)
+    return EkfStatus(flags, flags & _NEEDED == _NEEDED and not flags & faults and worst <= 1.0, worst)
 
 
 def _ekf_status_report(m: Any) -> EkfStatus:
-    return _ekf(
-        m.flags, (m.velocity_variance, m.pos_horiz_variance, m.pos_vert_variance, m.compass_variance)
-    )
+    ratios = (m.velocity_variance, m.pos_horiz_variance, m.pos_vert_variance, m.compass_variance)
+    return _ekf(m.flags, _EKF_FAULTS, ratios)
 
 
 def _estimator_status(m: Any) -> EkfStatus:
-    return _ekf(m.flags, (m.vel_ratio, m.pos_horiz_ratio, m.pos_vert_ratio, m.mag_ratio))
+    return _ekf(m.flags, _FAULTS, (m.vel_ratio, m.pos_horiz_ratio, m.pos_vert_ratio, m.mag_ratio))
 
 
 def _extended_state(m: Any) -> ExtendedState:

@@ -98,10 +98,10 @@ class GpsFix(NamedTuple):
 
 
 class EkfStatus(NamedTuple):
-    """EKF_STATUS_REPORT (ArduPilot) or ESTIMATOR_STATUS (PX4): the same bits in both."""
+    """EKF_STATUS_REPORT (ArduPilot) or ESTIMATOR_STATUS (PX4)."""
 
-    flags: int
-    ok: bool  # attitude, velocity and absolute position are estimated, and no test ratio is above 1
+    flags: int  # up to 512 the same in both
+    ok: bool  # attitude, velocity, absolute position estimated, no fault set, no test ratio above 1
     worst: float  # the largest of the test ratios
 
 

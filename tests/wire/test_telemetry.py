@@ -14,7 +14,7 @@ from onboard.wire.commands import Target
 from onboard.wire.mavlink import Framer, MavMessage, Sender, dialect
 from onboard.wire.modes import Kind, custom_mode, kind_of, mode_name
 from onboard.wire.telemetry import decode
-from onboard.wire.values import AdsbVehicle, GlobalPosition, Heartbeat, ParamValue, SysStatus, Wind
+from onboard.wire.values import AdsbVehicle, EkfStatus, GlobalPosition, Heartbeat, ParamValue, SysStatus, Wind
 
 
 def over_the_wire(message: MavMessage) -> MavMessage:
@@ -114,6 +114,39 @@ def test_adsb_traffic_for_field_tracks() -> None:
     assert value.velocity == pytest.approx((0.0, 50.0, 2.5), abs=1e-9)
     assert value.position_valid
     assert value.velocity_valid
+
+
+GOOD = 1 | 2 | 4 | 16 | 32
+
+
+@pytest.mark.parametrize(
+    ("flags", "worst", "ok"),
+    [
+        (GOOD, 0.3, True),
+        (GOOD, 1.2, False),
+        (GOOD & ~16, 0.1, False),  # no absolute position
+        (GOOD | 128, 0.1, False),  # constant position mode
+        (GOOD, nan, True),  # a ratio that is not computed
+    ],
+)
+def test_both_estimators_say_when_they_are_good(flags: int, worst: float, ok: bool) -> None:
+    ardupilot = decode(dialect.MAVLink_ekf_status_report_message(flags, 0.1, worst, 0.1, 0.1, 0.0))
+    px4 = decode(dialect.MAVLink_estimator_status_message(0, flags, 0.1, worst, 0.1, 0.1, nan, nan, 1.0, 1.0))
+    assert isinstance(ardupilot, EkfStatus)
+    assert isinstance(px4, EkfStatus)
+    assert (ardupilot.ok, px4.ok) == (ok, ok)
+
+
+def test_each_estimator_has_faults_of_its_own() -> None:
+    for fault in (1024, 32768):  # not initialised; GPS glitch
+        report = decode(dialect.MAVLink_ekf_status_report_message(GOOD | fault, 0.1, 0.1, 0.1, 0.1, 0.0))
+        assert isinstance(report, EkfStatus)
+        assert not report.ok
+    for fault in (1024, 2048):  # GPS glitch; bad accelerometers
+        ratios = (0.1, 0.1, 0.1, 0.1, 0.1, 0.1)
+        status = decode(dialect.MAVLink_estimator_status_message(0, GOOD | fault, *ratios, 1.0, 1.0))
+        assert isinstance(status, EkfStatus)
+        assert not status.ok
 
 
 def test_kinds_and_modes() -> None:
