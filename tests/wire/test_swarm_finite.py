@@ -19,7 +19,7 @@ def setup(latitude: float = 47.0, start: float = 1.0, corner: float = 2.0) -> Se
         scenario_hash="0",
         master="m",
         origin=Origin(latitude, 8.0, 400.0),
-        roster=(Member(1, Role.EVADER, 4.0, (0.0, 0.0, 0.0)), Member(2, Role.PURSUER, 5.0, (0.0, start, 0.0))),
+        roster=(Member(1, Role.EVADER, 4.0, (0.0, 0.0, 0.0)), Member(2, Role.PURSUER, 5.0, (0.0, start, 0))),
         capture_radius=2.0,
         safety_distance=4.0,
         lambda_=100.0,
