@@ -12,7 +12,7 @@ from collections.abc import Callable, Hashable, Mapping
 from functools import partial
 from typing import ClassVar
 
-from onboard.core.vectors import Vec
+from onboard.core.vectors import ZERO, Vec
 from onboard.wire.geodesy import Frame, Geodetic
 from onboard.wire.mavlink import Framer, MavMessage, Packet, Sender, dialect
 from sim_bridge.autopilot import telemetry
@@ -59,6 +59,7 @@ class Autopilot(ABC):
         self.armed = setup.airborne
         self.landed = not setup.airborne
         self._cold = not setup.airborne  # booted on the ground: the estimator needs time
+        self._names = {number: name for name, number in self.modes.items()}
         self.mode = self.first_mode
         self._boot_ns = now_ns
         self._last_step_ns = now_ns
@@ -89,7 +90,7 @@ class Autopilot(ABC):
         """Sense, keep time, send what is due, and say what the airframe shall do until the next step."""
         dt = (now_ns - self._last_step_ns) * 1e-9
         self._last_step_ns = now_ns
-        self.motion = motion
+        self.motion = Motion(motion.position, ZERO, 0.0, 0.0, 0.0, motion.yaw) if self.landed else motion
         self.air = air
         self._place = None
         self.health.drain(dt, self.armed and not self.landed)
@@ -277,10 +278,7 @@ class Autopilot(ABC):
     @property
     def mode_name(self) -> str:
         """The mode in the autopilot's own words."""
-        for name, number in self.modes.items():
-            if number == self.mode:
-                return name
-        return f"mode {self.mode}"
+        return self._names.get(self.mode, f"mode {self.mode}")
 
     def request_mode(self, now_ns: int, mode: int) -> str:
         """Change the mode if it may be entered; why not otherwise."""
@@ -293,7 +291,7 @@ class Autopilot(ABC):
 
     def is_mode(self, *names: str) -> bool:
         """Whether it is in one of these modes."""
-        return any(self.modes[name] == self.mode for name in names)
+        return self._names.get(self.mode) in names
 
     def ground_station_silence_s(self, now_ns: int) -> float:
         """Since the watched ground station's last heartbeat [s]; 0 where it was never heard."""

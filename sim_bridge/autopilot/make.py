@@ -39,16 +39,21 @@ def autopilot_for(
     signing: Signing | None = None,
     ready_s: float = 12.0,
     battery_s: float = 1200.0,
+    bank_max_deg: float | None = None,
 ) -> Autopilot:
     """The autopilot of vehicle `system`, that starts with `start` in the game frame `frame`.
 
-    Home is the ground below the start, at the altitude of the game's origin. Raises ValueError for
-    parameters that this kind does not have.
+    Home is the ground below the start, at the altitude of the game's origin. `bank_max_deg` is that of
+    the airframe where it is not the kinematic one: it sets ROLL_LIMIT_DEG and the radius of waiting.
+    Raises ValueError for parameters that this kind does not have.
     """
     p = start.position
     ground = Vec(p.x, p.y, 0.0 if airborne else p.z)
     own = Vec(ground.x + system * OFFSET.x, ground.y + system * OFFSET.y, ground.z + (system % 10) * OFFSET.z)
     ability = ability_of(spec, kind)
+    bank = bank_max_deg
+    if bank is None:
+        bank = degrees(atan(ability.turn_rate * max(spec.speed, 1.0) / G))
     setup = Setup(
         kind=kind,
         system=system,
@@ -61,7 +66,7 @@ def autopilot_for(
         speed_min=ability.speed_min,
         speed_max=ability.speed_max,
         speed_cruise=spec.speed,
-        bank_max_deg=degrees(atan(ability.turn_rate * max(spec.speed, 1.0) / G)),
+        bank_max_deg=bank,
         pitch_min_deg=spec.pitch_min_deg,
         pitch_max_deg=spec.pitch_max_deg,
         ready_s=ready_s,

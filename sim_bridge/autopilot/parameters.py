@@ -66,6 +66,8 @@ class Parameters:
     def due(self, most: int) -> list[MavMessage]:
         """The next values of a listing under way."""
         first = self._listing
+        if first >= len(self._table):
+            return []
         self._listing = min(len(self._table), first + most)
         return [self._value(p, number) for number, p in enumerate(self._table[first : self._listing], first)]
 

@@ -123,7 +123,7 @@ async def test_it_fetches_parameters_changes_the_mode_and_arms(kind: Kind, tmp_p
 
 def check_log(folder: Path, parameters: int) -> None:
     """Both readers, pymavlink's own and ours, find the same messages in its log, none bad."""
-    from pymavlink import mavutil  # noqa: TID251
+    from pymavlink import mavutil
 
     [path] = folder.rglob("flight.tlog")
     theirs: Counter[str] = Counter()

@@ -38,7 +38,7 @@ async def client(port: int) -> AsyncIterator[Any]:
 
 async def systems(sdk: Any, count: int) -> dict[int, Any]:
     """All vehicles by their system id, as soon as there are so many."""
-    while True:  # noqa: ASYNC110 - the library tells of new ones, but not which have an autopilot
+    while True:
         found = {await s.get_system_id(): s for s in await sdk.get_systems() if await s.has_autopilot()}
         if len(found) == count:
             return found

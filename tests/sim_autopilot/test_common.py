@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 
 from onboard.core.vectors import Vec, norm, sub
 from onboard.runtime.scenario import Kind
-from onboard.wire.mavlink import Sender, dialect
+from onboard.wire.mavlink import Framer, Sender, dialect
+from onboard.wire.signing import MemoryStore, Signing
 from sim_bridge.autopilot.health import Fault
 from tests.support.flown import EPOCH_NS, ORIGIN, SECOND, Flown
 
@@ -416,3 +417,54 @@ def test_no_setpoint_raises_or_spoils_the_motion(
     flown.fly(0.4)
     assert hypot(flown.velocity.x, flown.velocity.y) < 31.0
     assert all(abs(value) < 1e4 for value in flown.position)
+
+
+@KINDS
+def test_with_a_key_it_obeys_signed_frames_alone_and_signs_its_own(kind: Kind) -> None:
+    key = bytes(range(32))
+    flown = Flown(kind, signing=Signing(key, MemoryStore()))
+    flown.fly(1.0)
+    assert all(frame[2] & 1 for frame in flown.frames)
+    request = dialect.MAVLink_command_long_message(1, 1, 512, 0, 148, 0, 0, 0, 0, 0, 0)
+    flown.send(request)
+    assert flown.got("COMMAND_ACK") == []
+    assert flown.autopilot.counters["signature_unsigned"] == 1
+    signed = Sender(1, 191, signing=Signing(key, MemoryStore()))
+    frame = signed.pack(request, EPOCH_NS + flown.now_ns)
+    flown.autopilot.receive(flown.now_ns, frame, "peer")
+    flown.fly(0.1)
+    assert flown.last("COMMAND_ACK").result == 0
+    verifier = Framer(signing=Signing(key, MemoryStore()))
+    assert all(verifier.feed(frame, EPOCH_NS + SECOND) for frame in flown.frames[-3:])
+
+
+@KINDS
+def test_the_same_flight_gives_the_same_bytes(kind: Kind) -> None:
+    def flight() -> list[bytes]:
+        flown = Flown(kind, wind=Vec(2.0, -1.0, 0.0))
+        flown.fly(1.5, every_s=0.1, send=lambda: flown.velocity_target(Vec(2.0, 1.0, 0.0)))
+        flown.mode_to(FOLLOWING_MODE[kind])
+        flown.fly(5.0, every_s=0.1, send=lambda: flown.velocity_target(Vec(2.0, 1.0, 0.0)))
+        return flown.frames
+
+    assert flight() == flight()
+
+
+def test_peers_are_bounded_and_one_peers_torn_frame_does_not_harm_another() -> None:
+    flown = Flown(Kind.ARDUCOPTER)
+    frame = flown.client.pack(dialect.MAVLink_command_long_message(1, 1, 512, 0, 148, 0, 0, 0, 0, 0, 0))
+    for number in range(50):
+        flown.autopilot.receive(0, frame[:20], ("stranger", number))
+        flown.autopilot.receive(0, frame, "peer")
+    flown.fly(0.1)
+    assert len(flown.got("COMMAND_ACK")) == 50
+    assert flown.autopilot.counters["truncated"] == 50
+
+
+def test_a_landed_vehicle_reports_rest() -> None:
+    flown = Flown(Kind.ARDUCOPTER)
+    flown.mode_to("LAND")
+    flown.fly(60.0)
+    assert flown.autopilot.parked
+    told = flown.last("LOCAL_POSITION_NED")
+    assert (told.vx, told.vy, told.vz) == (0.0, 0.0, 0.0)
