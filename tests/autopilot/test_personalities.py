@@ -36,8 +36,17 @@ PLANE_ENVELOPE = Envelope(
 class Flight:
     """The agent's own side, cut down to observer and adapter, at 20 Hz; loss in both directions."""
 
-    def __init__(self, kind: Kind, loss: float = 0.0, wind: Vec = ZERO, seed: int = 1) -> None:
-        self.flown = Flown(kind, wind=wind)
+    def __init__(
+        self,
+        kind: Kind,
+        loss: float = 0.0,
+        wind: Vec = ZERO,
+        *,
+        seed: int = 1,
+        scheme: str = "auto",
+        parameters: dict[str, float] | None = None,
+    ) -> None:
+        self.flown = Flown(kind, wind=wind, parameters=parameters or {})
         self.loss = loss
         self.rng = np.random.default_rng(seed)
         self.wind = wind if kind == Kind.ARDUPLANE else ZERO
@@ -56,6 +65,8 @@ class Flight:
         chosen = adapter_for(
             Heartbeat(heart.kind, 0, 0, 0, heart.mode, heart.armed, 4),
             Target(1),
+            scheme=scheme,
+            parameters=parameters,
             envelope=PLANE_ENVELOPE if kind == Kind.ARDUPLANE else Envelope(acceleration=0.0),
         )
         assert not isinstance(chosen, Refusal)
@@ -238,3 +249,26 @@ def test_an_autopilot_that_starts_again_in_flight_is_entered_again(kind: Kind) -
     flight.adapter.enter(flight.now)
     flight.fly(8.0, level(kind))
     assert flight.adapter.stage is Stage.ACTIVE
+
+
+WATCHED = {"FS_GCS_ENABL": 1.0, "SYSID_MYGCS": 1.0, "FS_LONG_ACTN": 1.0}
+
+
+def test_the_plain_variant_flies_a_course_and_its_failsafe_brings_a_plane_home_whose_agent_has_died() -> None:
+    flight = Flight(Kind.ARDUPLANE, scheme="arduplane-plain", parameters=WATCHED)
+    flight.adapter.enter(flight.now)
+    flight.fly(30.0, Vec(0.0, 20.0, 0.0))
+    assert flight.setpoints == []  # no attitude targets: commands alone
+    assert flight.flown.velocity.y == pytest.approx(20.0, abs=1.0)
+    flight.flown.fly(2.0)  # killed: not even a heartbeat
+    assert flight.flown.mode == "GUIDED"
+    flight.flown.fly(40.0)
+    assert flight.flown.mode == "RTL"
+
+
+def test_a_killed_agents_plane_turns_no_more_when_its_roll_lapses_and_comes_home_by_the_failsafe() -> None:
+    flight = Flight(Kind.ARDUPLANE, parameters=WATCHED)
+    flight.adapter.enter(flight.now)
+    flight.fly(10.0, lambda now: Vec(20.0 * cos(0.4 * now), 20.0 * sin(0.4 * now), 0.0))
+    flight.flown.fly(40.0)
+    assert flight.flown.mode == "RTL"
