@@ -8,7 +8,7 @@ and the plain variant's course (43002) never does: so to end is to command LOITE
 
 from __future__ import annotations
 
-from math import atan, atan2, pi
+from math import atan, atan2, pi, tan
 
 from onboard.autopilot.base import NEVER, Envelope, Note, Setpoint, Stage, Step, Telemetry, Way
 from onboard.autopilot.control import Control
@@ -192,7 +192,7 @@ class ArduPlaneAdapter:
         if now - self._turned_at < COURSE_EVERY or not (new or stale):
             return []
         self._turned_at, self._course = now, course
-        lateral = G * self.envelope.bank_max
+        lateral = G * tan(self.envelope.bank_max)
         return [commands.change_heading(self._to, course, lateral)]
 
     def _climb(self, now: float, telemetry: Telemetry, ground: Vec) -> list[MavMessage]:
