@@ -13,6 +13,7 @@ from onboard.agent.game import Part
 from onboard.agent.journal import Journal
 from onboard.agent.orders import Orders
 from onboard.agent.table import Table
+from onboard.agent.takeoff import TakeOff
 from onboard.autopilot.base import NEVER, Setpoint, Stage, Telemetry, Way
 from onboard.core.safety.machine import Verdict, Watch, supervise
 from onboard.core.safety.policy import Action, Cause, Mate, Policy, Seen
@@ -60,6 +61,7 @@ class Acting:
         self.verdict: Verdict | None = None
         self.setpoint = ZERO  # [m/s; ground] let through in this step
         self.failures = 0  # of the strategy
+        self.take_off = TakeOff(config.take_off_height)
         self._clock, self._craft, self._table = clock, craft, table
         self._orders, self._journal = orders, journal
         self._memory = Memory()
@@ -199,10 +201,20 @@ class Acting:
         if orders.resumed:
             self._watch = Watch()
             orders.resumed = False
+        if self._takes_off(now):
+            self._craft.step(now, None)
+            return
         ours = adapter.stage in (Stage.ENTERING, Stage.ACTIVE)
         fresh = now - t.position_at <= self.policy.telemetry_age
         hover = ours and fresh and not adapter.holds_airspeed
         self._craft.step(now, Setpoint(ZERO) if hover else None)
+
+    def _takes_off(self, now: float) -> bool:
+        """A ground start: whether the vehicle is on its way up, by this agent's doing."""
+        allowed = self.config.may_arm and self.flying is not None and self._may_control()
+        if not allowed or self._orders.way is not None or self.part.over(self._table.phase):
+            return False
+        return self.take_off.step(now, self._craft)
 
     # ------------------------------------------------------------------ think, supervise, send
 

@@ -120,6 +120,7 @@ class Agent:
                     task.cancel()
                 await self._leave()
         finally:
+            self.craft.close()
             served.close()
             token.close()
             self.table.close()
@@ -267,6 +268,8 @@ class Agent:
         self.lacks = lacking(
             now, self.craft, self.table, acting.policy, role, acting.why_not, connected
         )
+        if acting.take_off.climbing:
+            self.lacks = (*self.lacks, f"its height of {acting.take_off.height:g} m")
         if acting.part.waits_for_resume(self.table.phase):
             self.lacks = (*self.lacks, "the master's resume")
         stage = self._judge_stage()
@@ -292,7 +295,7 @@ class Agent:
         now, t = self.now, self.craft.telemetry
         verdict = self.acting.verdict
         counters = {
-            **self.radio.counters(), **self.craft.foreign, **self.table.drops,
+            **self.radio.counters(), **self.craft.counters(), **self.table.drops,
             **{f"bus_{cause}": n for cause, n in self.bus.counters().items()},
             **self._pace.counters(), **self.timing.counters(),
             "strategy_failures": self.acting.failures, "events_suppressed": self.journal.suppressed,

@@ -1,71 +1,71 @@
-"""What the agent asks of its autopilot: message rates, and the parameters that matter.
-
-A rate is asked for again while less than it arrives; over a serial link all are scaled to what it carries.
-"""
+"""What the agent asks of its autopilot besides modes: message rates, parameters, its clock."""
 
 from __future__ import annotations
 
 from collections import Counter
 
-from onboard.agent.config import RatesConfig
 from onboard.autopilot.parameters import WANTED
+from onboard.autopilot.rates import NEEDS, Asking, Need, capacity_of
+from onboard.autopilot.timesync import TimesyncEstimator
 from onboard.wire import commands
 from onboard.wire.commands import Target
 from onboard.wire.mavlink import MavMessage
 from onboard.wire.modes import Kind
 from onboard.wire.values import ParamValue
 
-ENOUGH = 0.7  # of a rate: below it is asked for again
-REVIEW_S = 2.0  # between two looks at what arrives
+REVIEW_S = 1.0  # between two looks at the rates
 PARAM_AGAIN_S = 0.5
 PARAM_TRIES = 6
-SERIAL_SHARE = 0.6  # of a serial link's capacity that telemetry may take
-GLOBAL_POSITION, ATTITUDE, AIR_DATA, SYS_STATUS, GPS = 33, 30, 74, 1, 24
-BATTERY, LANDED, HOME = 147, 245, 242
-SIZES = {33: 40, 30: 40, 74: 32, 168: 24, 231: 52, 1: 43, 24: 64, 193: 38, 230: 54, 147: 66, 245: 14}  # bytes
+CLOCK_EVERY_S = 2.0
+FAST = ("GLOBAL_POSITION_INT", "ATTITUDE")  # follow the control rate above 20 Hz
+HOME = 242  # HOME_POSITION
 
 
-def wanted_rates(rates: RatesConfig, kind: Kind, baud: int = 0) -> dict[int, float]:
-    """Message id → rate [Hz] for a kind of autopilot; `baud` of a serial link limits the sum."""
-    px4 = kind is Kind.PX4_MULTICOPTER
-    found = {
-        GLOBAL_POSITION: rates.position,
-        ATTITUDE: rates.attitude,
-        AIR_DATA: rates.air_data,
-        231 if px4 else 168: rates.wind,
-        SYS_STATUS: rates.status,
-        GPS: rates.gps,
-        230 if px4 else 193: rates.ekf,
-        BATTERY: rates.battery,
-        LANDED: rates.landed,
-    }
-    found = {message: rate for message, rate in found.items() if rate > 0.0}
-    if baud > 0:
-        load = sum(rate * SIZES[message] for message, rate in found.items())
-        share = min(1.0, SERIAL_SHARE * baud / 10.0 / max(load, 1.0))
-        found = {message: max(1.0, rate * share) for message, rate in found.items()}
-    return found
+def needs_of(kind: Kind, control_rate_hz: float) -> tuple[Need, ...]:
+    """What a kind of autopilot is asked for, at a control rate."""
+    return tuple(
+        need._replace(rate=max(need.rate, control_rate_hz)) if need.message in FAST else need
+        for need in NEEDS[kind]
+    )
 
 
-class Asking:
+def baud_of(link: str) -> int:
+    """Baud rate in a serial link's URL, 0 for other links."""
+    if not link.startswith("serial:"):
+        return 0
+    tail = link.rsplit(":", 1)[-1]
+    return int(tail) if tail.isascii() and tail.isdigit() else 57600
+
+
+class Requests:
     """Requests due now, for one autopilot."""
 
-    def __init__(self, to: Target, kind: Kind, rates: dict[int, float], *, parameters: bool = True) -> None:
-        self.rates = rates
+    def __init__(self, to: Target, kind: Kind, control_rate_hz: float, link: str, signed: bool) -> None:
+        baud = baud_of(link)
         self.parameters: dict[str, float] = {}
-        self.asked = 0
+        self.clock = TimesyncEstimator()
+        self._rates = Asking(
+            kind,
+            to,
+            capacity_of(baud) if baud else None,
+            signed=signed,
+            needs=needs_of(kind, control_rate_hz),
+        )
         self._to = to
         self._px4 = kind is Kind.PX4_MULTICOPTER
-        self._arrived: Counter[int] = Counter()
-        self._reviewed = -1e9
-        self._missing = list(WANTED.get(kind, ())) if parameters else []
+        self._arrived: Counter[str] = Counter()
+        self._reviewed = self._param_at = self._clock_at = -1e9
+        self._missing = list(WANTED.get(kind, ()))
         self._tries = 0
-        self._param_at = -1e9
+        self._buffer_free = 1.0
 
-    def arrived(self, message: int) -> None:
+    def arrived(self, message: str) -> None:
         """Count a message that came."""
-        if message in self.rates:
-            self._arrived[message] += 1
+        self._arrived[message] += 1
+
+    def radio(self, buffer_free: float) -> None:
+        """The telemetry radio's transmit buffer, as it reports it."""
+        self._buffer_free = buffer_free
 
     def parameter(self, value: ParamValue) -> None:
         """Keep a parameter's value."""
@@ -74,25 +74,27 @@ class Asking:
             self.parameters[value.name] = value.bytewise if self._px4 else value.value
 
     def again(self) -> None:
-        """Ask for everything anew: the autopilot has started again."""
+        """Ask for everything anew: the autopilot has started again, or another link is used."""
+        self._rates.forget()
         self._reviewed = -1e9
 
     def due(self, now: float) -> list[MavMessage]:
         """What to send at `now` [s, monotonic]."""
         messages: list[MavMessage] = []
-        first = self._reviewed < -1e8
-        if first or now - self._reviewed >= REVIEW_S:
-            span = now - self._reviewed
-            for message, rate in self.rates.items():
-                if first or self._arrived[message] < ENOUGH * rate * span:
-                    messages.append(commands.set_message_interval(self._to, message, rate))
+        span = now - self._reviewed
+        if span >= REVIEW_S:
+            first = span > 1e8
+            rates = {name: count / span for name, count in self._arrived.items()}
+            messages += self._rates.step(now, rates, self._buffer_free)
             if first:
                 messages.append(commands.request_message(self._to, HOME))
             self._arrived.clear()
             self._reviewed = now
-            self.asked += len(messages)
         if self._missing and self._tries < PARAM_TRIES and now - self._param_at >= PARAM_AGAIN_S:
             self._tries += 1
             self._param_at = now
             messages += [commands.param_read(self._to, name) for name in self._missing]
+        if now - self._clock_at >= CLOCK_EVERY_S:
+            self._clock_at = now
+            messages.append(self.clock.ask(round(now * 1e9)))
         return messages

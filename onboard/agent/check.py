@@ -130,17 +130,17 @@ def _autopilot(config: AgentConfig, seen: Sight) -> list[Row]:
         return [Row("autopilot", Mark.FAIL, found, "give the vehicle's MAVLink system id as --id")]
     t = seen.telemetry
     rows = [Row("autopilot", Mark.PASS, f"{seen.kind} {seen.version or 'of unknown version'}, in {t.mode}")]
-    wanted = config.rates.position
+    wanted = config.control_rate_hz
     rate = f"position at {seen.position_rate:.1f} Hz of {wanted:g}"
     rows.append(Row("rates", Mark.PASS if seen.position_rate >= ENOUGH * wanted else Mark.FAIL, rate,
-                    "a faster link, or a lower rates.position and control_rate_hz"))  # fmt: skip
+                    "a faster link, or a lower control_rate_hz"))  # fmt: skip
     if t.gps_at == NEVER:
         rows.append(Row("GPS", Mark.WARN, "not reported", "ask for GPS_RAW_INT"))
     else:
         mark = Mark.PASS if t.gps_fix >= config.safety.gps_fix else Mark.FAIL
         rows.append(Row("GPS", mark, f"fix type {t.gps_fix}, {t.satellites} satellites", "wait for a fix"))
     if t.ekf_at == NEVER:
-        rows.append(Row("estimate", Mark.WARN, "the autopilot's estimator says nothing", "ask for its status"))
+        rows.append(Row("estimate", Mark.WARN, "not reported", "ask for the estimator status"))
     else:
         mark = Mark.PASS if t.ekf_ok else Mark.FAIL
         rows.append(Row("estimate", mark, "healthy" if t.ekf_ok else "not healthy", "wait, or recalibrate"))

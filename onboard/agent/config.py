@@ -104,20 +104,6 @@ class SafetyConfig(Part, frozen=True):
     abort: KnockOff = KnockOff.HOLD
 
 
-class RatesConfig(Part, frozen=True):
-    """Message rates asked of the autopilot [Hz]; 0 = do not ask."""
-
-    position: float = 20.0
-    attitude: float = 10.0
-    air_data: float = 5.0
-    wind: float = 2.0
-    status: float = 2.0
-    gps: float = 2.0
-    ekf: float = 2.0
-    battery: float = 1.0
-    landed: float = 1.0
-
-
 class SigningConfig(Part, frozen=True):
     """MAVLink 2 signing: a key file of mode 0600, and where stamps are kept."""
 
@@ -139,7 +125,10 @@ class AgentConfig(Part, frozen=True):
     strategy: str = ""  # missing = the setup's, or the role's default
     route: str = ""  # route file of a tracker
     take_control: bool = False  # enter GUIDED / OFFBOARD by itself at the start
-    may_arm: bool = False  # arm for a ground start
+    may_arm: bool = False  # arm and take off for a ground start
+    take_off_height: float = 30.0  # [m] above home, after a ground start
+    hold_mode: str = ""  # a multicopter's mode to hold in; missing = the adapter's (LOITER, HOLD)
+    mavsdk: str = ""  # the connection that MAVSDK opens for itself, for the adapter `mavsdk`
     dry_run: bool = False  # decide and publish, send no setpoint and no command
     control_rate_hz: float = 20.0
     lookahead_s: float = 1.0  # of rule 6's alternative
@@ -147,7 +136,6 @@ class AgentConfig(Part, frozen=True):
     log: str = ""  # .tlog of the own link; missing = none
     envelope: EnvelopeConfig = EnvelopeConfig()
     safety: SafetyConfig = SafetyConfig()
-    rates: RatesConfig = RatesConfig()
     signing: SigningConfig | None = None
 
     @property
@@ -190,6 +178,8 @@ def check(found: AgentConfig, name: str) -> AgentConfig:
     demand(
         0.0 < found.control_rate_hz <= 50.0, "control_rate_hz", found.control_rate_hz, "a rate in (0, 50] Hz"
     )
+    height = found.take_off_height
+    demand(2.0 <= height <= 500.0, "take_off_height", height, "2 to 500 m above home")
     demand(0.0 < found.lookahead_s <= 60.0, "lookahead_s", found.lookahead_s, "a time in (0, 60] s")
     for part, keys in (
         ("envelope", ("speed_min", "speed_max", "climb_max", "sink_max", "turn_rate_deg", "turn_radius",
@@ -197,7 +187,6 @@ def check(found: AgentConfig, name: str) -> AgentConfig:
         ("safety", ("fence_margin", "height_margin", "fence_far", "reaction_s", "separation", "mate_age_s",
                     "telemetry_age_s", "heartbeat_age_s", "strategy_age_s", "track_sigma", "ground_age_s",
                     "clock_jump_s", "clock_hold_s", "battery", "settle_s")),
-        ("rates", tuple(RatesConfig.__struct_fields__)),
     ):  # fmt: skip
         for key in keys:
             value = getattr(getattr(found, part), key)
@@ -209,7 +198,6 @@ def check(found: AgentConfig, name: str) -> AgentConfig:
     demand(0.0 < e.bank_max_deg < 80.0, "envelope.bank_max_deg", e.bank_max_deg, "an angle in (0, 80) deg")
     demand(s.battery < 1.0, "safety.battery", s.battery, "a share below 1")
     demand(0.0 < s.strategy_age_s <= 0.2, "safety.strategy_age_s", s.strategy_age_s, "a time in (0, 0.2] s")
-    demand(found.rates.position > 0.0, "rates.position", found.rates.position, "a positive rate [Hz]")
     if s.fence is not None:
         corners = len(s.fence.polygon)
         demand(corners >= 3, "safety.fence.polygon", corners, "three corners or more")

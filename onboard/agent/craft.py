@@ -4,18 +4,28 @@ from __future__ import annotations
 
 from collections import Counter
 
-from onboard.agent.asking import Asking, wanted_rates
+from onboard.agent.asking import Requests
 from onboard.agent.config import AgentConfig
 from onboard.agent.journal import Journal
 from onboard.agent.radio import Radio
 from onboard.autopilot.base import NEVER, Adapter, Envelope, Refusal, Setpoint, Stage, Telemetry
 from onboard.autopilot.choose import adapter_for
+from onboard.autopilot.mavsdk import MavsdkAdapter
 from onboard.autopilot.observer import Observer
 from onboard.wire import commands
 from onboard.wire.commands import Target
 from onboard.wire.mavlink import Packet
 from onboard.wire.swarm import Severity
-from onboard.wire.values import CommandAck, GlobalPosition, Heartbeat, ParamValue, StatusText, Version
+from onboard.wire.values import (
+    CommandAck,
+    GlobalPosition,
+    Heartbeat,
+    ParamValue,
+    RadioStatus,
+    StatusText,
+    Timesync,
+    Version,
+)
 
 AUTOPILOT = 1  # MAV_COMP_ID_AUTOPILOT1
 RATE_WINDOW_S = 2.0  # over which rates are measured
@@ -65,7 +75,7 @@ class Craft:
         self._journal = journal
         self._heartbeat: Heartbeat | None = None
         self._envelope = Envelope()
-        self._asking: Asking | None = None
+        self._asking: Requests | None = None
         self._reboots = 0
         self._stepped_at = NEVER
 
@@ -96,7 +106,7 @@ class Craft:
             return False
         value = self.observer.take(now, packet)
         if self._asking is not None:
-            self._asking.arrived(packet.message.get_msgId())
+            self._asking.arrived(packet.message.get_type())
         if value is None:
             return False
         if isinstance(value, GlobalPosition):
@@ -108,6 +118,12 @@ class Craft:
             self.adapter.acknowledge(now, value)
         elif isinstance(value, ParamValue) and self._asking is not None:
             self._asking.parameter(value)
+        elif isinstance(value, Timesync) and self._asking is not None:
+            answer = self._asking.clock.take(round(now * 1e9), value)
+            if answer is not None:
+                self.radio.send(answer)
+        elif isinstance(value, RadioStatus) and self._asking is not None:
+            self._asking.radio(value.buffer_free)
         elif isinstance(value, Version):
             self.version = value
         elif isinstance(value, StatusText) and value.severity <= 4:
@@ -153,9 +169,11 @@ class Craft:
 
     def chores(self, now: float) -> None:
         """Everything that is due beside setpoints: requests, and the adapter's own retries."""
-        link = self.radio.choose(now)
-        if link:
-            self._journal.warning("link", f"the other link is silent: {link} takes over")
+        if self.radio.took_over:
+            self.radio.took_over = False
+            self._journal.warning("link", f"{self.radio.active} takes over")
+            if self._asking is not None:
+                self._asking.again()
         if self._asking is not None:
             for message in self._asking.due(now):
                 self.radio.send(message)
@@ -165,6 +183,18 @@ class Craft:
     def idle(self, now: float) -> float:
         """Since the adapter was last stepped [s]."""
         return now - self._stepped_at
+
+    def counters(self) -> dict[str, int]:
+        """Foreign packets by cause, and how well the autopilot's clock is known."""
+        counts = dict(self.foreign)
+        if self._asking is not None:
+            counts["timesync_round_trip_us"] = self._asking.clock.offset().round_trip_ns // 1000
+        return counts
+
+    def close(self) -> None:
+        """End what an adapter has running beside it."""
+        if isinstance(self.adapter, MavsdkAdapter):
+            self.adapter.close()
 
     def heartbeat(self) -> None:
         """Our own heartbeat, at 1 Hz."""
@@ -184,6 +214,8 @@ class Craft:
             envelope=self._envelope,
             parameters=self.parameters,
             may_arm=self.config.may_arm,
+            hold_mode=self.config.hold_mode,
+            mavsdk_url=self.config.mavsdk,
         )
         if isinstance(found, Refusal):
             if found.reason != self.refusal:
@@ -195,14 +227,6 @@ class Craft:
                 self._journal.info("autopilot", f"{heartbeat.kind.value} found, in {heartbeat.mode}")
             self.adapter = found
         if self._asking is None:
-            baud = _baud(self.radio.active)
-            rates = wanted_rates(self.config.rates, heartbeat.kind, baud)
-            self._asking = Asking(self.to, heartbeat.kind, rates)
-
-
-def _baud(link: str) -> int:
-    """Baud rate in a serial link's URL, 0 for other links."""
-    if not link.startswith("serial:"):
-        return 0
-    tail = link.rsplit(":", 1)[-1]
-    return int(tail) if tail.isascii() and tail.isdigit() else 57600
+            self._asking = Requests(
+                self.to, heartbeat.kind, self.config.control_rate_hz, self.radio.active, self.radio.signed
+            )

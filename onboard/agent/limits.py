@@ -157,7 +157,10 @@ def game_setup(config: AgentConfig, setup: Setup, target: Vec | None, hovers: bo
             low = max(low, -asin(min(1.0, envelope.sink_max / member.speed_max)))
         side = Side.EVADER if member.role is Role.EVADER else Side.PURSUER
         limits = Limits(member.speed_min, member.speed_max, low, high)
-        players.append(Player(member.id, side, member.speed_max, limits, -member.start[2]))
+        height = -member.start[2]
+        if config.may_arm and height < 1.0:  # a ground start
+            height = config.take_off_height
+        players.append(Player(member.id, side, member.speed_max, limits, height))
     return GameSetup(
         roster=tuple(players),
         R=setup.capture_radius,

@@ -2,7 +2,8 @@
 
 One framing state per peer; the autopilot's peer is the one its component was last heard from, so
 that another sender on the same port cannot draw the answers to itself. With two links to one
-autopilot each frame counts once, and the second takes over when the first has been silent.
+autopilot each frame counts once, and the second takes over when the first falls silent; setpoints
+go out on the one that counts, everything else on both.
 """
 
 from __future__ import annotations
@@ -11,15 +12,14 @@ from collections import Counter, OrderedDict
 from collections.abc import Callable, Hashable, Sequence
 from functools import partial
 
+from onboard.autopilot.redundant import Redundant
 from onboard.runtime.protocols import Clock, Link
 from onboard.wire.mavlink import Framer, MavMessage, Packet, Sender
 from onboard.wire.signing import Signing
 
 PEERS_MAX = 16  # framing states of one link
-TAKE_OVER_S = 0.5  # a link silent for longer gives way to one that is not
-TWIN_S = 1.0  # within which the same frame from the other link is a twin
-TWINS_MAX = 2048
-NEVER = -1e9
+AUTOPILOT = 1  # MAV_COMP_ID_AUTOPILOT1
+SETPOINTS = ("SET_POSITION_TARGET_LOCAL_NED", "SET_ATTITUDE_TARGET")
 _NS = 1_000_000_000
 
 Record = Callable[[int, bytes], None]  # (wall [ns], frame)
@@ -33,7 +33,6 @@ class _Line:
         self.stream = link.name.startswith("serial:")
         self.framers: OrderedDict[Hashable, Framer] = OrderedDict()
         self.peer: Hashable | None = None
-        self.heard = NEVER
 
 
 class Radio:
@@ -54,16 +53,16 @@ class Radio:
         self.causes: Counter[str] = Counter()
         self.mute = mute
         self.sent = 0
+        self.signed = signing is not None
+        self.took_over = False  # the other link is used since somebody last looked
         self._system = system
         self._clock = clock
         self._signing = signing
         self._sender = Sender(system, component, signing=signing, link_id=link_id)
         self._record = record
         self._lines = [_Line(link) for link in links]
-        self._active = 0
-        self._twins: OrderedDict[bytes, float] = OrderedDict()
+        self._redundant = Redundant(len(links))
         self._hear: Callable[[Packet, float], None] | None = None
-        self.take_overs = 0
 
     def open(self, hear: Callable[[Packet, float], None]) -> None:
         """Call `hear(packet, now [s, monotonic])` for each good packet of anybody's."""
@@ -74,34 +73,26 @@ class Radio:
     @property
     def active(self) -> str:
         """The link that is used for sending."""
-        return self._lines[self._active].link.name
+        return self._lines[self._redundant.active].link.name
 
     def send(self, message: MavMessage) -> None:
-        """Send to the autopilot. Nothing leaves while mute, or before the autopilot was heard."""
+        """Send to the autopilot. Nothing leaves while mute, or while it is not known who of several it is."""
         if self.mute:
             self.causes["muted"] += 1
             return
-        line = self._lines[self._active]
-        if line.peer is None and len(line.framers) > 1:
-            self.causes["no_peer"] += 1
-            return
         wall = self._clock.wall_ns()
         frame = self._sender.pack(message, wall)
-        line.link.send(frame, line.peer)
+        lines = self._lines
+        if len(lines) > 1 and message.get_type() in SETPOINTS:
+            lines = [lines[self._redundant.active]]
+        for line in lines:
+            if line.peer is None and len(line.framers) > 1:
+                self.causes["no_peer"] += 1
+            else:
+                line.link.send(frame, line.peer)
         self.sent += 1
         if self._record is not None:
             self._record(wall, frame)
-
-    def choose(self, now: float) -> str:
-        """Change to the other link where the active one is silent; its name if that happened, else ''."""
-        if len(self._lines) < 2 or now - self._lines[self._active].heard <= TAKE_OVER_S:
-            return ""
-        best = max(range(len(self._lines)), key=lambda index: self._lines[index].heard)
-        if best == self._active or now - self._lines[best].heard > TAKE_OVER_S:
-            return ""
-        self._active = best
-        self.take_overs += 1
-        return self._lines[best].link.name
 
     def counters(self) -> dict[str, int]:
         """Bad frames by cause, and what the links count."""
@@ -131,21 +122,15 @@ class Radio:
         wall = self._clock.wall_ns()
         now = self._clock.monotonic_ns() / _NS
         for packet in framer.feed(data, wall):
-            if packet.system == self._system and packet.component == 1:
+            if packet.system == self._system and packet.component == AUTOPILOT:
                 line.peer = peer
-                line.heard = now
-            if len(self._lines) > 1 and self._is_twin(packet.raw, now):
-                self.causes["twin"] += 1
-                continue
+                if len(self._lines) > 1:
+                    heard = self._redundant.take(now, index, packet)
+                    self.took_over = self.took_over or heard.took_over
+                    if not heard.use:
+                        self.causes["twin"] += 1
+                        continue
             if self._record is not None:
                 self._record(wall, packet.raw)
             if self._hear is not None:
                 self._hear(packet, now)
-
-    def _is_twin(self, raw: bytes, now: float) -> bool:
-        last = self._twins.get(raw)
-        self._twins[raw] = now
-        self._twins.move_to_end(raw)
-        if len(self._twins) > TWINS_MAX:
-            self._twins.popitem(last=False)
-        return last is not None and now - last < TWIN_S

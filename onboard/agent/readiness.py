@@ -5,6 +5,7 @@ from __future__ import annotations
 from onboard.agent.craft import Craft
 from onboard.agent.table import Table
 from onboard.autopilot.base import NEVER
+from onboard.autopilot.health import Thresholds, read
 from onboard.core.safety.policy import Policy
 from onboard.wire.swarm import Role
 
@@ -21,19 +22,19 @@ def lacking(
         others = sorted(craft.heard_systems)
         heard = f" (heard: system {', '.join(map(str, others))})" if others else ""
         lacks.append(f"an autopilot: {craft.refusal}" if craft.refusal else f"an autopilot{heard}")
-    elif not now - t.heartbeat_at <= policy.heartbeat_age:
-        lacks.append("the autopilot's heartbeat")
-    elif not now - t.position_at <= policy.telemetry_age:
-        lacks.append("the vehicle's position")
     else:
-        if policy.gps_fix > 0 and t.gps_at != NEVER and t.gps_fix < policy.gps_fix:
-            lacks.append("a GPS fix")
-        if t.ekf_at != NEVER and not t.ekf_ok:
-            lacks.append("a healthy position estimate")
+        health = read(
+            now,
+            t,
+            Thresholds(
+                heartbeat_age=policy.heartbeat_age,
+                telemetry_age=policy.telemetry_age,
+                battery_min=policy.battery,
+            ),
+        )
+        lacks += [*health.lacks, *health.faults]
         if not t.armed:
             lacks.append("an armed vehicle")
-        if 0.0 <= t.battery < policy.battery:
-            lacks.append("a charged battery")
     if not connected:
         lacks.append("the bus")
     if table.setup is None:

@@ -1,0 +1,60 @@
+"""A ground start: arm and climb to a height, each kind of autopilot in its own way."""
+
+from __future__ import annotations
+
+from onboard.agent.craft import Craft
+from onboard.autopilot.base import Stage
+from onboard.wire import commands
+from onboard.wire.mavlink import MavMessage
+from onboard.wire.modes import Kind, custom_mode
+
+AGAIN_S = 2.0
+ON_GROUND = 1  # MAV_LANDED_STATE_ON_GROUND
+REACHED = 0.9  # of the height
+NEVER = -1e9
+
+
+class TakeOff:
+    """Brings one vehicle from the ground to `height` [m above home]."""
+
+    def __init__(self, height: float) -> None:
+        self.height = height
+        self.climbing = False
+        self._asked = NEVER
+
+    def step(self, now: float, craft: Craft) -> bool:
+        """Do what is due at `now` [s]; True while the vehicle is on its way up (send it no setpoints)."""
+        t, adapter = craft.telemetry, craft.adapter
+        if adapter is None:
+            return False
+        if t.landed_state == ON_GROUND:
+            self.climbing = True
+        if self.climbing and t.landed_state != ON_GROUND and t.above_home_m >= REACHED * self.height:
+            self.climbing = False
+        if not self.climbing:
+            return False
+        if adapter.kind is Kind.ARDUCOPTER:
+            adapter.enter(now)
+        armable = {Kind.ARDUPLANE: t.mode == "TAKEOFF", Kind.ARDUCOPTER: adapter.stage is Stage.ACTIVE}
+        if not t.armed and armable.get(adapter.kind, True):
+            adapter.arm(now)
+        if now - self._asked >= AGAIN_S:
+            message = self._next(craft)
+            if message is not None:
+                self._asked = now
+                craft.radio.send(message)
+        return True
+
+    def _next(self, craft: Craft) -> MavMessage | None:
+        t, adapter = craft.telemetry, craft.adapter
+        assert adapter is not None
+        if adapter.kind is Kind.ARDUPLANE:
+            mode = custom_mode(Kind.ARDUPLANE, "TAKEOFF")
+            if t.mode == "TAKEOFF" or mode is None:
+                return None
+            return commands.set_mode(craft.to, mode, px4=False)
+        if not t.armed or t.landed_state != ON_GROUND:
+            return None
+        if adapter.kind is Kind.ARDUCOPTER:
+            return commands.takeoff(craft.to, self.height) if adapter.stage is Stage.ACTIVE else None
+        return commands.takeoff(craft.to, t.altitude_m - t.above_home_m + self.height)  # PX4: above sea level
