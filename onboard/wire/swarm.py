@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections import Counter
 from enum import Enum
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 import msgspec
 
@@ -296,12 +296,12 @@ class Codec(Generic[M]):
         return version != SCHEMA
 
 
-def _finite(items: tuple[object, ...]) -> bool:
+def _finite(items: tuple[Any, ...]) -> bool:
     """msgspec lets NaN and infinity pass: one walk rejects them. Every message passes it, so it is lean."""
     for item in items:
         kind = type(item)
         if kind is float:
-            if item - item != 0.0:  # type: ignore[operator]  # NaN for both
+            if item - item != 0.0:  # NaN for both
                 return False
         elif kind is tuple:
             if item and not _finite(item):
