@@ -286,7 +286,7 @@ class Codec(Generic[M]):
         if not _finite(msgspec.structs.astuple(message)):
             drops["not_finite"] += 1
             return None
-        return message  # type: ignore[no-any-return]
+        return message
 
     def _other_version(self, payload: bytes) -> bool:
         try:
