@@ -42,7 +42,8 @@ def test_six_autopilots_and_airframes_beside_bare_encoding_of_what_they_send() -
         bare = process_time() - began
         print(
             f"{kind.value}: six run {SECONDS / taken / 6:.0f} times faster than real time; "
-            f"{frames / SECONDS:.0f} messages/s each; {taken / bare:.1f} times the bare encoding of as many messages"
+            f"{frames / SECONDS:.0f} messages/s each; "
+            f"{taken / bare:.1f} times the bare encoding of as many messages"
         )
         assert frames > 50 * SECONDS
         assert taken < 25.0 * bare

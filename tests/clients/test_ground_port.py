@@ -1,4 +1,4 @@
-"""What a ground station that only listens hears on its port: enough to list, place and judge every vehicle."""
+"""What a ground station hears on its port without a word: enough to list and place every vehicle."""
 
 from __future__ import annotations
 

@@ -468,3 +468,56 @@ def test_a_landed_vehicle_reports_rest() -> None:
     assert flown.autopilot.parked
     told = flown.last("LOCAL_POSITION_NED")
     assert (told.vx, told.vy, told.vz) == (0.0, 0.0, 0.0)
+
+
+@KINDS
+def test_a_ping_is_answered_unless_it_is_somebodys_answer(kind: Kind) -> None:
+    flown = Flown(kind)
+    flown.send(dialect.MAVLink_ping_message(123, 7, 0, 0))
+    answer = flown.last("PING")
+    assert (answer.time_usec, answer.seq, answer.target_system, answer.target_component) == (123, 7, 1, 191)
+    flown.send(dialect.MAVLink_ping_message(123, 7, 1, 1))
+    assert len(flown.got("PING")) == 1
+
+
+@KINDS
+def test_an_empty_mission_can_be_cleared(kind: Kind) -> None:
+    flown = Flown(kind)
+    flown.send(dialect.MAVLink_mission_clear_all_message(1, 1, 0))
+    assert flown.last("MISSION_ACK").type == 0
+
+
+@KINDS
+def test_the_quaternion_is_the_attitude(kind: Kind) -> None:
+    flown = Flown(kind).fly(6.0)
+    assert flown.command(512, 31) == 0
+    assert flown.command(512, 30) == 0
+    q, a = flown.last("ATTITUDE_QUATERNION"), flown.last("ATTITUDE")
+    w, x, y, z = q.q1, q.q2, q.q3, q.q4
+    assert atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)) == pytest.approx(a.roll, abs=1e-5)
+    assert atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)) == pytest.approx(a.yaw, abs=1e-5)
+
+
+def test_the_speed_of_what_they_fly_by_themselves_can_be_changed() -> None:
+    for kind in (Kind.PX4, Kind.ARDUCOPTER):
+        flown = Flown(kind)
+        assert flown.command(178, 1, 2.0, -1) == 0
+        assert flown.command(178, 1, -5.0, -1) != 0
+        place = ORIGIN.geodetic_from_ned(Vec(200.0, 0.0, 0.0))
+        x, y = round(place.latitude_deg * 1e7), round(place.longitude_deg * 1e7)
+        assert flown.command_int(192, -1, 1, 0, 0, x, y, 488.0 + 50.0, 0) == 0
+        flown.fly(10.0)
+        assert norm(flown.velocity) == pytest.approx(2.0, abs=0.01)
+    plane = Flown(Kind.ARDUPLANE)
+    assert plane.command(178, 0, 26.0, -1) == 0
+    assert plane.command(178, 0, 99.0, -1) == 4
+    plane.fly(5.0)
+    assert plane.airframe.motion.airspeed == pytest.approx(26.0)
+
+
+def test_a_plane_disarmed_by_force_glides_down() -> None:
+    flown = Flown(Kind.ARDUPLANE).fly(1.0)
+    assert flown.command(400, 0, 21196) == 0
+    flown.fly(10.0)
+    assert flown.height < 70.0
+    assert flown.airframe.motion.airspeed == pytest.approx(10.0)
