@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import signal
 import socket
 import subprocess
 import sys
@@ -11,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from onboard.runtime.bus_zenoh import open_zenoh
+from onboard.runtime.bus_zenoh import LEASE_MS, open_zenoh
 from onboard.runtime.config import ConfigError
 from onboard.runtime.inbox import QUEUE_MAX, Inbox
 from onboard.wire.topics import Delivery
@@ -137,7 +138,7 @@ async def test_endpoints_may_come_from_a_zenoh_file(tmp_path: Path) -> None:
 def test_a_program_ends_whether_the_bus_ever_came_or_not(closing: str) -> None:
     program = f"""
 import asyncio
-from onboard.runtime.bus_zenoh import open_zenoh
+from onboard.runtime.bus_zenoh import LEASE_MS, open_zenoh
 async def main():
     bus = await open_zenoh("tcp/127.0.0.1:{free_port()}")
     bus.announce("apollonius/range/vehicles/2/alive")
@@ -149,3 +150,33 @@ print("ended")
         [sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=False
     )
     assert (done.returncode, done.stdout) == (0, "ended\n"), done.stderr
+
+
+@pytest.mark.real
+@pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGSTOP])
+async def test_a_process_that_dies_or_hangs_is_seen_to_leave(end: signal.Signals) -> None:
+    endpoint = f"tcp/127.0.0.1:{free_port()}"
+    program = f"""
+import asyncio
+from onboard.runtime.bus_zenoh import LEASE_MS, open_zenoh
+async def main():
+    bus = await open_zenoh("{endpoint}")
+    bus.announce("apollonius/range/vehicles/2/alive")
+    await asyncio.sleep(60)
+asyncio.run(main())
+"""
+    station = await open_zenoh(endpoint, listen=True)
+    seen: list[bool] = []
+    station.presence("apollonius/range/vehicles/*/alive", lambda key, alive: seen.append(alive))
+    child = await asyncio.create_subprocess_exec(sys.executable, "-c", program)
+    try:
+        await until(lambda: seen == [True], 30.0)
+        child.send_signal(end)
+        await until(lambda: seen == [True, False], 3 * LEASE_MS / 1000)
+        assert not station.connected()
+    finally:
+        if child.returncode is None:
+            child.send_signal(signal.SIGCONT)
+            child.kill()
+        await child.wait()
+        await station.close()
