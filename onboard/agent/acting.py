@@ -27,7 +27,7 @@ from onboard.runtime.config import ConfigError
 from onboard.runtime.plugins import evader_strategy, pursuer_strategy
 from onboard.runtime.protocols import Clock
 from onboard.wire.geodesy import Frame
-from onboard.wire.swarm import Phase, Role, Setup, Severity
+from onboard.wire.swarm import Phase, PhaseChange, Role, Setup, Severity
 
 SILENT_S = 1.0  # a link silent for longer explains that the autopilot changed to hold by itself
 REGAIN_S = 6.0  # … for so long afterwards
@@ -69,7 +69,7 @@ class Acting:
         self._jumps = JumpWatch(config.safety.clock_jump_s)
         self._base_ns = clock.wall_ns()
         self._setup_seen = 0
-        self._phase_seen: object = None
+        self._phase_seen: PhaseChange | None = None
         self._failing = False
         self._alive_at = NEVER  # the strategy's last sign of life [s]
         self._silent_at = NEVER  # when the link was last found silent [s]
@@ -107,14 +107,14 @@ class Acting:
         phase = table.phase
         if phase is None or phase is self._phase_seen:
             return
-        self._phase_seen = phase
+        before, self._phase_seen = self._phase_seen, phase
         was = self.part.joined
         self.part.follow(phase, wall_ns)
         if phase.phase is Phase.RUNNING and not self.part.joined:
             self._journal.warning("late", "the game runs already: waiting for the master's resume")
         elif phase.phase is Phase.RUNNING and not was:
             self._journal.info("resumed", "the master lets this agent act")
-        else:
+        elif before is None or before.phase is not phase.phase:
             self._journal.info("phase", phase.phase.value + (f": {phase.reason}" if phase.reason else ""))
 
     def _consider(self, setup: Setup) -> None:
@@ -171,6 +171,9 @@ class Acting:
                 craft.adapter.enter(now)
             else:
                 self._orders.pilot(hands_back=False)
+        if craft.rebooted:
+            craft.rebooted = False
+            self._orders.pilot(hands_back=True)
         if craft.handed_back:
             craft.handed_back = False
             self._orders.pilot(hands_back=True)

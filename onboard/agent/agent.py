@@ -151,7 +151,8 @@ class Agent:
     # ------------------------------------------------------------------ what arrives
 
     def _hear(self, packet: Packet, now: float) -> None:
-        if self.craft.hear(packet, now) and now - self._stepped >= 0.8 * self._period:
+        new = self.craft.hear(packet, now)
+        if new and not self._stop.is_set() and now - self._stepped >= 0.8 * self._period:
             arrived_ns = self.clock.monotonic_ns()
             self.step(now)
             self.timing.latency(self._acted_ns - arrived_ns)

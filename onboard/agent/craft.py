@@ -69,6 +69,7 @@ class Craft:
         self.position_rate, self.setpoint_rate = Rate(), Rate()
         self.sent_at = NEVER  # of the last setpoint [s]
         self.handed_back = False  # a pilot gave control back since somebody last looked
+        self.rebooted = False  # what looked like a take-over was a restart, since somebody last looked
         self.taken = False  # somebody else took it since somebody last looked
         self.version: Version | None = None  # of the autopilot, once it has said so
         self.to = Target(config.id)
@@ -166,6 +167,8 @@ class Craft:
             self.taken = True
         if adapter.stage is Stage.ACTIVE and before in (Stage.TAKEN, Stage.LEFT):
             self.handed_back = True
+        if adapter.stage is Stage.IDLE and before is Stage.TAKEN:
+            self.rebooted = True  # it was no pilot: the autopilot had started again
 
     def chores(self, now: float) -> None:
         """Everything that is due beside setpoints: requests, and the adapter's own retries."""

@@ -100,5 +100,6 @@ class Orders:
     def pilot(self, hands_back: bool) -> None:
         """A pilot took over, or hands back: no order is in force any more."""
         self.way = None
+        self.resumed = hands_back
         if not hands_back:
             self.granted = False
