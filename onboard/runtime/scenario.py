@@ -273,7 +273,7 @@ def check(scenario: Scenario, name: str) -> Scenario:
     demand(f.wind.speed >= 0, "flight.wind.speed", f.wind.speed, "zero or more [m/s]")
     demand(f.wind.gust_sigma >= 0, "flight.wind.gust_sigma", f.wind.gust_sigma, "zero or more [m/s]")
     if f.fence is not None:
-        demand(len(f.fence.polygon) >= 3, "flight.fence.polygon", len(f.fence.polygon), "three corners or more")
+        demand(len(f.fence.polygon) >= 3, "flight.fence.polygon", len(f.fence.polygon), "three or more")
         demand(f.fence.height_min < f.fence.height_max, "flight.fence.height_min", f.fence.height_min,
                f"less than height_max = {f.fence.height_max:g} m")
     return scenario
