@@ -180,6 +180,7 @@ def build(spec: Spec, name: str) -> Aircraft:
             s.acceleration_min,
             s.acceleration_max,
             _share(dt / s.engine_lag),
+            s.engine_lag,
             s.drag,
             s.gravity,
             s.trim,

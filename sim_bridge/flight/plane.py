@@ -47,6 +47,7 @@ class SpeedLaw(NamedTuple):
     acceleration_min: float  # [m/s²] of the engine (and brakes), negative
     acceleration_max: float  # [m/s²]
     lag: float  # share of the engine's error removed per sample
+    lead: float  # [s] the engine's time constant: what the feed-forward looks ahead
     drag: float  # a_x of (33) [1/s]
     gravity: float  # a_θ of (33) [m/s² per unit of sin θ]
     trim: float  # V_b [m/s]: the speed at which drag is balanced
@@ -162,7 +163,8 @@ def step_speed(state: PlaneState, model: PlaneModel, demand: float) -> tuple[flo
     wanted = clamp(demand, model.speed_min, model.speed_max)
     weight = law.gravity * sin(state.pitch.angle)
     error = wanted - state.speed
-    known = law.drag * (wanted - law.trim) + weight  # fed forward, as a total-energy law does
+    rising = law.gravity * cos(state.pitch.angle) * state.pitch.rate
+    known = law.drag * (wanted - law.trim) + weight + law.lead * rising  # fed forward, as by total energy
     asked = law.gain * error + state.thrust_integral + known
     given = clamp(asked, law.acceleration_min, law.acceleration_max)
     integral = state.thrust_integral

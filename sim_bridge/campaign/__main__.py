@@ -1,0 +1,94 @@
+"""`python -m sim_bridge.campaign`: the tracking comparison and the spatial games, results into a folder."""
+
+from __future__ import annotations
+
+import os
+import platform
+import sys
+from pathlib import Path
+from typing import Annotated
+
+for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(_name, "1")
+
+import typer  # noqa: E402  (threads are set before anything imports NumPy)
+
+app = typer.Typer(add_completion=False, pretty_exceptions_enable=False, rich_markup_mode=None)
+Out = Annotated[Path, typer.Option(help="Folder for the results.")]
+
+
+def preface(title: str, command: str) -> str:
+    """What a result was made with."""
+    import numba
+    import numpy
+
+    return (
+        f"# {title}\n\n`{command}` on {platform.machine()} ({os.cpu_count()} cores), Python"
+        f" {platform.python_version()}, NumPy {numpy.__version__}, numba {numba.__version__}.\n"
+    )
+
+
+@app.command()
+def tracking(
+    seeds: Annotated[int, typer.Option(help="Flights a way.", min=2)] = 50,
+    route: Annotated[Path | None, typer.Option(help="Route file; default: the twenty kilometres.")] = None,
+    out: Out = Path("benchmarks/results"),
+) -> None:
+    """Strategy 1, Strategy 2, the intelligent module and straight flight along a timed route."""
+    from onboard.runtime.resources import configs
+    from onboard.runtime.route import load_route
+    from onboard.runtime.scenario import WindSpec
+    from sim_bridge.campaign.games import output
+    from sim_bridge.campaign.tracking import compare, table
+
+    flown = load_route(configs() / "routes" / "twenty_km.toml" if route is None else route)
+    text = preface("Tracking a timed route", f"python -m sim_bridge.campaign tracking --seeds {seeds}")
+    text += (
+        f"\nRoute {flown.name}, mean wind 5 m/s from a direction drawn by the seed, gusts of 3 m/s rms;"
+        f" {seeds} seeds, the same for every way. J = mean deviation / 10 m + mean |time error| / 1 s.\n"
+    )
+    for aircraft in ("nose", "coordinated", "slip"):
+        rows = compare(flown, aircraft, range(seeds), WindSpec(speed=5.0, gust_sigma=3.0))
+        text += f"\n## {aircraft}\n\n{table(rows)}\n"
+        print(f"\n{aircraft}\n{table(rows)}")
+    print(f"written: {output(out, 'tracking.md', text)}")
+
+
+@app.command()
+def games(
+    seeds: Annotated[int, typer.Option(help="Games a way and scenario.", min=1)] = 200,
+    scenario: Annotated[
+        list[Path] | None, typer.Option(help="Scenario files; default: five and six pursuers.")
+    ] = None,
+    figures: Annotated[Path | None, typer.Option(help="Folder for pictures of the first game.")] = None,
+    out: Out = Path("benchmarks/results"),
+) -> None:
+    """The spatial game with the evader's strategy and flying straight, on the same seeds."""
+    from onboard.runtime.scenario import load
+    from sim_bridge.campaign.figures import draw_stages
+    from sim_bridge.campaign.games import contest, output, play_seed, spatial, table
+
+    names = ["five", "six"]
+    scenarios = [load(path) for path in scenario] if scenario else [spatial(name) for name in names]
+    if scenario:
+        names = [path.stem for path in scenario]
+    contests = []
+    for name, one in zip(names, scenarios, strict=True):
+        print(f"{one.name}: {seeds} seeds, both ways", file=sys.stderr)
+        contests.append(contest(one, range(seeds)))
+        if figures is not None:
+            for path in draw_stages(one, play_seed(one, 0, False), figures, f"spatial-{name}"):
+                print(f"drawn: {path}")
+    text = preface("The spatial game", f"python -m sim_bridge.campaign games --seeds {seeds}")
+    text += (
+        "\nThe same seeds for both ways: a seed draws the pursuers' places about the scenario's, the"
+        " direction of the mean wind, the gusts and the tracks' noise.\n\n" + table(contests) + "\n"
+    )
+    print(table(contests))
+    print(f"written: {output(out, 'games.md', text)}")
+
+
+if __name__ == "__main__":
+    from onboard.runtime.program import run
+
+    run(app, "python -m sim_bridge.campaign")
