@@ -4,8 +4,8 @@
                        └────────── another mode than asked for: TAKEN ─────────┘
 
 A command is repeated at most every 80 ms until the heartbeat reports the mode: at 20 % loss each way seven
-tries leave 0.08 % unconfirmed. After an accepted answer the next heartbeat is awaited first, after a
-refusal a second passes. From IDLE, LEFT and TAKEN the pilot hands (back) by choosing the guided mode himself.
+tries leave 0.08 % unconfirmed. After an accepted answer the heartbeat that proves it is asked for at the same
+pace (it comes by itself only once a second, and may be lost), after a refusal a second passes. From IDLE, LEFT and TAKEN the pilot hands (back) by choosing the guided mode himself.
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ from onboard.wire.values import CommandAck
 RETRY = 0.08  # [s] between two tries
 PATIENCE = 25  # tries at that pace, then a warning and
 SLOW_RETRY = 0.5  # [s] this pace
-AFTER_YES = 1.5  # [s] an accepted command waits for the heartbeat (1 Hz)
+AFTER_YES = 1.5  # [s] an accepted command is not repeated for so long: the heartbeat is asked for
+HEARTBEAT = 0  # message id
 AFTER_NO = 1.0  # [s] a refused one waits before it is tried again
 ARM_AFTER_NO = 2.0  # [s] arming may be refused for many seconds although the pre-arm bit is set
 RESTART = 3.0  # [s] between the first mode and the first clock of an autopilot that started again
@@ -36,6 +37,16 @@ class Pacer:
         self.tries = 0
         self._next = NEVER
         self._refused = -1
+        self._proof_at = NEVER  # when to ask for the proof of an accepted command
+        self._proofs = 0
+
+    def proof_due(self, now: float) -> bool:
+        """Whether to ask now for the proof of what was accepted; counts it."""
+        if self._proof_at == NEVER or now < self._proof_at or self._proofs >= PATIENCE:
+            return False
+        self._proofs += 1
+        self._proof_at = now + RETRY
+        return True
 
     def due(self, now: float) -> bool:
         """Whether to send now; counts it."""
@@ -49,6 +60,8 @@ class Pacer:
         """Wait as the answer asks; True for a refusal not yet reported."""
         if result in (0, 5):
             self._next = now + AFTER_YES
+            if self._proof_at == NEVER:
+                self._proof_at = now + RETRY  # most send a heartbeat at once when the mode changes
             return False
         self._next = now + after_no
         new = result != self._refused
@@ -132,6 +145,8 @@ class Control:
             if self._mode.tries == PATIENCE:
                 text = f"{self._wanted} asked for {PATIENCE} times, {telemetry.mode} reported: asking on"
                 self._notes.append(Note("error", "mode_unconfirmed", text))
+        elif asking and known and self._mode.proof_due(now):
+            messages.append(commands.request_message(self.to, HEARTBEAT))
         if self._arm is not None and known and self._arm.due(now):
             messages.append(commands.arm(self.to))
         notes, self._notes = self._notes, []
