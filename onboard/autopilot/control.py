@@ -4,8 +4,9 @@
                        └────────── another mode than asked for: TAKEN ─────────┘
 
 A command is repeated at most every 80 ms until the heartbeat reports the mode: at 20 % loss each way seven
-tries leave 0.08 % unconfirmed. After an accepted answer the heartbeat that proves it is asked for at the same
-pace (it comes by itself only once a second, and may be lost), after a refusal a second passes. From IDLE, LEFT and TAKEN the pilot hands (back) by choosing the guided mode himself.
+tries leave 0.08 % unconfirmed. After an accepted answer the heartbeat that proves it is asked for at the
+same pace (it comes by itself only once a second, and may be lost), after a refusal a second passes. From
+IDLE, LEFT and TAKEN the pilot hands (back) by choosing the guided mode himself.
 """
 
 from __future__ import annotations
