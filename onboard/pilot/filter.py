@@ -158,7 +158,9 @@ class TrackFilter:
         numbers = (t, *position, *variance, *(velocity or ()))
         if not all(-BOUND < number < BOUND for number in numbers) or min(variance[:3]) < 0.0:
             return Fate.NOT_FINITE
-        sample = _Sample(t, Vec(*map(float, position)), velocity or ZERO, self._floored(variance, velocity is not None))
+        place = Vec(*map(float, position))
+        speed = ZERO if velocity is None else Vec(*map(float, velocity))
+        sample = _Sample(float(t), place, speed, self._floored(variance, velocity is not None))
         steps = self._steps
         if not steps:
             self._restart([sample])

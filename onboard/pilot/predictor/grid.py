@@ -29,6 +29,11 @@ class Grid:
     def __len__(self) -> int:
         return len(self._rows)
 
+    @property
+    def last(self) -> int:
+        """The newest point is at instant last · step."""
+        return self._last
+
     def clear(self) -> None:
         """Forget everything."""
         self._rows.clear()

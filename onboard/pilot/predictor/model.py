@@ -28,7 +28,7 @@ class ModelSettings(NamedTuple):
     """Settings of the predictor that flies."""
 
     horizons: tuple[int, ...] = (1, 2, 5, 10, 20)  # [steps]
-    points: int = 16  # of a window
+    points: int = 20  # of a window
     ladder: tuple[int, int] = (8, 30)  # from here the network over constant velocity; from here the ridge
     penalties: tuple[float, ...] = (3e-3, 1e-6, 1e-4, 3e-2)  # of the ridge; the first is preferred
     preference: float = 0.9  # another penalty must bring the held-out error below this share
@@ -154,8 +154,12 @@ def refresh(positions: Array, velocities: Array, model: Model, settings: ModelSe
     return model._replace(coefficients=fresh)
 
 
-def forecast(model: Model, positions: Array, velocity: Array, settings: ModelSettings) -> Forecast:
-    """Predict from the last positions (at least model.points, 3) and the velocity now (3,) [m a step]."""
+def forecast(
+    model: Model, positions: Array, velocity: Array, settings: ModelSettings, trust: Array | None = None
+) -> Forecast:
+    """Predict from the last positions (at least model.points, 3) and the velocity now (3,) [m a step].
+
+    `trust` (H,) scales the innovations: see Trust."""
     last = np.array([model.points - 1])
     recent = positions[-model.points :]
     newest = np.broadcast_to(velocity, recent.shape)
@@ -170,7 +174,8 @@ def forecast(model: Model, positions: Array, velocity: Array, settings: ModelSet
         innovation[:, model.axes] += said * by_net[:, None]
     steady = np.array([kind is PredictorKind.CONSTANT_VELOCITY for kind in model.kinds])
     innovation[steady] = 0.0
-    turned = turn((innovation * model.believed[:, None])[None], view.cos, -view.sin)[0]
+    share = model.believed if trust is None else model.believed * trust
+    turned = turn((innovation * share[:, None])[None], view.cos, -view.sin)[0]
     return Forecast(velocity + turned, model.kinds, model.sigma)
 
 

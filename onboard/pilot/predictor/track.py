@@ -15,6 +15,7 @@ from onboard.pilot.predictor.grid import Grid
 from onboard.pilot.predictor.model import Model, ModelSettings
 from onboard.pilot.predictor.path import Path, at, path, sound
 from onboard.pilot.predictor.prediction import REFUSAL, Prediction, PredictorKind
+from onboard.pilot.predictor.trust import Trust
 
 FARTHEST = 600.0  # nothing is said about instants farther from the newest sample than this [s]
 
@@ -41,6 +42,7 @@ class TrackPredictor:
         self.filter = TrackFilter(self.settings.filter)
         self.grid = Grid(self.settings.step, self.settings.window, self.settings.gap)
         self.model: Model | None = None
+        self.trust = Trust(self.settings.model.horizons)
         self.trainings = 0
         self._seed = seed
         self._life = 0  # counts restarts: a training that began before one is thrown away
@@ -58,6 +60,7 @@ class TrackPredictor:
         elif fate is Fate.RESTARTED:
             self.grid.clear()
             self.grid.extend(self.filter)
+            self.trust.clear()
             self.model = None
             self._life += 1
         else:
@@ -108,11 +111,18 @@ class TrackPredictor:
         return self.model is not None and self.grid.added != self._fitted
 
     def refresh(self) -> None:
-        """Fit the ridge anew to the grid: a slice of less than 1 ms."""
-        if self.model is not None:
-            self.model = flying.refresh(*self.grid.arrays(), self.model, self.settings.model)
-            self._fitted = self.grid.added
-            self._fresh = False
+        """Fit the ridge anew to the grid, and judge the last predictions: a slice of less than 1 ms."""
+        if self.model is None:
+            return
+        positions, velocities = self.grid.arrays()
+        self.model = flying.refresh(positions, velocities, self.model, self.settings.model)
+        self._fitted = self.grid.added
+        self._fresh = False
+        self.trust.judge(self.grid.last, positions)
+        if len(positions) >= self.model.points:
+            said = flying.forecast(self.model, positions, velocities[-1], self.settings.model)
+            innovation = said.velocities - velocities[-1]
+            self.trust.tell(self.grid.last, positions[-1], velocities[-1], innovation)
 
     def _line(self) -> Path | None:
         """The path from the newest sample on; None where the model cannot speak."""
@@ -128,7 +138,8 @@ class TrackPredictor:
             return None
         here = self.filter.estimate(newest)
         with np.errstate(over="ignore", invalid="ignore"):
-            said = flying.forecast(model, places, np.array(here.velocity) * step, self.settings.model)
+            velocity = np.array(here.velocity) * step
+            said = flying.forecast(model, places, velocity, self.settings.model, self.trust.shares())
         horizons = self.settings.model.horizons
         line = path(newest, here.position, here.velocity, here.sigma, said, horizons, step)
         moves = np.diff(places, axis=0)
