@@ -14,6 +14,12 @@ import typer  # noqa: E402  (threads are set before anything imports NumPy)
 from onboard.runtime.config import ConfigError  # noqa: E402
 from onboard.runtime.program import run  # noqa: E402
 
+ScenarioArgument = Annotated[
+    Path, typer.Argument(help="Scenario file, or the name of a shipped one (demo, one-on-one …).")
+]
+SeedOption = Annotated[int | None, typer.Option(help="Seed, in place of the scenario's.")]
+BusOption = Annotated[str, typer.Option(help="Zenoh endpoint [tcp/127.0.0.1:7447].")]
+
 app = typer.Typer(
     help="Plays the autopilots in software, so that everything runs without hardware.",
     no_args_is_help=True,
@@ -90,6 +96,93 @@ def planar(
             print(f"animation of the first game in {animate}")
     if agree != total:
         raise typer.Exit(1)
+
+
+@app.command(epilog="Example: sim-bridge serve demo, and then, elsewhere: onboard-agent --id 2; gcs")
+def serve(
+    scenario: ScenarioArgument,
+    bus: BusOption = "",
+    listen: Annotated[
+        bool, typer.Option("--listen/--join", help="Be the one that the others connect to.")
+    ] = True,
+    game: Annotated[str, typer.Option(help="Name of the game on the bus.")] = "game",
+    zenoh: Annotated[Path | None, typer.Option(help="Zenoh configuration file.")] = None,
+    referee: Annotated[
+        bool, typer.Option("--referee/--no-referee", help="Be the game's master, unless another one is.")
+    ] = True,
+    once: Annotated[bool, typer.Option("--once", help="End when the game has ended.")] = False,
+    seed: SeedOption = None,
+    ports: Annotated[Path | None, typer.Option(help="Write the agents' ports to this JSON file.")] = None,
+) -> None:
+    """Play the autopilots of a scenario on UDP in real time, with its sensor and master on the bus."""
+    from sim_bridge.fly import scenario_file
+    from sim_bridge.serve import Options
+    from sim_bridge.serve import serve as run_server
+
+    options = Options(
+        game=game, bus=bus, listen=listen, zenoh=zenoh, referee=referee, once=once, seed=seed, ports=ports
+    )
+    run_server(scenario_file(scenario), options, lambda line: print(line, flush=True))
+
+
+@app.command(epilog="Examples: sim-bridge fly demo | sim-bridge fly --fast --seed 3 my.toml --runs /tmp/runs")
+def fly(
+    scenario: ScenarioArgument,
+    fast: Annotated[bool, typer.Option("--fast", help="One process, virtual time, deterministic.")] = False,
+    seed: SeedOption = None,
+    runs: Annotated[Path, typer.Option(help="Folder for run folders.")] = Path("runs"),
+    bus: BusOption = "",
+    report: Annotated[bool, typer.Option("--report/--no-report", help="Make the report at the end.")] = True,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Only the result.")] = False,
+) -> None:
+    """Fly a whole game, agents included, and leave a run folder; exit 1 when it ended without a verdict."""
+    from sim_bridge import fly as room
+
+    options = room.Options(fast, seed, runs, bus, report, quiet)
+    flown = room.fly(room.scenario_file(scenario), options, lambda line: print(line, flush=True))
+    print(room.story(flown))
+    if flown.summary.verdict not in ("captured", "arrived", "escaped"):
+        raise typer.Exit(1)
+
+
+scenario_app = typer.Typer(help="Make and check scenario files.", no_args_is_help=True, rich_markup_mode=None)
+app.add_typer(scenario_app, name="scenario")
+
+
+@scenario_app.command("new")
+def scenario_new(
+    file: Annotated[Path, typer.Argument(help="File to write; it must not exist.")],
+) -> None:
+    """Write a commented template."""
+    from sim_bridge.scenario_tools import new
+
+    print(new(file))
+
+
+@scenario_app.command("check")
+def scenario_check(scenario: ScenarioArgument) -> None:
+    """Check a scenario; print turn radii, free cones and the expected duration."""
+    from onboard.runtime.scenario import load
+    from sim_bridge.fly import scenario_file
+    from sim_bridge.scenario_tools import check
+
+    print(check(load(scenario_file(scenario))))
+
+
+@app.command()
+def design(
+    aircraft: Annotated[
+        Path | None, typer.Argument(help="Aircraft file; none: configs/aircraft/nose.toml.")
+    ] = None,
+    figures: Annotated[Path | None, typer.Option(help="Folder for Bode and step plots.")] = None,
+) -> None:
+    """Print margins, bandwidth and step-response figures of the configured aircraft's loops."""
+    from onboard.runtime.resources import configs
+    from sim_bridge.design import design as report_on
+
+    if figures is not None:
+        _folder(figures)
+    print(report_on(aircraft or configs() / "aircraft" / "nose.toml", figures))
 
 
 def _folder(path: Path) -> None:

@@ -11,27 +11,52 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, BinaryIO
 
-import msgspec
-
 from gcs.recorder import Recorder
 from onboard.agent.agent import Agent
 from onboard.agent.config import AgentConfig
 from onboard.runtime.bus_memory import MemoryBroker, MemoryBus
 from onboard.runtime.impairment import Impaired, Impairment, impairment_of
 from onboard.runtime.links import memory_pair
-from onboard.runtime.protocols import Clock, Link, Sample
+from onboard.runtime.master import GameMaster
+from onboard.runtime.protocols import Bus, Clock, Link, Sample
 from onboard.runtime.scenario import Scenario
-from onboard.wire import swarm
 from onboard.wire.swarm import Event, Health, Outcome, Phase, Role
 from onboard.wire.tlog import TlogWriter
-from onboard.wire.topics import EVENTS, HEALTH, everything, key
+from onboard.wire.topics import everything
 from sim_bridge.bridge import Bridge, mute
+from sim_bridge.observer import Observer
 from sim_bridge.staging import generator
-from sim_bridge.summary import Summary, VehicleSummary, kept, reached
+from sim_bridge.summary import Summary
 
 GAME = "rehearsal"
-EVENTS_MAX = 100_000
+TOLD_MAX = 100_000
 LOOK_S = 0.05
+
+
+class BusRecorder:
+    """Records a whole game into `FOLDER/recording.mcap`, as the ground station's recorder does."""
+
+    def __init__(self, folder: Path, game: str, clock: Clock) -> None:
+        self._recorder = Recorder(folder / "recording.mcap", game)
+        self._game = game
+        self._clock = clock
+
+    def hear(self, bus: Bus) -> None:
+        """Record everything on a bus."""
+        bus.subscribe(everything(self._game), self._record)
+
+    async def run(self) -> None:
+        """Put on the disk what is due, until cancelled."""
+        while True:
+            self._recorder.tick(self._clock.wall_ns())
+            await asyncio.sleep(0.2)
+
+    def close(self) -> None:
+        """End the recording; idempotent."""
+        self._recorder.close()
+
+    def _record(self, sample: Sample) -> None:
+        self._recorder.record(sample.key, sample.payload, self._clock.wall_ns())
 
 
 class Rehearsal:
@@ -60,8 +85,6 @@ class Rehearsal:
         self.clock = clock
         self.game = game
         self.seed = scenario.seed if seed is None else seed
-        self.events: list[Event] = []
-        self.health: dict[int, Health] = {}
         self.told: list[str] = []
         self.agents: dict[int, Agent] = {}
         self._tasks: dict[int, asyncio.Task[None]] = {}
@@ -84,6 +107,7 @@ class Rehearsal:
             self.links[id] = Impaired(agent, impairment, generator(self.seed, f"link-{id}"))
             sides[id] = (autopilot,)
         self.bus: MemoryBus = self.broker.connect("observer")
+        self.observer = Observer(scenario, self.seed, "fast", game, self.bus)
         self.bridge = Bridge(
             scenario,
             clock,
@@ -97,19 +121,17 @@ class Rehearsal:
             battery_s=battery_s,
         )
         self._world: asyncio.Task[None] | None = None
-        self._recorder: Recorder | None = None
+        self._recorder: BusRecorder | None = None
 
     # ------------------------------------------------------------------ life
 
     async def __aenter__(self) -> Rehearsal:
         if self._folder is not None:
-            self._recorder = Recorder(self._folder / "recording.mcap", self.game)
+            self._recorder = BusRecorder(self._folder, self.game, self.clock)
+            self._recorder.hear(self.bus)
             for id in self.scenario.ids:
-                file = (self._folder / f"vehicle-{id}.tlog").open("wb")
+                file: BinaryIO = (self._folder / f"vehicle-{id}.tlog").open("wb")
                 self._tlogs[id] = (file, TlogWriter(file))
-            self.bus.subscribe(everything(self.game), self._record)
-        self.bus.subscribe(key(self.game, EVENTS), self._on_event)
-        self.bus.subscribe(key(self.game, HEALTH), self._on_health)
         self._world = asyncio.create_task(self.bridge.run(), name="world")  # ended in __aexit__
         if self._with_agents:
             for id in self.scenario.ids:
@@ -158,18 +180,7 @@ class Rehearsal:
 
     def start_agent(self, id: int) -> Agent:
         """Start (or start again) the agent of a vehicle."""
-        role = Role.EVADER if id == self.scenario.ids[0] else Role.PURSUER
-        spec = self.scenario.vehicles[self.scenario.ids.index(id)]
-        settings: dict[str, Any] = {
-            "id": id,
-            "role": role,
-            "game": self.game,
-            "take_control": True,
-            "may_arm": self.scenario.flight.ground_start,
-            "control_rate_hz": self.scenario.flight.control_rate_hz,
-            "strategy": spec.strategy,
-        }
-        config = AgentConfig(**(settings | dict(self._configure.get(id, {}))))
+        config = self.configuration()[id]
         record = None
         if id in self._tlogs:
             record = self._tlogs[id][1].write
@@ -186,6 +197,23 @@ class Rehearsal:
         self.agents[id] = agent
         self._tasks[id] = asyncio.create_task(agent.run(), name=f"agent-{id}")  # ended by kill_agent
         return agent
+
+    def configuration(self) -> dict[int, AgentConfig]:
+        """What each agent is told."""
+        flight = self.scenario.flight
+        found = {}
+        for id, spec in zip(self.scenario.ids, self.scenario.vehicles, strict=True):
+            settings: dict[str, Any] = {
+                "id": id,
+                "role": Role.EVADER if spec is self.scenario.evader else Role.PURSUER,
+                "game": self.game,
+                "take_control": True,
+                "may_arm": flight.ground_start,
+                "control_rate_hz": flight.control_rate_hz,
+                "strategy": spec.strategy,
+            }
+            found[id] = AgentConfig(**(settings | dict(self._configure.get(id, {}))))
+        return found
 
     def kill_agent(self, id: int) -> None:
         """The agent falls silent at once, as after `kill -9`."""
@@ -207,7 +235,7 @@ class Rehearsal:
         return (self.clock.wall_ns() - t0) / 1e9 if t0 else 0.0
 
     @property
-    def master(self) -> Any:
+    def master(self) -> GameMaster:
         """The game's master."""
         assert self.bridge.master is not None
         return self.bridge.master.rules
@@ -215,54 +243,30 @@ class Rehearsal:
     @property
     def phase(self) -> Phase:
         """The game's phase."""
-        phase: Phase = self.master.phase
-        return phase
+        return self.master.phase
 
     @property
     def outcome(self) -> Outcome | None:
         """How it ended, once it has."""
-        outcome: Outcome | None = self.master.outcome
-        return outcome
+        return self.master.outcome
+
+    @property
+    def events(self) -> list[Event]:
+        """All events so far."""
+        return self.observer.events
+
+    @property
+    def health(self) -> dict[int, Health]:
+        """The last health of each vehicle's agent."""
+        return self.observer.health
 
     def kinds(self, id: int) -> list[str]:
         """Kinds of a vehicle's events so far, in order."""
-        return [event.kind for event in self.events if event.id == id]
+        return self.observer.kinds(id)
 
     def summary(self) -> Summary:
         """The run in figures, all of virtual time."""
-        vehicles = []
-        for id, spec in zip(self.scenario.ids, self.scenario.vehicles, strict=True):
-            health = self.health.get(id)
-            role = "evader" if spec is self.scenario.evader else "pursuer"
-            vehicles.append(VehicleSummary(
-                id=id,
-                role=role,
-                autopilot=health.autopilot if health else "",
-                stage=health.stage if health else "never heard",
-                mode=health.mode if health else "",
-                smallest_distance=kept(self.master.nearest.get(id)),
-                telemetry_rate_hz=round(health.telemetry_rate_hz, 3) if health else 0.0,
-                setpoint_rate_hz=round(health.setpoint_rate_hz, 3) if health else 0.0,
-                counters=dict(sorted(health.counters.items())) if health else {},
-                link={k: v for k, v in sorted(self.links[id].counters().items()) if v},
-                events=len([e for e in self.events if e.id == id]),
-            ))
-        outcome = self.outcome
-        return Summary(
-            scenario=self.scenario.name,
-            scenario_hash=self.scenario.hash(),
-            seed=self.seed,
-            mode="fast",
-            verdict=outcome.verdict if outcome else "none",
-            reason=outcome.reason if outcome else "",
-            time=round(outcome.time, 6) if outcome else 0.0,
-            captor=outcome.captor if outcome else 0,
-            smallest_distance=kept(outcome.smallest_distance if outcome else None),
-            expected=reached(self.scenario),
-            tracks_measured=self.bridge.sensor.measured,
-            tracks_dropped=self.bridge.sensor.dropped,
-            vehicles=tuple(vehicles),
-        )
+        return self.observer.summary(self.master, self.outcome, self.bridge.sensor, self.links)
 
     # ------------------------------------------------------------------ inside
 
@@ -271,28 +275,8 @@ class Rehearsal:
 
     def _tell(self, line: str) -> None:
         self.told.append(line)
-        del self.told[:-EVENTS_MAX]
+        del self.told[:-TOLD_MAX]
         self._say(line)
-
-    def _record(self, sample: Sample) -> None:
-        if self._recorder is not None:
-            self._recorder.record(sample.key, sample.payload, self.clock.wall_ns())
-
-    def _on_event(self, sample: Sample) -> None:
-        event = swarm.EVENT.decode(sample.payload, self.bridge_drops)
-        if event is not None and len(self.events) < EVENTS_MAX:
-            self.events.append(event)
-
-    def _on_health(self, sample: Sample) -> None:
-        health = swarm.HEALTH.decode(sample.payload, self.bridge_drops)
-        if health is not None:
-            self.health[health.id] = health
-
-    @property
-    def bridge_drops(self) -> Any:
-        """Bad payloads by cause, as the bridge counts them."""
-        assert self.bridge.master is not None
-        return self.bridge.master.drops
 
     def _look_after_tasks(self) -> None:
         """A task that failed ends the rehearsal: nothing is swallowed."""
@@ -302,7 +286,3 @@ class Rehearsal:
                 if error is not None:
                     raise error
 
-
-def as_json(value: object) -> bytes:
-    """Indented JSON with a newline at the end."""
-    return msgspec.json.format(msgspec.json.encode(value), indent=1) + b"\n"

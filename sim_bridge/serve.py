@@ -26,6 +26,7 @@ from sim_bridge.staging import kind_of
 from sim_bridge.world import Tap
 
 HOST = "127.0.0.1"
+Started = Callable[[Bridge, ZenohBus, dict[int, int]], None]  # the bridge, its bus, the agents' ports
 
 
 class Options(msgspec.Struct, frozen=True, kw_only=True):
@@ -59,8 +60,9 @@ async def serve_scenario(
     say: Callable[[str], None],
     tap: Tap | None = None,
     folder: Path | None = None,
+    started: Started | None = None,
 ) -> Outcome | None:
-    """`serve` on the running loop; recordings of wind lie in `folder`."""
+    """`serve` on the running loop; recordings of wind lie in `folder`; `started` is told what is up."""
     loop, stop = asyncio.get_running_loop(), asyncio.Event()
     radios: dict[int, Radio] = {}
     bus: ZenohBus | None = None
@@ -91,6 +93,8 @@ async def serve_scenario(
             referee=options.referee,
         )
         _introduce(scenario, options, ports, radios, bus, say)
+        if started is not None:
+            started(bridge, bus, ports)
         await _until_stopped(bridge, bus, options, stop, say)
         bridge.close()
         return bridge.master.rules.outcome if bridge.master is not None else None
