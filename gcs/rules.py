@@ -14,7 +14,8 @@ import msgspec
 from gcs.alerts import Finding
 from gcs.picture import Picture, Presence, VehicleView
 from onboard.core.safety import fence as fences
-from onboard.core.safety.policy import Policy
+from onboard.core.safety.policy import Action, Cause, Policy
+from onboard.core.safety.words import ACTIONS, CAUSES
 from onboard.core.vectors import Vec, distance
 from onboard.wire.swarm import SCHEMA, Fence, Phase, Role, Severity
 
@@ -23,6 +24,7 @@ SUPERVISOR = Policy()  # what both judge, they judge by the same thresholds and 
 GUIDED_MODES = frozenset({"GUIDED", "OFFBOARD"})
 ACTIVE = frozenset({Phase.STAGING, Phase.READY, Phase.RUNNING})
 ERROR, WARNING = Severity.ERROR, Severity.WARNING
+NO_ALERT = frozenset({"", ACTIONS[Action.PASS], ACTIONS[Action.CLIP]})  # of the supervisor's actions
 BAD_S = 5.0  # a bad message is an alert for so long
 
 
@@ -208,8 +210,9 @@ def _autopilot(vehicle: VehicleView, in_force: InForce, limits: Thresholds) -> I
 
 def _supervisor(vehicle: VehicleView) -> Iterator[Finding]:
     spoken = vehicle.decision.supervisor if vehicle.decision and vehicle.decision_age_s < 1.0 else ""
-    if spoken not in ("", "ok"):
-        reason = f": {vehicle.decision.reason}" if vehicle.decision and vehicle.decision.reason else ""
+    why = vehicle.decision.reason if vehicle.decision else ""
+    if spoken not in NO_ALERT and why != CAUSES[Cause.ORDER]:
+        reason = f": {why}" if why else ""
         yield Finding(
             "supervisor", vehicle.id, WARNING, f"vehicle {vehicle.id}'s supervisor orders {spoken}{reason}",
             "it keeps the vehicle safe; mend the cause, then `resume`", 0.2,

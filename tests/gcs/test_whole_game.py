@@ -1,0 +1,153 @@
+"""The station beside a whole game: real agents, simulated autopilots, virtual time."""
+
+from __future__ import annotations
+
+import asyncio
+from contextlib import asynccontextmanager
+
+import pytest
+
+from gcs.picture import Presence
+from gcs.station import Station
+from onboard.agent import acting
+from onboard.runtime.impairment import CLEAR, CUT
+from onboard.runtime.loop import virtual_clock
+from onboard.wire.swarm import CommandKind, Phase
+from sim_bridge.rehearsal import Rehearsal
+from tests.support.aborts import CHASE, WITHIN_S, trials
+from tests.support.virtual import virtual
+
+pytestmark = pytest.mark.game
+
+
+@asynccontextmanager
+async def game_of_six():
+    """A game that runs, and a station that watches it."""
+    async with Rehearsal(CHASE, virtual_clock()) as game:
+        station = Station(game.broker.connect("gcs"), game.clock, game.game, operator="anna")
+        task = asyncio.create_task(station.run())
+        try:
+            assert await game.until(lambda: game.phase is Phase.RUNNING, 60.0)
+            await asyncio.sleep(2.0)
+            yield game, station
+        finally:
+            task.cancel()
+            await asyncio.gather(task, return_exceptions=True)
+
+
+@pytest.fixture(autouse=True)
+def untrained(monkeypatch):
+    """Predictors have no part in these stories, and take most of the time."""
+    monkeypatch.setattr(acting, "TRAINING_SLICES", 0)
+
+
+def presence(station: Station, i: int) -> Presence:
+    vehicle = station.picture().vehicle(i)
+    assert vehicle is not None
+    return vehicle.presence
+
+
+def names(station: Station) -> set[str]:
+    return {alert.name for alert in station.picture().alerts}
+
+
+@virtual
+async def test_the_picture_of_a_running_game_is_whole_and_calm():
+    async with game_of_six() as (_, station):
+        picture = station.picture()
+        assert [v.presence for v in picture.vehicles] == [Presence.PRESENT] * 6
+        assert all(v.token and v.armed and v.mode == "GUIDED" for v in picture.vehicles)
+        assert all(v.state_rate_hz > 15.0 for v in picture.vehicles)
+        assert all(v.rule for v in picture.vehicles)
+        assert picture.game.phase is Phase.RUNNING
+        assert picture.game.setup is not None
+        assert picture.game.setup.scenario == "chase"
+        assert {t.id for t in picture.tracks} == {1, 2, 3, 4, 5, 6}
+        assert picture.assessment is not None
+        assert len(picture.assessment.prospects) == 5
+        assert picture.alerts == ()
+        assert picture.dropped == ()
+
+
+@pytest.mark.parametrize("how", ["killed", "silent", "radio cut"])
+def test_an_agent_that_falls_silent_is_lost_after_one_second_and_seen_within_one_and_a_half(how):
+    @virtual
+    async def story() -> None:
+        async with game_of_six() as (game, station):
+            bus = game.agents[4].bus
+            if how == "killed":
+                game.kill_agent(4)  # token and all
+                await bus.close()
+            elif how == "silent":
+                bus.publish = lambda *_: None  # the process is stopped; its token stays
+            else:
+                bus._online = False  # the radio is out of reach
+            await asyncio.sleep(0.9)
+            assert presence(station, 4) is Presence.PRESENT
+            await asyncio.sleep(0.6)
+            assert presence(station, 4) is Presence.LOST
+            assert "lost:4" in names(station)
+            assert [presence(station, i) for i in (1, 2, 3, 5, 6)] == [Presence.PRESENT] * 5
+            await asyncio.sleep(5.0)
+            if how == "killed":
+                game.start_agent(4)
+            elif how == "silent":
+                del bus.publish
+            else:
+                bus._online = True
+            await asyncio.sleep(2.0)
+            assert presence(station, 4) is Presence.PRESENT
+            assert "lost:4" not in names(station)
+
+    story()
+
+
+@virtual
+async def test_a_cut_link_to_the_autopilot_is_not_a_lost_vehicle():
+    async with game_of_six() as (game, station):
+        game.impair(3, CUT)
+        await asyncio.sleep(3.0)
+        assert presence(station, 3) is Presence.PRESENT
+        assert "autopilot_silent:3" in names(station)
+        assert "lost:3" not in names(station)
+        game.impair(3, CLEAR)
+        await asyncio.sleep(4.0)
+        assert "autopilot_silent:3" not in names(station)
+
+
+@virtual
+async def test_hold_resume_and_return_are_confirmed_by_what_the_autopilots_report():
+    async with game_of_six() as (game, station):
+        orders = {CommandKind.HOLD: "LOITER", CommandKind.RESUME: "GUIDED", CommandKind.RETURN: "RTL"}
+        for kind, mode in orders.items():
+            command = station.command(kind, (2, 3))
+            assert await game.until(lambda c=command: done(station, c), 5.0)
+            await asyncio.sleep(1.5)
+            assert [station.picture().vehicle(i).mode for i in (2, 3)] == [mode, mode]
+            assert station.picture().vehicle(4).mode == "GUIDED"
+            assert names(station) == set()
+
+
+@virtual
+async def test_a_pilot_who_takes_over_is_told_to_the_ground():
+    async with game_of_six() as (game, station):
+        game.bridge.world.vehicles[5].autopilot.pilot_mode(game.clock.monotonic_ns(), "STABILIZE")
+        await asyncio.sleep(2.0)
+        assert "handed_over:5" in names(station)
+        assert any("not by this agent: hands off" in line.text for line in station.picture().log)
+
+
+def done(station: Station, command: str) -> bool:
+    view = station.watch.book.view(command, station.now_ns())
+    return view is not None and view.confirmed
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_an_abort_of_six_is_confirmed_within_two_seconds_though_three_in_ten_messages_are_lost(seed):
+    found = trials(25, seed)
+    assert len(found) == 25
+    late = [trial for trial in found if trial.took_s > WITHIN_S]
+    assert len(late) <= 1, [round(trial.took_s, 2) for trial in found]
+    for trial in late:  # who has not confirmed is named
+        assert trial.unconfirmed
+        assert all(f"{i}" in trial.named[0] for i in trial.unconfirmed)
