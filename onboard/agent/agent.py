@@ -32,6 +32,7 @@ from onboard.wire.topics import ALIVE, COMMAND, DECISION, HEALTH, STATE, key
 
 STATE_EVERY_S = 0.045  # 20 Hz at the control rate
 DECISION_EVERY_S = 0.095
+LATE = 1.3  # periods after a step without a position: then the timer causes the next
 ADAPTER_EVERY_S = 0.075  # the adapter's own retries want 80 ms
 LEAVE_S = 1.4  # to leave the vehicle in a mode it can hold alone
 _NS = 1_000_000_000
@@ -79,7 +80,7 @@ class Agent:
         self.table = Table(config.game, config.id, config.role, nonce, clock, bus, self.journal)
         self.orders = Orders(Way.RETURN if config.safety.abort is KnockOff.RETURN else Way.HOLD)
         self.acting = Acting(config, clock, self.craft, self.table, self.orders, self.journal)
-        self.timing = Timing()
+        self.timing = Timing(1.0 / config.control_rate_hz)
         self.stage = "waiting"
         self.lacks: tuple[str, ...] = ()
         self._beat = beat
@@ -87,8 +88,10 @@ class Agent:
         self._period = 1.0 / config.control_rate_hz
         self._stepped = self._state_at = self._decision_at = NEVER
         self._acted_ns = 0
+        self._by_timer = False
         self._connected = True
-        self._pace = Pace("control", min(self._period, ADAPTER_EVERY_S))
+        self._late: asyncio.TimerHandle | None = None
+        self._pace = Pace("chores", ADAPTER_EVERY_S)
         self._keys = {topic: key(config.game, topic, config.id) for topic in (STATE, DECISION, HEALTH)}
 
     @property
@@ -107,11 +110,12 @@ class Agent:
         served = self.bus.serve(key(config.game, COMMAND, config.id), self._command)
         token = self.bus.announce(key(config.game, ALIVE, config.id))
         self.radio.open(self._hear)
+        self._expect()
         beat, health = Pace("heartbeat", 1.0), Pace("health", 0.5)
         try:
             async with asyncio.TaskGroup() as group:
                 tasks = [
-                    group.create_task(periodic(self._pace, self._timer, self.clock), name="control"),
+                    group.create_task(periodic(self._pace, self._timer, self.clock), name="chores"),
                     group.create_task(periodic(beat, self.craft.heartbeat, self.clock), name="heartbeat"),
                     group.create_task(periodic(health, self._report, self.clock), name="health"),
                 ]
@@ -120,6 +124,8 @@ class Agent:
                     task.cancel()
                 await self._leave()
         finally:
+            if self._late is not None:
+                self._late.cancel()
             self.craft.close()
             served.close()
             token.close()
@@ -152,17 +158,32 @@ class Agent:
 
     def _hear(self, packet: Packet, now: float) -> None:
         new = self.craft.hear(packet, now)
-        if new and not self._stop.is_set() and now - self._stepped >= 0.8 * self._period:
+        # After a step by the timer the next position counts sooner, or steps would stay with the timer.
+        wait = (0.4 if self._by_timer else 0.8) * self._period
+        if new and not self._stop.is_set() and now - self._stepped >= wait:
+            self._by_timer = False
+            self._expect()
             arrived_ns = self.clock.monotonic_ns()
             self.step(now)
             self.timing.latency(self._acted_ns - arrived_ns)
 
+    def _expect(self) -> None:
+        """Step by the timer if no position has caused a step by then."""
+        if self._late is not None:
+            self._late.cancel()
+        self._late = asyncio.get_running_loop().call_later(LATE * self._period, self._overdue)
+
+    def _overdue(self) -> None:
+        if self._stop.is_set():
+            return
+        self._by_timer = True
+        self._expect()
+        self.timing.timer_steps += 1
+        self.step(self.now)
+
     def _timer(self) -> None:
         now = self.now
-        if now - self._stepped >= 1.4 * self._period:
-            self.timing.timer_steps += 1
-            self.step(now)
-        elif self.craft.idle(now) >= ADAPTER_EVERY_S:
+        if self.craft.idle(now) >= ADAPTER_EVERY_S:
             self.craft.step(now, None)
         self.craft.chores(now)
 

@@ -78,13 +78,16 @@ class Requests:
         self._rates.forget()
         self._reviewed = -1e9
 
-    def due(self, now: float) -> list[MavMessage]:
-        """What to send at `now` [s, monotonic]."""
+    def due(self, now: float, quality: float) -> list[MavMessage]:
+        """What to send at `now` [s, monotonic]; `quality`: share of the autopilot's frames that arrive.
+
+        What is lost on the way is no reason to ask for less: rates are judged by what was sent."""
         messages: list[MavMessage] = []
         span = now - self._reviewed
         if span >= REVIEW_S:
             first = span > 1e8
-            rates = {name: count / span for name, count in self._arrived.items()}
+            share = max(0.1, quality)
+            rates = {name: count / span / share for name, count in self._arrived.items()}
             messages += self._rates.step(now, rates, self._buffer_free)
             if first:
                 messages.append(commands.request_message(self._to, HOME))

@@ -178,7 +178,7 @@ class Craft:
             if self._asking is not None:
                 self._asking.again()
         if self._asking is not None:
-            for message in self._asking.due(now):
+            for message in self._asking.due(now, self.telemetry.link_quality):
                 self.radio.send(message)
         self.position_rate.review(now)
         self.setpoint_rate.review(now)

@@ -10,7 +10,9 @@ KEPT = 4000  # last measurements
 class Timing:
     """Durations in nanoseconds; percentiles over the last measurements."""
 
-    def __init__(self) -> None:
+    def __init__(self, period_s: float) -> None:
+        self.overruns = 0  # control steps longer than their period
+        self._period_ns = round(period_s * 1e9)
         self.latencies: deque[int] = deque(maxlen=KEPT)  # position datagram → setpoint
         self.timer_steps = 0  # control steps that no position caused
         self.steps = 0
@@ -23,6 +25,7 @@ class Timing:
     def step(self, ns: int) -> None:
         """One control step's duration."""
         self.steps += 1
+        self.overruns += ns > self._period_ns
         self.worst_ns = max(self.worst_ns, ns)
 
     def percentile_us(self, share: float) -> int:
@@ -37,5 +40,6 @@ class Timing:
         return {
             "control_steps": self.steps,
             "control_steps_by_timer": self.timer_steps,
+            "control_overruns": self.overruns,
             "step_worst_us": self.worst_ns // 1000,
         }

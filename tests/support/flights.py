@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import Any
 
 from onboard.agent.agent import Agent
@@ -107,6 +108,6 @@ def command(kind: CommandKind, id: str = "c-1", sender: str = "tower") -> Comman
 async def order(game: Rehearsal, vehicle: int, what: Command, timeout_s: float = 0.5) -> CommandReply:
     """Send a command once; the reply."""
     replies = await game.bus.request(key(game.game, COMMAND, vehicle), swarm.COMMAND.encode(what), timeout_s)
-    reply = swarm.COMMAND_REPLY.decode(replies[0], game.bridge_drops)
+    reply = swarm.COMMAND_REPLY.decode(replies[0], Counter())
     assert reply is not None
     return reply
