@@ -8,7 +8,7 @@ export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
-.PHONY: help install demo test check bench clean lock
+.PHONY: help install demo test check bench bench-games bench-predictor fuzz soak mavproxy clean lock
 
 help:
 	@echo "make install   the environment only"
@@ -16,6 +16,11 @@ help:
 	@echo "make test      set everything up and pass the tests"
 	@echo "make check     ruff, mypy strict, import contracts"
 	@echo "make bench     benchmarks; results go to benchmarks/results/"
+	@echo "make bench-games, bench-predictor   the long comparisons"
+	@echo "make fuzz      ten million frames and more into the parsers; resumable"
+	@echo "make soak      hours of simulated flight with random faults; resumable"
+	@echo "make mavproxy  MAVProxy in an environment of its own (1.2 GB), for its client test"
+	@echo "make bench-games  the spatial game and the tracking comparison over many seeds (some minutes)"
 	@echo "make lock      resolve the dependencies again (needs uv)"
 
 install: $(STAMP)
@@ -31,7 +36,12 @@ $(STAMP): locks/all.lock pyproject.toml
 demo: install
 	@$(BIN)/sim-bridge planar --figures figures
 	@echo
-	@echo "Figures of every game are in figures/. Try: $(BIN)/sim-bridge planar --help"
+	@$(BIN)/sim-bridge fly demo
+	@echo
+	@echo "figures of the plane games are in figures/. What to try next:"
+	@echo "  $(BIN)/sim-bridge fly --fast one-on-one      the same in a few seconds, on virtual time"
+	@echo "  $(BIN)/sim-bridge scenario new mine.toml     a scenario of your own"
+	@echo "  $(BIN)/sim-bridge serve demo                 and beside it: $(BIN)/gcs"
 
 test: install
 	$(BIN)/python -m pytest -n 2 --dist worksteal
@@ -43,6 +53,31 @@ check: install
 
 bench: install
 	$(BIN)/python -m pytest tests/benchmarks -n 0 --timeout 1800 --benchmark-json benchmarks/results/latest.json
+
+bench-games: install
+	$(BIN)/python -m sim_bridge.campaign
+
+bench-predictor: install
+	$(BIN)/python -m tests.benchmarks.predictor
+
+fuzz: install
+	$(BIN)/python -m tests.fuzz.framing --count 10000000 --seed 1 --resume .fuzz-framing.json
+	$(BIN)/python -m tests.fuzz.signing --count 1000000 --seed 1 --resume .fuzz-signing.json
+	$(BIN)/python -m tests.fuzz.autopilots --count 10000000 --seed 1 --resume .fuzz-autopilots.json
+
+soak: install
+	$(BIN)/python -m tests.soak.run --hours 4 --seed 1 --resume .soak.json
+
+mavproxy: .venv-mavproxy/bin/mavproxy.py
+
+.venv-mavproxy/bin/mavproxy.py: locks/mavproxy.lock
+	@$(PYTHON) -m venv .venv-mavproxy
+	@.venv-mavproxy/bin/python -m pip --disable-pip-version-check --quiet --no-input install --require-hashes -r locks/mavproxy.lock
+	@touch $@
+
+bench-games: install
+	$(BIN)/python -m sim_bridge.campaign games --figures docs/figures
+	$(BIN)/python -m sim_bridge.campaign tracking
 
 lock:
 	uv pip compile pyproject.toml --all-extras --group dev --group build --universal --generate-hashes --no-emit-index-url --no-header --python-version 3.11 -q -o locks/all.lock
