@@ -147,8 +147,8 @@ class Rehearsal:
         self.bridge.close()
         if self._recorder is not None:
             self._recorder.close()
-        for file, _ in self._tlogs.values():
-            file.close()
+        for log, _ in self._tlogs.values():
+            log.close()
         await self.bus.close()
 
     async def until(self, holds: Callable[[], bool], within_s: float) -> bool:

@@ -54,7 +54,7 @@ def octahedron(far):
 
 
 def test_six_pursuers_close_space_only_when_the_safety_distance_is_large():
-    """γ = 0.8: six caps of 53.13° leave rays free; from ρ/d ≥ 0.028 on they do not (facts of the geometry)."""
+    """γ = 0.8: six caps of 53.13° leave rays free; from ρ/d ≥ 0.028 on they do not."""
     evader = Vehicle(ZERO, ZERO, 50.0)
     assert largest_free_cap(blocked_cones(evader, octahedron(1000.0), 0.0)).radius == pytest.approx(
         atan2(2**0.5, 1.0) - asin(0.8), abs=1e-9

@@ -46,7 +46,8 @@ def test_a_capture_between_the_ends_of_a_step_counts():
 
 
 def test_an_arrival_between_the_ends_of_a_step_counts():
-    score = step(Vec(-10.0, 0.5, 0.0), Vec(10.0, 0.5, 0.0), (Vec(99.0, 0.0, 0.0),), (Vec(99.0, 0.0, 0.0),), target=ZERO)
+    far = (Vec(99.0, 0.0, 0.0),)
+    score = step(Vec(-10.0, 0.5, 0.0), Vec(10.0, 0.5, 0.0), far, far, target=ZERO)
     assert score.verdict == Verdict.ARRIVED
     assert score.time == pytest.approx((10.0 - sqrt(0.75)) / 20.0)
 

@@ -162,7 +162,7 @@ class TestPursuer:
         assert pursuer(seen_by_pursuer(place, mate=mate)).rule == RuleId.INTERCEPT
 
     @settings(max_examples=300, deadline=None)
-    @given(points(), headings(), st.floats(-40.0, 0.0), st.floats(0.0, 40.0), st.sampled_from(sorted(PURSUERS)))
+    @given(points(), headings(), st.floats(-40, 0), st.floats(0, 40), st.sampled_from(sorted(PURSUERS)))
     def test_every_strategy_keeps_the_pitch_band(self, place, heading, low, high, name):
         limits = Limits(pitch_min=radians(low), pitch_max=radians(high))
         view = seen_by_pursuer(place, heading, limits=limits, prediction=Vec(1.0, 2.0, 300.0), planar=False)
@@ -209,7 +209,8 @@ class TestComparisons:
         e, p, ahead = ZERO, Vec(100.0, 300.0, 0.0), Vec(0.0, -1.0, 0.0)
         nearest = 1e9
         for _ in range(2000):
-            decision = pursuer_navigation(seen_by_pursuer(sub(p, e), NORTH, velocity=scale(ahead, 4.0), speed=6.0))
+            view = seen_by_pursuer(sub(p, e), NORTH, velocity=scale(ahead, 4.0), speed=6.0)
+            decision = pursuer_navigation(view)
             ahead = decision.direction
             p, e = add(p, scale(ahead, 6.0 * 0.05)), add(e, scale(NORTH, 5.0 * 0.05))
             nearest = min(nearest, distance(p, e))
