@@ -20,7 +20,6 @@ help:
 	@echo "make fuzz      ten million frames and more into the parsers; resumable"
 	@echo "make soak      hours of simulated flight with random faults; resumable"
 	@echo "make mavproxy  MAVProxy in an environment of its own (1.2 GB), for its client test"
-	@echo "make bench-games  the spatial game and the tracking comparison over many seeds (some minutes)"
 	@echo "make lock      resolve the dependencies again (needs uv)"
 
 install: $(STAMP)
@@ -74,10 +73,6 @@ mavproxy: .venv-mavproxy/bin/mavproxy.py
 	@$(PYTHON) -m venv .venv-mavproxy
 	@.venv-mavproxy/bin/python -m pip --disable-pip-version-check --quiet --no-input install --require-hashes -r locks/mavproxy.lock
 	@touch $@
-
-bench-games: install
-	$(BIN)/python -m sim_bridge.campaign games --figures docs/figures
-	$(BIN)/python -m sim_bridge.campaign tracking
 
 lock:
 	uv pip compile pyproject.toml --all-extras --group dev --group build --universal --generate-hashes --no-emit-index-url --no-header --python-version 3.11 -q -o locks/all.lock

@@ -14,6 +14,7 @@ for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 import typer  # noqa: E402  (threads are set before anything imports NumPy)
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False, rich_markup_mode=None)
+RESULTS = Path("benchmarks/results")
 Out = Annotated[Path, typer.Option(help="Folder for the results.")]
 
 
@@ -28,11 +29,19 @@ def preface(title: str, command: str) -> str:
     )
 
 
+@app.callback(invoke_without_command=True)
+def both(context: typer.Context) -> None:
+    """The spatial game and the tracking comparison; without a command both, with their defaults."""
+    if context.invoked_subcommand is None:
+        games(200, None, Path("docs/figures"), RESULTS)
+        tracking(50, None, RESULTS)
+
+
 @app.command()
 def tracking(
     seeds: Annotated[int, typer.Option(help="Flights a way.", min=2)] = 50,
     route: Annotated[Path | None, typer.Option(help="Route file; default: the twenty kilometres.")] = None,
-    out: Out = Path("benchmarks/results"),
+    out: Out = RESULTS,
 ) -> None:
     """Strategy 1, Strategy 2, the intelligent module and straight flight along a timed route."""
     from onboard.runtime.resources import configs
@@ -61,7 +70,7 @@ def games(
         list[Path] | None, typer.Option(help="Scenario files; default: five and six pursuers.")
     ] = None,
     figures: Annotated[Path | None, typer.Option(help="Folder for pictures of the first game.")] = None,
-    out: Out = Path("benchmarks/results"),
+    out: Out = RESULTS,
 ) -> None:
     """The spatial game with the evader's strategy and flying straight, on the same seeds."""
     from onboard.runtime.scenario import load
