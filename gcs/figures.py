@@ -9,10 +9,10 @@ from typing import Any
 import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.patches import Circle
+from matplotlib.patches import Circle, Patch
 
 from gcs import report_look as look
-from gcs.report_data import Run
+from gcs.report_data import Run, windy
 from gcs.report_parts import named_phases
 
 matplotlib.use("Agg")
@@ -141,17 +141,20 @@ def rules(run: Run) -> Figure | None:
     if not run.rules:
         return None
     figure, axes = _timed(run, 1.6 + 0.45 * len(run.rules), "")
-    named = look.rule_colors(run)
-    for row, (_, bands) in enumerate(sorted(run.rules.items())):
-        for band in bands:
+    named, guards = look.rule_colors(run), look.guard_colors(run)
+    for row, vehicle in enumerate(sorted(run.rules)):
+        for band in run.rules[vehicle]:
+            axes.broken_barh([(band.start, band.end - band.start)], (row - 0.4, 0.6), color=named[band.rule])
+        for band in run.guards.get(vehicle, ()):
             axes.broken_barh(
-                [(band.start, band.end - band.start)], (row - 0.36, 0.72), color=named[band.rule]
+                [(band.start, band.end - band.start)], (row + 0.22, 0.16), color=guards[band.rule]
             )
     axes.set_yticks(range(len(run.rules)), [run.role_of(i) for i in sorted(run.rules)])
-    axes.set_ylim(len(run.rules) - 0.4, -0.6)
+    axes.set_ylim(len(run.rules) - 0.4, -0.9)
     axes.grid(axis="y", visible=False)
-    from_rules = [Circle((0, 0), color=color, label=look.words(rule)) for rule, color in named.items()]
-    figure.legend(handles=from_rules, loc="outside lower center", ncols=4, fontsize=9)
+    handles = [Patch(color=color, label=look.words(rule)) for rule, color in named.items()]
+    handles += [Patch(color=color, label=f"supervisor: {action}") for action, color in guards.items()]
+    figure.legend(handles=handles, loc="outside lower center", ncols=4, fontsize=9)
     return figure
 
 
@@ -172,7 +175,7 @@ def speeds(run: Run) -> Figure | None:
 
 def wind(run: Run) -> Figure | None:
     """Estimated."""
-    known = {i: f for i, f in run.flown.items() if not np.isnan(f.wind).all()}
+    known = windy(run)
     if not known:
         return None
     figure, axes = _timed(run, 3.6, "wind [m/s]")

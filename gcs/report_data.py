@@ -86,6 +86,7 @@ class Run(NamedTuple):
     flown: dict[int, Flown]  # by id
     links: dict[int, Link]
     rules: dict[int, tuple[Band, ...]]
+    guards: dict[int, tuple[Band, ...]]  # when the supervisor acted, `rule` is what it did
     alerts: tuple[Alert, ...]  # in order
     commands: tuple[CommandView, ...]
     log: tuple[LogLine, ...]
@@ -173,6 +174,11 @@ class Run(NamedTuple):
         """Its place in the roster."""
         roster = self.setup.roster if self.setup is not None else ()
         return next((m for m in roster if m.id == vehicle), None)
+
+
+def windy(run: Run) -> dict[int, Flown]:
+    """Who knows of any wind, by id: a calm that is only assumed is not worth a figure."""
+    return {i: f for i, f in run.flown.items() if np.nan_to_num(np.abs(f.wind)).max(initial=0.0) > 0.01}
 
 
 def thinned(flown: Flown) -> Flown:

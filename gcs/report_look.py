@@ -18,7 +18,7 @@ RULES = (
     "#4477aa", "#ee6677", "#228833", "#ccbb44", "#66ccee", "#aa3377",
     "#bbbbbb", "#997700", "#004488", "#994455", "#6699cc", "#ee99aa",
 )  # fmt: skip
-SUPERVISOR = "#111111"
+CLIP, GUARDS = "#5c6675", ("#111111", "#8c1d18", "#4a148c", "#004d40")
 
 
 def colors(run: Run) -> dict[int, str]:
@@ -37,15 +37,21 @@ def colors(run: Run) -> dict[int, str]:
 
 
 def rule_colors(run: Run) -> dict[str, str]:
-    """One colour for each rule, in order of first appearance; the supervisor's actions are dark."""
+    """One colour for each rule, in order of first appearance."""
     found: dict[str, str] = {}
     bands = sorted((band for bands in run.rules.values() for band in bands), key=lambda b: (b.start, b.rule))
     for band in bands:
-        if band.rule.startswith("supervisor"):
-            found[band.rule] = SUPERVISOR
-        elif band.rule not in found:
+        if band.rule not in found:
             found[band.rule] = RULES[len(found) % len(RULES)]
     return found
+
+
+def guard_colors(run: Run) -> dict[str, str]:
+    """One dark colour for each of the supervisor's actions; clipping, the mildest, is grey."""
+    actions = sorted({band.rule for bands in run.guards.values() for band in bands} - {"clip"})
+    named = {action: GUARDS[n % len(GUARDS)] for n, action in enumerate(actions)}
+    clips = any(band.rule == "clip" for bands in run.guards.values() for band in bands)
+    return ({"clip": CLIP} if clips else {}) | named
 
 
 def words(name: str) -> str:

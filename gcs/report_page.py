@@ -48,9 +48,10 @@ th, td {{ padding: 5px 14px 5px 0; border-bottom: 1px solid {look.GRID}; vertica
 .info {{ background: #e6eefb; color: #17407a; }} .good {{ background: #dff3e4; color: #14532d; }}
 .notes {{ border-left: 4px solid #d9a400; }}
 .dot {{ display: inline-block; width: 11px; height: 11px; border-radius: 50%; margin-right: 7px; }}
-.figure {{ width: 100%; }}
+.figure {{ width: 100%; }} .long {{ max-height: 560px; overflow-y: auto; }}
 footer {{ margin-top: 26px; color: {look.FAINT}; font-size: 13px; }}
-@media print {{ body {{ background: white; }} section {{ break-inside: avoid; }} nav {{ display: none; }} }}
+@media print {{ body {{ background: white; }} section {{ break-inside: avoid; }} nav {{ display: none; }}
+  .long {{ max-height: none; }} }}
 """
 
 
@@ -215,7 +216,8 @@ def log(run: Run) -> str:
         ]
         for line in run.log
     ]
-    return _table(["at s", "", "", "what"], rows, numbers=(0,)) if rows else ""
+    table = _table(["at s", "", "", "what"], rows, numbers=(0,))
+    return f"<div class='long'>{table}</div>" if rows else ""
 
 
 def parameters(run: Run) -> str:

@@ -96,10 +96,13 @@ def level(run: Run, level: float, name: str, color: str, dash: str) -> Trace:
 def named_phases(run: Run) -> list[tuple[float, str]]:
     """The phases whose names have room on an axis of time: of several at nearly one place the last."""
     start, end = run.span
-    inside = [pair for pair in run.phases if start <= pair[0] <= end]
-    room = 0.08 * (end - start)
-    nexts = [at for at, _ in inside[1:]] + [end + room]
-    return [pair for pair, later in zip(inside, nexts, strict=False) if later - pair[0] >= room]
+    kept: list[tuple[float, str]] = []
+    limit = end
+    for at, phase in reversed(run.phases):
+        if start <= at and limit - at >= 0.07 * (end - start):
+            kept.insert(0, (at, phase))
+            limit = at
+    return kept
 
 
 def phases(run: Run) -> tuple[list[Trace], list[Trace]]:

@@ -101,7 +101,7 @@ def _eye(run: Run, low: float) -> dict[str, float]:
     tops = [float((-f.position[:, 2]).max()) for f in run.flown.values()]
     spans = np.array([high - least for least, high in run.extent] + [max(tops) - low])
     spans = np.maximum(spans, 1e-3)
-    far = max(1.0, 0.72 * float(spans.max() / np.exp(np.log(spans).mean())))
+    far = max(1.0, 0.8 * float(spans.max() / np.exp(np.log(spans).mean())))
     return {"x": round(0.95 * far, 3), "y": round(-1.2 * far, 3), "z": round(0.8 * far, 3)}
 
 

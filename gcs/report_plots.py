@@ -9,7 +9,7 @@ import numpy as np
 
 from gcs import report_look as look
 from gcs import report_parts as parts
-from gcs.report_data import Run
+from gcs.report_data import Band, Run, windy
 from gcs.report_parts import Figure, Trace
 from gcs.report_places import plan, space
 
@@ -53,51 +53,53 @@ def distances(run: Run) -> Figure | None:
 
 
 def rules(run: Run) -> Figure | None:
-    """Which rule was in force, for each vehicle."""
+    """Which rule was in force, for each vehicle, and when the supervisor acted on it."""
     if not run.rules:
         return None
-    data: list[Trace] = []
-    names = {i: run.role_of(i) for i in sorted(run.rules)}
-    for rule, color in look.rule_colors(run).items():
-        rows = [
-            (names[i], band) for i, bands in sorted(run.rules.items()) for band in bands if band.rule == rule
-        ]
-        data.append(
-            {
-                "type": "bar",
-                "orientation": "h",
-                "y": [name for name, _ in rows],
-                "base": [parts.number(band.start) for _, band in rows],
-                "x": [parts.number(band.end - band.start) for _, band in rows],
-                "name": look.words(rule),
-                "marker": {"color": color, "line": {"width": 0}},
-                "customdata": [
-                    [parts.number(band.start), parts.number(band.end), band.why] for _, band in rows
-                ],
-                "hovertemplate": "<b>"
-                + look.words(rule)
-                + "</b><br>%{customdata[0]:.1f} to %{customdata[1]:.1f}"
-                " s<br>%{customdata[2]}<extra>%{y}</extra>",
-            }
-        )
+    names = [run.role_of(i) for i in sorted(run.rules)]
+    data = [
+        _bars(run, run.rules, rule, look.words(rule), color, 0.6, -0.4)
+        for rule, color in look.rule_colors(run).items()
+    ]
+    data += [
+        _bars(run, run.guards, action, f"supervisor: {look.words(action)}", color, 0.16, 0.22)
+        for action, color in look.guard_colors(run).items()
+    ]
     shapes, notes = parts.phases(run)
+    axis = {"autorange": "reversed", "type": "category", "categoryarray": names, "automargin": True}
     layout = parts.layout(
-        barmode="overlay",
-        bargap=0.25,
-        xaxis=parts.time(run),
-        yaxis={
-            "autorange": "reversed",
-            "type": "category",
-            "categoryarray": list(names.values()),
-            "automargin": True,
-        },
-        shapes=shapes,
-        annotations=notes,
+        barmode="overlay", xaxis=parts.time(run), yaxis=axis, shapes=shapes, annotations=notes
     )
-    height = 170 + 34 * len(names)
-    return Figure(
-        "rules", "Rules in force", "What each vehicle's strategy said, and why.", height, data, layout
-    )
+    note = "What each vehicle's strategy said."
+    if run.guards:
+        note += " Thin bars below: when the supervisor did not let it pass as it was."
+    return Figure("rules", "Rules in force", note, 170 + 36 * len(names), data, layout)
+
+
+def _bars(
+    run: Run,
+    bands: dict[int, tuple[Band, ...]],
+    rule: str,
+    name: str,
+    color: str,
+    width: float,
+    offset: float,
+) -> Trace:
+    rows = [(run.role_of(i), b) for i, found in sorted(bands.items()) for b in found if b.rule == rule]
+    return {
+        "type": "bar",
+        "orientation": "h",
+        "y": [who for who, _ in rows],
+        "base": [parts.number(band.start) for _, band in rows],
+        "x": [parts.number(band.end - band.start) for _, band in rows],
+        "width": width,
+        "offset": offset,
+        "name": name,
+        "marker": {"color": color, "line": {"width": 0}},
+        "customdata": [[parts.number(band.start), parts.number(band.end), band.why] for _, band in rows],
+        "hovertemplate": "<b>" + name + "</b><br>%{customdata[0]:.1f} to %{customdata[1]:.1f} s"
+        "<br>%{customdata[2]}<extra>%{y}</extra>",
+    }
 
 
 def speeds(run: Run) -> Figure | None:
@@ -145,7 +147,7 @@ def heights(run: Run) -> Figure | None:
 
 def wind(run: Run) -> Figure | None:
     """Estimated wind."""
-    known = {i: f for i, f in run.flown.items() if not np.isnan(f.wind).all()}
+    known = windy(run)
     if not known:
         return None
     colors = look.colors(run)

@@ -34,6 +34,7 @@ class _Vehicle:
         self.tracks: list[tuple[float, ...]] = []
         self.health: list[tuple[float, ...]] = []
         self.bands: list[_OpenBand] = []
+        self.guards: list[_OpenBand] = []
 
 
 class _Collector:
@@ -73,15 +74,11 @@ class _Collector:
         vehicle.states.append(row)
 
     def _decision(self, decision: DecisionReport) -> None:
-        bands = self._vehicle(decision.id).bands
-        guarded = decision.supervisor not in ("", "ok")
-        rule = f"supervisor: {decision.supervisor}" if guarded else decision.rule
-        why = decision.reason if guarded else f"{decision.strategy}, {decision.level}, {decision.module}"
-        fresh = bool(bands) and decision.stamp_ns - bands[-1].end_ns < SILENCE_S * NS
-        if fresh:
-            bands[-1].end_ns = decision.stamp_ns
-        if not fresh or bands[-1].rule != rule:
-            bands.append(_OpenBand(decision.stamp_ns, rule, why))
+        vehicle = self._vehicle(decision.id)
+        why = f"{decision.strategy}, {decision.level}, {decision.module}"
+        _extend(vehicle.bands, decision.stamp_ns, decision.rule, why)
+        guarded = decision.supervisor if decision.supervisor != "ok" else ""
+        _extend(vehicle.guards, decision.stamp_ns, guarded, decision.reason)
 
     def _health(self, health: Health) -> None:
         battery = health.battery if health.battery >= 0 else nan
@@ -95,6 +92,15 @@ class _Collector:
                 health.clock_offset_s,
             )
         )
+
+
+def _extend(bands: list[_OpenBand], stamp_ns: int, rule: str, why: str) -> None:
+    """One more report: the band goes on, or ends where another begins; silence ends it too."""
+    fresh = bool(bands) and stamp_ns - bands[-1].end_ns < SILENCE_S * NS
+    if fresh:
+        bands[-1].end_ns = stamp_ns
+    if not fresh or bands[-1].rule != rule:
+        bands.append(_OpenBand(stamp_ns, rule, why))
 
 
 def from_recording(
@@ -111,7 +117,7 @@ def from_recording(
     setup = picture.game.setup
     roles = {m.id: m.role for m in setup.roster} if setup is not None else {}
     zero_ns = collector.t0_ns or recording.start_ns
-    flown, links, rules = {}, {}, {}
+    flown, links, rules, guards = {}, {}, {}, {}
     for vehicle_id, vehicle in sorted(collector.vehicles.items()):
         role = vehicle.role or roles.get(vehicle_id, Role.TRACKER)
         way = _way(vehicle_id, role, vehicle, zero_ns)
@@ -120,6 +126,7 @@ def from_recording(
         if vehicle.health:
             links[vehicle_id] = Link(*_columns(vehicle.health, zero_ns))
         rules[vehicle_id] = tuple(band.closed(zero_ns) for band in vehicle.bands)
+        guards[vehicle_id] = tuple(band.closed(zero_ns) for band in vehicle.guards if band.rule)
     notes = [*files.notes, *recording.remarks]
     if not flown:
         notes.append(f"{path}: no state and no track of any vehicle")
@@ -136,6 +143,7 @@ def from_recording(
         flown=flown,
         links=links,
         rules={vehicle_id: bands for vehicle_id, bands in rules.items() if bands},
+        guards={vehicle_id: bands for vehicle_id, bands in guards.items() if bands},
         alerts=tuple(alerts),
         commands=picture.commands,
         log=picture.log,

@@ -71,6 +71,7 @@ def from_tlogs(folder: Path, files: Beside, why: str) -> Run:
         flown=flown,
         links=links,
         rules={},
+        guards={},
         alerts=(),
         commands=(),
         log=(),
