@@ -88,7 +88,7 @@ class Station:
 
     def open(self) -> None:
         """Begin to listen."""
-        self._heard.append(self.bus.subscribe(topics.everything(self.game), self._on_sample))
+        self._heard.append(self.bus.subscribe(topics.everything(self.game), self._on_sample, every=True))
         self._heard.append(self.bus.presence(topics.key(self.game, topics.ALIVE), self._on_token))
 
     def close(self) -> None:

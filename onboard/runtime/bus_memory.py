@@ -181,8 +181,10 @@ class MemoryBus:
             if bus._online:
                 bus._hand(listeners, sample, delivery, (self.number, key), number)
 
-    def subscribe(self, pattern: str, receiver: Callable[[Sample], None]) -> _Undo:
-        """Call `receiver` for what matches; what publishers keep comes first."""
+    def subscribe(
+        self, pattern: str, receiver: Callable[[Sample], None], *, every: bool = False
+    ) -> _Undo:
+        """Call `receiver` for what matches (here it is every message); what publishers keep comes first."""
         listener = _Listener(pattern, receiver)
         self.listeners.append(listener)
         self._broker.changed()

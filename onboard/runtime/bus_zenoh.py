@@ -132,8 +132,13 @@ class ZenohBus:
         except zenoh.ZError:
             self._inbox.counts["error"] += 1
 
-    def subscribe(self, pattern: str, receiver: Callable[[Sample], None]) -> Subscription:
-        """Call `receiver` on the loop for what matches; kept values come first."""
+    def subscribe(
+        self, pattern: str, receiver: Callable[[Sample], None], *, every: bool = False
+    ) -> Subscription:
+        """Call `receiver` on the loop for what matches; kept values come first.
+
+        With `every` a loop that is late gets all messages, up to `QUEUE_MAX`, not the latest of each key.
+        """
         self._slots += 1
         slot = self._slots
         inbox = self._inbox
@@ -144,7 +149,7 @@ class ZenohBus:
             key = str(sample.key_expr)
             call = partial(deliver, Sample(key, sample.payload.to_bytes()))
             topic = topic_of(key)
-            if topic is not None and topic.delivery is Delivery.LATEST:
+            if topic is not None and topic.delivery is Delivery.LATEST and not every:
                 inbox.latest((slot, key), call)
             else:
                 inbox.queue(call)

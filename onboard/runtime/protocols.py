@@ -71,10 +71,13 @@ class Bus(Protocol):
         but the last value of a CACHED or EVENT key is put again when the bus is back."""
         ...
 
-    def subscribe(self, pattern: str, receiver: Callable[[Sample], None]) -> Subscription:
+    def subscribe(
+        self, pattern: str, receiver: Callable[[Sample], None], *, every: bool = False
+    ) -> Subscription:
         """Call `receiver` on the event loop for each message that matches (`*` one chunk, `**` any).
 
-        Cached values that already exist are delivered first."""
+        Cached values that already exist are delivered first. A loop that is late gets the latest of each
+        LATEST key; with `every` it gets all of them, for who records."""
         ...
 
     def serve(self, key: str, handler: Callable[[bytes], bytes]) -> Subscription:
