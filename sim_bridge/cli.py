@@ -185,6 +185,27 @@ def design(
     print(report_on(aircraft or configs() / "aircraft" / "nose.toml", figures))
 
 
+@app.command(epilog="Examples: sim-bridge predict | sim-bridge predict track.csv --figures out")
+def predict(
+    source: Annotated[
+        Path | None, typer.Argument(help="Track (CSV) or scenario; none: the example of 3.5.2 and a weave.")
+    ] = None,
+    figures: Annotated[Path | None, typer.Option(help="Folder for figures.")] = None,
+    json: Annotated[bool, typer.Option("--json", help="JSON lines in place of tables.")] = False,
+    seed: Annotated[int, typer.Option(help="Seed of training and noise.")] = 1,
+    printed: Annotated[
+        bool, typer.Option("--printed", help="Train the example by the printed rule (27)-(28).")
+    ] = False,
+    epochs: Annotated[int, typer.Option(help="Epochs of the paper's training.")] = 1000,
+) -> None:
+    """Compare predictors on a recorded or simulated track: a table and a figure."""
+    from sim_bridge.predict import predict as run_predict
+
+    if figures is not None:
+        _folder(figures)
+    run_predict(source, figures, json, seed, printed, epochs)
+
+
 def _folder(path: Path) -> None:
     try:
         path.mkdir(parents=True, exist_ok=True)
