@@ -209,8 +209,8 @@ def time_of(stamp_ns: int) -> Time:
 
 
 def enu(position: Triple) -> Vector3:
-    """A place of the game frame (north, east, down) in the viewers' world."""
-    return Vector3(position[1], position[0], -position[2])
+    """A place of the game frame (north, east, down) in the viewers' world, to the millimetre."""
+    return Vector3(round(position[1], 3), round(position[0], 3), round(-position[2], 3))
 
 
 def attitude(roll: float, pitch: float, yaw: float) -> Quaternion:
@@ -222,10 +222,10 @@ def attitude(roll: float, pitch: float, yaw: float) -> Quaternion:
     cy, sy, cp, sp = cos(half_yaw), sin(half_yaw), cos(half_pitch), sin(half_pitch)
     cr, sr = cos(half_roll), sin(half_roll)
     return Quaternion(
-        sr * cp * cy - cr * sp * sy,
-        cr * sp * cy + sr * cp * sy,
-        cr * cp * sy - sr * sp * cy,
-        cr * cp * cy + sr * sp * sy,
+        round(sr * cp * cy - cr * sp * sy, 5),
+        round(cr * sp * cy + sr * cp * sy, 5),
+        round(cr * cp * sy - sr * sp * cy, 5),
+        round(cr * cp * cy + sr * sp * sy, 5),
     )
 
 

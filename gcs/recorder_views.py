@@ -24,6 +24,7 @@ from onboard.wire.swarm import DecisionReport, Role, Setup, Severity, State
 STEP_NS = fox.NS // 5
 SILENT_NS = 3 * fox.NS  # a vehicle not heard for this long is no longer drawn anew
 TRAIL_STEPS = 60  # of one second
+TRAIL_NS = 5 * fox.NS  # trails are drawn anew so often: they are most of a scene's bytes
 CONE_LENGTH = 25.0  # [m] blocked cones are drawn so far
 MOST_DRAWN = 250
 
@@ -151,6 +152,7 @@ class Views:
             entities += self._still(at)
             self._changed = False
         whole_second = at_ns % fox.NS == 0
+        trails = at_ns % TRAIL_NS == 0
         for vehicle_id, drawn in sorted(self._vehicles.items()):
             if not drawn.state or at_ns - drawn.heard_ns > SILENT_NS:
                 continue
@@ -164,12 +166,14 @@ class Views:
             yield View(f"/position/{vehicle_id}", POSE, self._encode(pose))
             if self._frame is not None:
                 spot = self._frame.geodetic_from_ned(Vec(*state.position))
-                fix = fox.LocationFix(at, name, spot.latitude_deg, spot.longitude_deg, spot.altitude_m)
+                place_on_earth = (round(spot.latitude_deg, 8), round(spot.longitude_deg, 8))
+                fix = fox.LocationFix(at, name, *place_on_earth, round(spot.altitude_m, 3))
                 yield View(f"/location/{vehicle_id}", PLACE, self._encode(fix))
             decision = swarm.DECISION.decode(drawn.decision, self._drops) if drawn.decision else None
             entities.append(self._vehicle(at, name, state, decision, fox.Pose(place, turn)))
             if whole_second:
                 drawn.trail.append(place)
+            if trails and drawn.trail:
                 entities.append(_trail(at, name, tuple(drawn.trail), COLORS[state.role]))
         if transforms:
             yield View("/tf", TRANSFORMS, self._encode(fox.FrameTransforms(tuple(transforms))))
@@ -186,7 +190,7 @@ class Views:
             faint = fox.Color(color.r, color.g, color.b, 0.2)
             spheres = (fox.Sphere(fox.Pose(pose.position), fox.Vector3(across, across, across), faint),)
         rule = f" {decision.rule}" if decision is not None and decision.rule else ""
-        above = fox.Pose(fox.Vector3(pose.position.x, pose.position.y, pose.position.z + 2.0))
+        above = fox.Pose(fox.Vector3(pose.position.x, pose.position.y, round(pose.position.z + 2.0, 3)))
         lines: tuple[fox.Line, ...] = ()
         cylinders: tuple[fox.Cylinder, ...] = ()
         if decision is not None:
@@ -237,7 +241,9 @@ def _cone(apex: fox.Vector3, north: float, east: float, down: float, half_angle:
     """A blocked cone as a cylinder that has its point at the apex."""
     length = CONE_LENGTH
     half = length / 2 / (sqrt(north * north + east * east + down * down) or 1.0)
-    middle = fox.Vector3(apex.x + east * half, apex.y + north * half, apex.z - down * half)
+    middle = fox.Vector3(
+        round(apex.x + east * half, 3), round(apex.y + north * half, 3), round(apex.z - down * half, 3)
+    )
     across = 2.0 * length * tan(min(max(half_angle, 0.0), pi / 2 - 0.1))
     turn = fox.turn_to((north, east, down), 2)
     return fox.Cylinder(
