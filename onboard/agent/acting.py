@@ -12,11 +12,12 @@ from onboard.agent.craft import Craft
 from onboard.agent.game import Part
 from onboard.agent.journal import Journal
 from onboard.agent.orders import Orders
+from onboard.agent.readiness import lacking
 from onboard.agent.table import Table
 from onboard.agent.takeoff import TakeOff
 from onboard.autopilot.base import NEVER, Setpoint, Stage, Telemetry, Way
 from onboard.core.safety.machine import Verdict, Watch, supervise
-from onboard.core.safety.policy import Action, Cause, Mate, Policy, Seen
+from onboard.core.safety.policy import Action, Cause, Mate, Seen
 from onboard.core.safety.words import ACTIONS, CAUSES
 from onboard.core.strategies import EVADERS, PURSUERS
 from onboard.core.vectors import ZERO, Vec, along
@@ -39,8 +40,6 @@ _NS = 1_000_000_000
 class Flying(NamedTuple):
     """What a game needs, made once from a setup that fits."""
 
-    setup: Setup
-    policy: Policy
     game: GameSetup
     pilot: Pilot
 
@@ -64,7 +63,7 @@ class Acting:
         self.take_off = TakeOff(config.take_off_height)
         self._clock, self._craft, self._table = clock, craft, table
         self._orders, self._journal = orders, journal
-        self._memory = Memory()
+        self._memory = Memory(config.prediction)
         self._watch = Watch()
         self._jumps = JumpWatch(config.safety.clock_jump_s)
         self._base_ns = clock.wall_ns()
@@ -84,12 +83,47 @@ class Acting:
         self._follow(wall_ns)
         self._hands(now, telemetry)
         self.setpoint = ZERO
-        if self.flying is not None and self.part.running(self._table.phase, wall_ns):
-            self._think(now, wall_ns, telemetry, self.flying, begun_ns)
+        if self.engaged and self._on(now, wall_ns):
+            self._think(now, wall_ns, telemetry, begun_ns)
         else:
             self.thought = self.verdict = None
             self._memory.take(self._table.tracks(self._base_ns))
             self._stand_by(now, telemetry)
+
+    @property
+    def engaged(self) -> bool:
+        """Whether there is something to fly: a setup that fits."""
+        return self.flying is not None
+
+    @property
+    def late(self) -> bool:
+        """Whether the game runs without this agent until the master lets it act again."""
+        return self.part.waits_for_resume(self._table.phase)
+
+    @property
+    def over(self) -> bool:
+        """Whether the game has ended."""
+        return self.part.over(self._table.phase)
+
+    def lacks(self, now: float, connected: bool) -> tuple[str, ...]:
+        """What is missing before this agent can play."""
+        role = self.config.role
+        lacks = lacking(now, self._craft, self._table, self.policy, role, self.why_not, connected)
+        if self.take_off.climbing:
+            lacks = (*lacks, f"its height of {self.take_off.height:g} m")
+        return (*lacks, "the master's resume") if self.late else lacks
+
+    def game_time(self, wall_ns: int) -> float:
+        """Seconds since t₀; 0 before it is fixed."""
+        return self.part.game_time(self._table.phase, wall_ns)
+
+    def _on(self, now: float, wall_ns: int) -> bool:
+        """Whether it is time to act."""
+        return self.part.running(self._table.phase, wall_ns)
+
+    def _near(self) -> bool:
+        """Whether control should be taken."""
+        return self.part.about_to(self._table.phase) and not self.late
 
     def train(self, wall_ns: int) -> None:
         """Give the predictors a little time, after everything else is done."""
@@ -141,9 +175,10 @@ class Acting:
         self._craft.envelope(limits.adapter_envelope(self.config, self.policy.envelope))
         mates = (m.id for m in setup.roster if m.role is self.config.role and m.id != self.config.id)
         self._table.follow(tuple(mates))
-        self._memory, self._watch = Memory(), Watch()
         game = limits.game_setup(self.config, setup, self._table.target, hovers)
-        self.flying = Flying(setup, self.policy, game, pilot)
+        opponents = [player.id for player in game.opponents(self.side)]
+        self._memory, self._watch = Memory(self.config.prediction, opponents), Watch()
+        self.flying = Flying(game, pilot)
         self._journal.info("setup", f"{setup.scenario} from {setup.master}: {len(setup.roster)} vehicles")
 
     def _pilot(self, setup: Setup) -> Pilot:
@@ -187,19 +222,14 @@ class Acting:
         adapter = self._craft.adapter
         if adapter is None:
             return
-        phase, orders = self._table.phase, self._orders
+        orders = self._orders
+        idle = adapter.stage in (Stage.IDLE, Stage.LEFT)
         if orders.way is not None:
             adapter.leave(now, orders.way)
-        elif self.part.over(phase):
+        elif self.over:
             if adapter.stage in (Stage.ACTIVE, Stage.ENTERING):
                 adapter.leave(now, Way.HOLD)
-        elif (
-            self.flying is not None
-            and self._may_control()
-            and self.part.about_to(phase)
-            and not self.part.waits_for_resume(phase)
-            and adapter.stage in (Stage.IDLE, Stage.LEFT)
-        ):
+        elif self.engaged and self._may_control() and self._near() and idle:
             adapter.enter(now)
         if orders.resumed:
             self._watch = Watch()
@@ -214,28 +244,34 @@ class Acting:
 
     def _takes_off(self, now: float) -> bool:
         """A ground start: whether the vehicle is on its way up, by this agent's doing."""
-        allowed = self.config.may_arm and self.flying is not None and self._may_control()
-        if not allowed or self._orders.way is not None or self.part.over(self._table.phase):
+        allowed = self.config.may_arm and self.engaged and self._may_control()
+        if not allowed or self._orders.way is not None or self.over:
             return False
         return self.take_off.step(now, self._craft)
 
     # ------------------------------------------------------------------ think, supervise, send
 
-    def _think(self, now: float, wall_ns: int, t: Telemetry, flying: Flying, begun_ns: int) -> None:
-        craft, table = self._craft, self._table
-        hovers = craft.hovers is not False
-        wind = t.wind if not hovers and now - t.wind_at < WIND_FRESH_S else ZERO
-        at = (wall_ns - self._base_ns) / _NS
-        position = along(t.position, t.velocity, min(max(0.0, now - t.position_at), 0.5))
+    def _decide(self, now: float, wall_ns: int, own: Own, wind: Vec) -> Thought | None:
+        """Ask the pilot."""
+        flying, table = self.flying, self._table
+        if flying is None:
+            return None
         game = flying.game
         if self.side is Side.EVADER and table.target is not None and game.target != table.target:
             game = game._replace(has_target=True, target=table.target)
-            self.flying = flying = flying._replace(game=game)
+            self.flying = flying._replace(game=game)
+        at = (wall_ns - self._base_ns) / _NS
         samples, mates = table.tracks(self._base_ns), table.mate_states(self._base_ns)
+        thought, self._memory = flying.pilot.step(at, own, samples, mates, game, wind, self._memory)
+        return thought
+
+    def _think(self, now: float, wall_ns: int, t: Telemetry, begun_ns: int) -> None:
+        craft = self._craft
+        hovers = craft.hovers is not False
+        wind = t.wind if not hovers and now - t.wind_at < WIND_FRESH_S else ZERO
+        position = along(t.position, t.velocity, min(max(0.0, now - t.position_at), 0.5))
         try:
-            self.thought, self._memory = flying.pilot.step(
-                at, Own(position, t.velocity), samples, mates, game, wind, self._memory
-            )
+            self.thought = self._decide(now, wall_ns, Own(position, t.velocity), wind)
             self._alive_at = self._clock.monotonic_ns() / _NS
             self._failing = False
         except Exception as error:  # a strategy of another distribution may fail in any way
@@ -256,7 +292,7 @@ class Acting:
             heartbeat_age=now - t.heartbeat_at,
             strategy_age=max(thinking, now - self._alive_at),
             track_sigma=thought.sigma if thought is not None else inf,
-            ground_age=now - table.master_at,
+            ground_age=now - self._table.master_at,
             clock_jump_age=now - self._jumps.jumped_at,
             battery=t.battery,
             ekf_ok=t.ekf_ok or t.ekf_at == NEVER,
@@ -267,7 +303,7 @@ class Acting:
         )
         self._orders.resumed = False
         wanted = thought.velocity if thought is not None and thought.decides else ZERO
-        verdict = supervise(wanted, seen, flying.policy, self._watch)
+        verdict = supervise(wanted, seen, self.policy, self._watch)
         self._watch, self.verdict = verdict.watch, verdict
         self._carry_out(now, verdict, wind, hovers)
         if verdict.changed:

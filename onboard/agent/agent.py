@@ -17,9 +17,9 @@ from onboard.agent.craft import Craft
 from onboard.agent.journal import Journal
 from onboard.agent.orders import Orders
 from onboard.agent.radio import Radio, Record
-from onboard.agent.readiness import lacking
 from onboard.agent.table import Table
 from onboard.agent.timing import Timing
+from onboard.agent.tracking import Tracking
 from onboard.autopilot.base import NEVER, Stage, Telemetry, Way
 from onboard.core.safety.words import ACTIONS
 from onboard.runtime.protocols import Bus, Clock, Link
@@ -27,7 +27,7 @@ from onboard.runtime.tasks import Pace, periodic
 from onboard.wire import swarm
 from onboard.wire.mavlink import Packet
 from onboard.wire.signing import Signing
-from onboard.wire.swarm import CommandKind, CommandReply, Health, Severity
+from onboard.wire.swarm import CommandKind, CommandReply, Health, Role, Severity
 from onboard.wire.topics import ALIVE, COMMAND, DECISION, HEALTH, STATE, key
 
 STATE_EVERY_S = 0.045  # 20 Hz at the control rate
@@ -79,7 +79,8 @@ class Agent:
         self.craft = Craft(config, self.radio, self.journal)
         self.table = Table(config.game, config.id, config.role, nonce, clock, bus, self.journal)
         self.orders = Orders(Way.RETURN if config.safety.abort is KnockOff.RETURN else Way.HOLD)
-        self.acting = Acting(config, clock, self.craft, self.table, self.orders, self.journal)
+        part = Tracking if config.role is Role.TRACKER else Acting
+        self.acting = part(config, clock, self.craft, self.table, self.orders, self.journal)
         self.timing = Timing(1.0 / config.control_rate_hz)
         self.stage = "waiting"
         self.lacks: tuple[str, ...] = ()
@@ -269,7 +270,7 @@ class Agent:
         thought, verdict = acting.thought, acting.verdict
         if thought is not None and verdict is not None and now - self._decision_at >= DECISION_EVERY_S:
             self._decision_at = now
-            time = acting.part.game_time(self.table.phase, wall_ns)
+            time = acting.game_time(wall_ns)
             report = reports.decision_of(
                 self.id, acting.side, wall_ns, time, thought, verdict, acting.setpoint
             )
@@ -286,14 +287,7 @@ class Agent:
                 self.journal.info("bus", "the bus is there")
             else:
                 self.journal.warning("bus", "no bus: flying on what is known")
-        acting, role = self.acting, self.config.role
-        self.lacks = lacking(
-            now, self.craft, self.table, acting.policy, role, acting.why_not, connected
-        )
-        if acting.take_off.climbing:
-            self.lacks = (*self.lacks, f"its height of {acting.take_off.height:g} m")
-        if acting.part.waits_for_resume(self.table.phase):
-            self.lacks = (*self.lacks, "the master's resume")
+        self.lacks = self.acting.lacks(now, connected)
         stage = self._judge_stage()
         if stage != self.stage:
             self.stage = stage
@@ -305,7 +299,7 @@ class Agent:
         verdict = self.acting.verdict
         if self.craft.stage is Stage.TAKEN:
             return "handed_over"
-        if self.acting.part.over(self.table.phase):
+        if self.acting.over:
             return "ended"
         if self.orders.way is not None or (verdict is not None and not verdict.stream):
             return "held"

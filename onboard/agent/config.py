@@ -10,6 +10,7 @@ from typing import Any
 import msgspec
 
 from onboard.core.safety.policy import Action, Policy
+from onboard.pilot.predicting import Predicting
 from onboard.runtime import config
 from onboard.runtime.config import ConfigError
 from onboard.wire.swarm import Role
@@ -132,6 +133,8 @@ class AgentConfig(Part, frozen=True):
     dry_run: bool = False  # decide and publish, send no setpoint and no command
     control_rate_hz: float = 20.0
     lookahead_s: float = 1.0  # of rule 6's alternative
+    track_ahead_s: float = 6.0  # how far a tracker's pursuit of its pseudo-target looks ahead
+    prediction: Predicting = Predicting.NETWORK  # what carries tracks forward
     field: bool = False  # refuse what only a simulation may do (docs/safety.md)
     log: str = ""  # .tlog of the own link; missing = none
     envelope: EnvelopeConfig = EnvelopeConfig()
@@ -178,6 +181,9 @@ def check(found: AgentConfig, name: str) -> AgentConfig:
     demand(
         0.0 < found.control_rate_hz <= 50.0, "control_rate_hz", found.control_rate_hz, "a rate in (0, 50] Hz"
     )
+    demand(0.0 < found.track_ahead_s <= 60.0, "track_ahead_s", found.track_ahead_s, "a time in (0, 60] s")
+    route = found.role is not Role.TRACKER or bool(found.route)
+    demand(route, "route", "none", "a tracker's route file")
     height = found.take_off_height
     demand(2.0 <= height <= 500.0, "take_off_height", height, "2 to 500 m above home")
     demand(0.0 < found.lookahead_s <= 60.0, "lookahead_s", found.lookahead_s, "a time in (0, 60] s")

@@ -94,7 +94,7 @@ def policy_of(config: AgentConfig, setup: Setup | None, hovers: bool) -> Policy:
         gps_fix=s.gps_fix,
         settle=s.settle_s,
     )
-    if setup is not None and setup.field_profile:
+    if setup is not None and setup.field_profile and member is not None:
         heights = layers(tuple(-one.start[2] for one in setup.roster))
         own = next(index for index, one in enumerate(setup.roster) if one.id == config.id)
         policy = field_policy(policy, heights[own])

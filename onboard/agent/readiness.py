@@ -12,29 +12,29 @@ from onboard.wire.swarm import Role
 MASTER_S = 5.0  # a master silent for longer counts as lacking
 
 
-def lacking(
-    now: float, craft: Craft, table: Table, policy: Policy, role: Role, why_not: str, connected: bool
-) -> tuple[str, ...]:
-    """What is missing at `now` [s, monotonic]; `why_not`: why the setup at hand was refused."""
+def vehicle_lacks(now: float, craft: Craft, policy: Policy) -> list[str]:
+    """What is missing of the vehicle itself."""
     lacks: list[str] = []
     t = craft.telemetry
     if craft.adapter is None:
         others = sorted(craft.heard_systems)
         heard = f" (heard: system {', '.join(map(str, others))})" if others else ""
-        lacks.append(f"an autopilot: {craft.refusal}" if craft.refusal else f"an autopilot{heard}")
-    else:
-        health = read(
-            now,
-            t,
-            Thresholds(
-                heartbeat_age=policy.heartbeat_age,
-                telemetry_age=policy.telemetry_age,
-                battery_min=policy.battery,
-            ),
-        )
-        lacks += [*health.lacks, *health.faults]
-        if not t.armed:
-            lacks.append("an armed vehicle")
+        return [f"an autopilot: {craft.refusal}" if craft.refusal else f"an autopilot{heard}"]
+    limits = Thresholds(
+        heartbeat_age=policy.heartbeat_age, telemetry_age=policy.telemetry_age, battery_min=policy.battery
+    )
+    health = read(now, t, limits)
+    lacks += [*health.lacks, *health.faults]
+    if not t.armed:
+        lacks.append("an armed vehicle")
+    return lacks
+
+
+def lacking(
+    now: float, craft: Craft, table: Table, policy: Policy, role: Role, why_not: str, connected: bool
+) -> tuple[str, ...]:
+    """What is missing at `now` [s, monotonic]; `why_not`: why the setup at hand was refused."""
+    lacks = vehicle_lacks(now, craft, policy)
     if not connected:
         lacks.append("the bus")
     if table.setup is None:

@@ -171,6 +171,8 @@ class Table:
         if track.id != id:
             self.drops["wrong_id"] += 1
             return
+        if id in self._of_mates:  # team mates tell of themselves
+            return
         if len(self._samples) == SAMPLES_MAX:
             self.drops["tracks_overflow"] += 1
         self._samples.append(track)
