@@ -1,0 +1,41 @@
+"""The files for a field trial load as they are."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from gcs.settings import Settings
+from onboard.agent.config import load as load_agent
+from onboard.runtime import config
+from onboard.runtime.resources import configs
+from onboard.runtime.scenario import load as load_scenario
+
+FIELD = configs() / "field"
+
+
+@pytest.mark.parametrize("number", [1, 2])
+def test_a_vehicle_of_the_field_never_takes_control_or_arms_by_itself(number: int) -> None:
+    found = load_agent(FIELD / f"vehicle-{number}.toml", {})
+    assert found.id == number
+    assert found.field
+    assert not found.take_control
+    assert not found.may_arm
+
+
+@pytest.mark.parametrize("name", ["ground.toml", "second-laptop.toml"])
+def test_both_laptops_settings_load(name: str) -> None:
+    assert config.read(FIELD / name, Settings).game == "field"
+
+
+def test_the_field_scenario_keeps_altitude_layers_and_a_fence() -> None:
+    scenario = load_scenario(FIELD / "field.toml")
+    assert scenario.flight.field_profile
+    assert scenario.flight.fence is not None
+    heights = sorted(vehicle.position[2] for vehicle in scenario.vehicles)
+    assert all(b - a >= 20.0 for a, b in zip(heights, heights[1:], strict=False))
+
+
+def test_every_shipped_configuration_is_a_file_of_this_kind() -> None:
+    assert {p.suffix for p in Path(FIELD).iterdir()} == {".toml"}
