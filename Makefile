@@ -8,7 +8,7 @@ export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
-.PHONY: help install demo test check bench bench-games bench-predictor fuzz soak mavproxy clean lock
+.PHONY: help install demo test check bench bench-games bench-predictor check-aarch64 fuzz soak mavproxy clean lock
 
 help:
 	@echo "make install   the environment only"
@@ -52,6 +52,12 @@ check: install
 
 bench: install
 	$(BIN)/python -m pytest tests/benchmarks -n 0 --timeout 1800 --benchmark-json benchmarks/results/latest.json
+
+# The base install of a single-board computer: wheels only, no compiler. A dry resolution for aarch64.
+check-aarch64: install
+	$(PIP) install --dry-run --require-hashes --only-binary :all: --target .aarch64 --python-version 3.11 \
+	  --implementation cp --platform manylinux_2_28_aarch64 --platform manylinux2014_aarch64 -r locks/base.lock
+	@echo "the base install resolves to wheels for aarch64"
 
 bench-games: install
 	$(BIN)/python -m sim_bridge.campaign

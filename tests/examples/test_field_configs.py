@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from pathlib import Path
 
 import pytest
@@ -34,7 +35,7 @@ def test_the_field_scenario_keeps_altitude_layers_and_a_fence() -> None:
     assert scenario.flight.field_profile
     assert scenario.flight.fence is not None
     heights = sorted(vehicle.position[2] for vehicle in scenario.vehicles)
-    assert all(b - a >= 20.0 for a, b in zip(heights, heights[1:], strict=False))
+    assert all(b - a >= 20.0 for a, b in itertools.pairwise(heights))
 
 
 def test_every_shipped_configuration_is_a_file_of_this_kind() -> None:
