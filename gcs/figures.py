@@ -49,9 +49,11 @@ def write_figures(run: Run, folder: Path) -> list[Path]:
     written = []
     with matplotlib.rc_context(STYLE):
         for name, make in makers.items():
+            path = folder / f"{name}.png"
             figure = make(run)
-            if figure is not None:
-                path = folder / f"{name}.png"
+            if figure is None:
+                path.unlink(missing_ok=True)  # of an earlier report
+            else:
                 figure.savefig(path, dpi=DPI, metadata={"Software": None})
                 written.append(path)
     return written

@@ -229,18 +229,15 @@ def attitude(roll: float, pitch: float, yaw: float) -> Quaternion:
     )
 
 
-def turn_to(axis: Triple, start: int) -> Quaternion:
-    """The turn that takes the world's x (start 0) or z (start 2) axis to a direction of the game frame."""
+def turn_to(axis: Triple) -> Quaternion:
+    """The turn that takes the world's z axis to a direction of the game frame (north, east, down)."""
     x, y, z = axis[1], axis[0], -axis[2]
     length = sqrt(x * x + y * y + z * z)
     if length < 1e-9:
         return Quaternion()
     x, y, z = x / length, y / length, z / length
-    if start == 0:
-        w, qx, qy, qz = 1.0 + x, 0.0, -z, y
-    else:
-        w, qx, qy, qz = 1.0 + z, -y, x, 0.0
-    size = sqrt(w * w + qx * qx + qy * qy + qz * qz)
-    if size < 1e-6:  # straight back: half a turn about an axis across
-        return Quaternion(0.0, 0.0, 1.0, 0.0) if start == 0 else Quaternion(1.0, 0.0, 0.0, 0.0)
-    return Quaternion(qx / size, qy / size, qz / size, w / size)
+    w, qx, qy = 1.0 + z, -y, x
+    size = sqrt(w * w + qx * qx + qy * qy)
+    if size < 1e-6:  # straight down: half a turn about any level axis
+        return Quaternion(1.0, 0.0, 0.0, 0.0)
+    return Quaternion(round(qx / size, 5), round(qy / size, 5), 0.0, round(w / size, 5))

@@ -245,7 +245,7 @@ def _cone(apex: fox.Vector3, north: float, east: float, down: float, half_angle:
         round(apex.x + east * half, 3), round(apex.y + north * half, 3), round(apex.z - down * half, 3)
     )
     across = 2.0 * length * tan(min(max(half_angle, 0.0), pi / 2 - 0.1))
-    turn = fox.turn_to((north, east, down), 2)
+    turn = fox.turn_to((north, east, down))
     return fox.Cylinder(
         fox.Pose(middle, turn), fox.Vector3(across, across, length), 0.0, 1.0, fox.Color(0.8, 0.2, 0.2, 0.15)
     )

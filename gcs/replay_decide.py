@@ -85,11 +85,11 @@ def decide(entries: Iterable[Entry], strategies: dict[Role, str] | None = None) 
 
 
 class _Mind:
-    """One vehicle's pilot with its memory."""
+    """One vehicle's pilot with its memory of those it asks for: its opponents."""
 
-    def __init__(self, pilot: Pilot) -> None:
+    def __init__(self, pilot: Pilot, opponents: list[int]) -> None:
         self.pilot = pilot
-        self.memory = Memory()
+        self.memory = Memory(wanted=opponents)
         self.samples: list[TrackSample] = []
         self.thought: Thought | None = None
         self.thought_ns = 0  # the step that it is of
@@ -153,10 +153,13 @@ class _Again:
             setup = swarm.SETUP.decode(entry.payload, self._drops)
             if setup is not None and setup != self._setup:
                 self._setup = setup
+                players = [m for m in setup.roster if m.role is not Role.TRACKER]
                 self._minds = {
-                    m.id: _Mind(_pilot(m.id, m.role, self._strategies.get(m.role) or m.strategy))
-                    for m in setup.roster
-                    if m.role is not Role.TRACKER
+                    m.id: _Mind(
+                        _pilot(m.id, m.role, self._strategies.get(m.role) or m.strategy),
+                        [other.id for other in players if other.role is not m.role],
+                    )
+                    for m in players
                 }
         elif topic is topics.PHASE:
             phase = swarm.PHASE.decode(entry.payload, self._drops)
