@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from onboard.runtime.master import GameMaster
 from onboard.runtime.protocols import Bus, Link, Sample
@@ -18,15 +18,25 @@ EVENTS_MAX = 100_000
 
 
 class Observer:
-    """Listens to a game on the bus; `summary` puts it into figures."""
+    """Listens to a game on the bus; `summary` puts it into figures. `heard` is told each event."""
 
-    def __init__(self, scenario: Scenario, seed: int, mode: str, game: str, bus: Bus) -> None:
+    def __init__(
+        self,
+        scenario: Scenario,
+        seed: int,
+        mode: str,
+        game: str,
+        bus: Bus,
+        heard: Callable[[Event], None] | None = None,
+    ) -> None:
         self.scenario = scenario
         self.seed = seed
         self.mode = mode
         self.events: list[Event] = []
         self.health: dict[int, Health] = {}
         self.drops: Counter[str] = Counter()
+        self._flying: dict[int, Health] = {}  # the last health while setpoints flew the vehicle
+        self._heard = heard
         bus.subscribe(key(game, EVENTS), self._on_event)
         bus.subscribe(key(game, HEALTH), self._on_health)
 
@@ -41,6 +51,7 @@ class Observer:
         vehicles = []
         for id, spec in zip(self.scenario.ids, self.scenario.vehicles, strict=True):
             health = self.health.get(id)
+            flying = self._flying.get(id, health)
             counters = links[id].counters() if id in links else {}
             vehicles.append(
                 VehicleSummary(
@@ -50,8 +61,8 @@ class Observer:
                     stage=health.stage if health else "never heard",
                     mode=health.mode if health else "",
                     smallest_distance=kept(master.nearest.get(id)),
-                    telemetry_rate_hz=round(health.telemetry_rate_hz, 3) if health else 0.0,
-                    setpoint_rate_hz=round(health.setpoint_rate_hz, 3) if health else 0.0,
+                    telemetry_rate_hz=round(flying.telemetry_rate_hz, 3) if flying else 0.0,
+                    setpoint_rate_hz=round(flying.setpoint_rate_hz, 3) if flying else 0.0,
                     counters=dict(sorted(health.counters.items())) if health else {},
                     link={cause: n for cause, n in sorted(counters.items()) if n},
                     events=sum(event.id == id for event in self.events),
@@ -77,8 +88,12 @@ class Observer:
         event = swarm.EVENT.decode(sample.payload, self.drops)
         if event is not None and len(self.events) < EVENTS_MAX:
             self.events.append(event)
+            if self._heard is not None:
+                self._heard(event)
 
     def _on_health(self, sample: Sample) -> None:
         health = swarm.HEALTH.decode(sample.payload, self.drops)
         if health is not None:
             self.health[health.id] = health
+            if health.stage == "acting":
+                self._flying[health.id] = health

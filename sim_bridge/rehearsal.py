@@ -43,7 +43,7 @@ class BusRecorder:
 
     def hear(self, bus: Bus) -> None:
         """Record everything on a bus."""
-        bus.subscribe(everything(self._game), self._record)
+        bus.subscribe(everything(self._game), self._record, every=True)
 
     async def run(self) -> None:
         """Put on the disk what is due, until cancelled."""
@@ -147,7 +147,7 @@ class Rehearsal:
         self.bridge.close()
         if self._recorder is not None:
             self._recorder.close()
-        for log, _ in self._tlogs.values():
+        for log, _writer in self._tlogs.values():
             log.close()
         await self.bus.close()
 
@@ -184,18 +184,19 @@ class Rehearsal:
         record = None
         if id in self._tlogs:
             record = self._tlogs[id][1].write
+        bus = self.broker.connect(f"agent-{id}")
         agent = Agent(
             config,
             self.clock,
             [self.links[id]],
-            self.broker.connect(f"agent-{id}"),
+            bus,
             nonce=self._nonce(),
             version=self._version,
             log=self._tell,
             record=record,
         )
         self.agents[id] = agent
-        self._tasks[id] = asyncio.create_task(agent.run(), name=f"agent-{id}")  # ended by kill_agent
+        self._tasks[id] = asyncio.create_task(_live(agent, bus), name=f"agent-{id}")  # ended by kill_agent
         return agent
 
     def configuration(self) -> dict[int, AgentConfig]:
@@ -210,6 +211,7 @@ class Rehearsal:
                 "take_control": True,
                 "may_arm": flight.ground_start,
                 "control_rate_hz": flight.control_rate_hz,
+                "prediction": flight.prediction,
                 "strategy": spec.strategy,
             }
             found[id] = AgentConfig(**(settings | dict(self._configure.get(id, {}))))
@@ -286,3 +288,11 @@ class Rehearsal:
                 if error is not None:
                     raise error
 
+
+
+async def _live(agent: Agent, bus: MemoryBus) -> None:
+    """An agent's life: with its process goes its connection to the bus."""
+    try:
+        await agent.run()
+    finally:
+        await bus.close()

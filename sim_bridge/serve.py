@@ -6,7 +6,7 @@ import asyncio
 import contextlib
 import secrets
 import signal
-from collections.abc import Callable, Sequence
+from collections.abc import Awaitable, Callable, Sequence
 from pathlib import Path
 
 import msgspec
@@ -15,6 +15,7 @@ from onboard.runtime.bus_zenoh import ZenohBus, open_zenoh
 from onboard.runtime.clock import RealClock
 from onboard.runtime.config import ConfigError
 from onboard.runtime.links import open_udp
+from onboard.runtime.master import Standing
 from onboard.runtime.protocols import Link
 from onboard.runtime.scenario import Scenario, load
 from onboard.runtime.tasks import Pace, periodic
@@ -26,7 +27,9 @@ from sim_bridge.staging import kind_of
 from sim_bridge.world import Tap
 
 HOST = "127.0.0.1"
+STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 Started = Callable[[Bridge, ZenohBus, dict[int, int]], None]  # the bridge, its bus, the agents' ports
+Ending = Callable[[], Awaitable[None]]
 
 
 class Options(msgspec.Struct, frozen=True, kw_only=True):
@@ -61,14 +64,16 @@ async def serve_scenario(
     tap: Tap | None = None,
     folder: Path | None = None,
     started: Started | None = None,
+    ending: Ending | None = None,
 ) -> Outcome | None:
-    """`serve` on the running loop; recordings of wind lie in `folder`; `started` is told what is up."""
+    """`serve` on the running loop; recordings of wind lie in `folder`; `started` is told what is up.
+
+    `ending` is awaited when it shall end, while the vehicles still fly."""
     loop, stop = asyncio.get_running_loop(), asyncio.Event()
     radios: dict[int, Radio] = {}
     bus: ZenohBus | None = None
-    caught = (signal.SIGINT, signal.SIGTERM)
     try:
-        for number in caught:
+        for number in STOPPING:
             with contextlib.suppress(ValueError, NotImplementedError):  # not on the main thread
                 loop.add_signal_handler(number, stop.set)
         ports = agent_ports(scenario.ids, options.host)
@@ -95,11 +100,11 @@ async def serve_scenario(
         _introduce(scenario, options, ports, radios, bus, say)
         if started is not None:
             started(bridge, bus, ports)
-        await _until_stopped(bridge, bus, options, stop, say)
+        await _until_stopped(bridge, bus, options, stop, say, ending)
         bridge.close()
         return bridge.master.rules.outcome if bridge.master is not None else None
     finally:
-        for number in caught:
+        for number in STOPPING:
             with contextlib.suppress(ValueError, NotImplementedError):
                 loop.remove_signal_handler(number)
         for radio in radios.values():
@@ -109,7 +114,12 @@ async def serve_scenario(
 
 
 async def _until_stopped(
-    bridge: Bridge, bus: ZenohBus, options: Options, stop: asyncio.Event, say: Callable[[str], None]
+    bridge: Bridge,
+    bus: ZenohBus,
+    options: Options,
+    stop: asyncio.Event,
+    say: Callable[[str], None],
+    ending: Ending | None,
 ) -> None:
     last = bus.status()
 
@@ -119,7 +129,9 @@ async def _until_stopped(
         if status != last:
             last = status
             say(f"bus: {status}")
-        if options.once and bridge.master is not None and bridge.master.rules.phase is Phase.RECOVERY:
+        rules = bridge.master.rules if bridge.master is not None else None
+        over = rules is not None and (rules.phase is Phase.RECOVERY or rules.standing is Standing.YIELDED)
+        if options.once and over:
             stop.set()
 
     async with asyncio.TaskGroup() as group:
@@ -128,6 +140,8 @@ async def _until_stopped(
             group.create_task(periodic(Pace("watch", 0.5), watch, RealClock()), name="watch"),
         ]
         await stop.wait()
+        if ending is not None:
+            await ending()
         for task in tasks:
             task.cancel()
 

@@ -16,7 +16,7 @@ class VehicleSummary(msgspec.Struct, frozen=True, kw_only=True):
     stage: str  # of its agent, at the end
     mode: str  # of its autopilot, at the end
     smallest_distance: float | None  # of a pursuer to the evader [m]
-    telemetry_rate_hz: float
+    telemetry_rate_hz: float  # the last while it acted
     setpoint_rate_hz: float
     counters: dict[str, int]  # the agent's: drops and overruns by cause
     link: dict[str, int]  # the link's, impairment included
