@@ -51,6 +51,7 @@ airframe = "kinematic"         # nose, slip or coordinated need arduplane
 height = 50.0                  # at which a plane game is flown
 ready_s = 5.0                  # from ready to the start
 # ground_start = true
+# prediction = "network"       # what carries tracks forward: network, ridge or constant-velocity
 
 [flight.origin]
 latitude_deg = 47.397742

@@ -2,20 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+from collections.abc import Collection, Hashable
 
 from onboard.core.vectors import ZERO, Vec, norm, sub
+from onboard.pilot.predicting import Predicting
 from onboard.pilot.predictor import Prediction, TrackPredictor, Trainer
+from onboard.pilot.predictor.model import ModelSettings
+from onboard.pilot.predictor.track import PredictorSettings
 from onboard.pilot.setup import TrackSample
 
 FORGETTING = 1.0 / 60.0  # share of a remembered top speed that fades in a second
 TRACKS_MAX = 256  # tracks remembered; more than any roster
 
 
-class Memory:
-    """Tracks by id, their training, and the upper envelope of their airspeeds."""
+SETTINGS = {
+    Predicting.NETWORK: PredictorSettings(),
+    Predicting.RIDGE: PredictorSettings(model=ModelSettings(networks=False)),
+    Predicting.CONSTANT_VELOCITY: PredictorSettings(learns=False),
+}
 
-    def __init__(self) -> None:
+
+class Memory:
+    """Tracks by id, their training, and the upper envelope of their airspeeds.
+
+    `wanted`: the tracks that anybody will ask for; None takes whatever comes. What nobody asks for is
+    neither filtered nor learnt."""
+
+    def __init__(
+        self, predicting: Predicting = Predicting.NETWORK, wanted: Collection[int] | None = None
+    ) -> None:
+        self.predicting = predicting
+        self._wanted = None if wanted is None else frozenset(wanted)
         self.tracks: dict[Hashable, TrackPredictor] = {}  # by id
         self.trainer = Trainer()
         self._fastest: dict[int, tuple[float, float]] = {}  # id → (envelope [m/s], instant [s])
@@ -23,11 +40,13 @@ class Memory:
     def take(self, samples: tuple[TrackSample, ...]) -> None:
         """Give new measurements to their predictors."""
         for sample in samples:
+            if self._wanted is not None and sample.id not in self._wanted:
+                continue
             predictor = self.tracks.get(sample.id)
             if predictor is None:
                 if len(self.tracks) >= TRACKS_MAX:
                     continue
-                predictor = self.tracks[sample.id] = TrackPredictor(seed=sample.id)
+                predictor = self.tracks[sample.id] = TrackPredictor(sample.id, SETTINGS[self.predicting])
             predictor.add(sample.t, sample.position, sample.velocity, sample.variance)
 
     def predict(self, id: int, t: float) -> Prediction | None:

@@ -17,6 +17,7 @@ import msgspec
 
 from onboard.core.states import Limits
 from onboard.core.vectors import Vec
+from onboard.pilot.predicting import Predicting
 from onboard.runtime import config
 from onboard.runtime.config import ConfigError
 
@@ -159,6 +160,7 @@ class Flight(Part, frozen=True):
     wind: WindSpec = WindSpec()
     fence: FenceSpec | None = None
     control_rate_hz: float = 20.0
+    prediction: Predicting = Predicting.NETWORK  # what carries tracks forward in the agents
     field_profile: bool = False
 
 

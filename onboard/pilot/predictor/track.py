@@ -28,6 +28,7 @@ class PredictorSettings(NamedTuple):
     step: float = 0.2  # of the grid [s]
     window: int = 200  # points of the grid that are kept
     gap: float = 2.0  # a longer silence makes the grid begin anew [s]
+    learns: bool = True  # off: the filter alone, carried on at constant velocity
 
 
 class TrackPredictor:
@@ -53,6 +54,8 @@ class TrackPredictor:
     def add(self, t: float, position: Vec, velocity: Vec | None, variance: Variance) -> Fate:
         """Take a sample of instant `t` [s] (see TrackFilter.add)."""
         fate = self.filter.add(t, position, velocity, variance)
+        if not self.settings.learns:
+            return fate
         if fate is Fate.TAKEN:
             self.grid.extend(self.filter)
         elif fate is Fate.LATE:
