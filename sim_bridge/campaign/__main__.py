@@ -33,7 +33,7 @@ def preface(title: str, command: str) -> str:
 def both(context: typer.Context) -> None:
     """The spatial game and the tracking comparison; without a command both, with their defaults."""
     if context.invoked_subcommand is None:
-        games(200, None, Path("docs/figures"), RESULTS)
+        games(200, None, Path("docs/pictures"), RESULTS)
         tracking(50, None, RESULTS)
 
 

@@ -48,11 +48,11 @@ def launched(plane: PlaneState, noise: GustNoise) -> Flown:
     return Flown(plane, first_gust(noise))
 
 
-def command_for(velocity: Vec, state: PlaneState) -> Command:
-    """What an autopilot makes of a decided velocity through the air [m/s; NED]."""
+def command_for(velocity: Vec, course: float) -> Command:
+    """What an autopilot makes of a decided velocity through the air [m/s; NED], on `course` [rad] now."""
     speed = norm(velocity)
     if speed <= 0.0:
-        return Command(Steer.COURSE, state.course, 0.0, 0.0)
+        return Command(Steer.COURSE, course, 0.0, 0.0)
     return Command(Steer.COURSE, yaw_of(velocity), pitch_of(velocity), speed)
 
 

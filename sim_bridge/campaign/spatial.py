@@ -84,13 +84,13 @@ def banded(limits: Limits, height: float, band: Band) -> Limits:
 class Heights(NamedTuple):
     """What bounds the pitch of a pursuer (for `each`)."""
 
-    players: list[Flown]
+    states: Array  # as in Sight
     band: Band
 
 
 def banded_pursuer(limits: Limits, index: int, heights: Heights) -> Limits:
     """Pursuer `index`'s limits where it is (for `each`)."""
-    return banded(limits, -heights.players[index + 1].plane.position.z, heights.band)
+    return banded(limits, -heights.states[index + 1, 2], heights.band)
 
 
 class SpatialPlay(NamedTuple):
@@ -105,27 +105,27 @@ class SpatialPlay(NamedTuple):
 class Sight(NamedTuple):
     """What turns an aircraft into a vehicle as somebody sees it (for `each`)."""
 
-    players: list[Flown]
+    states: Array  # (players, 7): position [m], velocity over ground [m/s; NED], course through the air [rad]
     climate: Climate
-    noise: Array  # (players, 6) standard normal
+    noise: Array  # (players, 6) in sigmas
     position: float  # sigma [m]
     velocity: float  # sigma [m/s]
 
 
 def seen(index: int, speed: float, sight: Sight) -> Vehicle:
     """Player `index` as a vehicle in the moving air, with the sensor's noise."""
-    plane = sight.players[index].plane
+    s = sight.states[index]
     n = sight.noise[index]
     p = sight.position
     v = sight.velocity
-    wind = wind_at(sight.climate, plane.position)
-    place = plane.position
+    place = Vec(s[0], s[1], s[2])
+    wind = wind_at(sight.climate, place)
     return Vehicle(
         Vec(place.x + p * n[0], place.y + p * n[1], place.z + p * n[2]),
         Vec(
-            plane.velocity.x - wind.x + v * n[3],
-            plane.velocity.y - wind.y + v * n[4],
-            plane.velocity.z - wind.z + v * n[5],
+            s[3] - wind.x + v * n[3],
+            s[4] - wind.y + v * n[4],
+            s[5] - wind.z + v * n[5],
         ),
         speed,
     )
@@ -172,9 +172,21 @@ def decide_pursuers(game: Game, params: Params) -> tuple[Decision, ...]:
     return each(decide_one, seats(game, params), field)
 
 
-def order(decision: Decision, flown: Flown) -> Command:
+def order(decision: Decision, course: float) -> Command:
     """The autopilot's command for a decision: course and pitch through the air, airspeed."""
-    return command_for(scale(decision.direction, decision.speed), flown.plane)
+    return command_for(scale(decision.direction, decision.speed), course)
+
+
+def note(states: Array, index: int, flown: Flown) -> None:
+    """Write down where aircraft `index` is: what the others can see of it."""
+    plane = flown.plane
+    states[index, 0] = plane.position.x
+    states[index, 1] = plane.position.y
+    states[index, 2] = plane.position.z
+    states[index, 3] = plane.velocity.x
+    states[index, 4] = plane.velocity.y
+    states[index, 5] = plane.velocity.z
+    states[index, 6] = plane.course
 
 
 def widened(e: Envelope, flown: Flown, model: PlaneModel, declared: float) -> Envelope:
@@ -192,6 +204,26 @@ def widened(e: Envelope, flown: Flown, model: PlaneModel, declared: float) -> En
         min(e.lowest, -plane.position.z),
         max(e.surface, surface),
     )
+
+
+def flown_on(
+    flown: Flown,
+    model: PlaneModel,
+    command: Command,
+    climate: Climate,
+    gusts: Array,
+    index: int,
+    sample: int,
+    count: int,
+) -> Flown:
+    """`count` samples of one aircraft, with the gusts' grid, from sample number `sample` on."""
+    for k in range(sample, sample + count):
+        if k % GUST_EVERY == 0 and k > 0:
+            n = gusts[k // GUST_EVERY, index]
+            drive = GustNoise(n[0], n[1], n[2], n[3], n[4])
+            flown = blown(flown, GUST_EVERY * model.dt, drive)
+        flown = fly(flown, model, command, climate)
+    return flown
 
 
 def play(
@@ -216,13 +248,15 @@ def play(
     """
     ratio = int(params.dt / fleet.evader.dt + 0.5)
     reach = Envelope(0.0, 0.0, 1.0, 1.0, 1e300, 0.0)
+    states = np.empty((len(players), 7))
+    for i in range(len(players)):
+        note(states, i, players[i])
     steps = 0
-    tick = 0
     sample = 0
     while game.score.verdict == Verdict.RUNNING:
         noise = tracks[steps]
-        exact = Sight(players, climate, noise, 0.0, 0.0)
-        noisy = Sight(players, climate, noise, sensor.position, sensor.velocity)
+        exact = Sight(states, climate, noise, 0.0, 0.0)
+        noisy = Sight(states, climate, noise, sensor.position, sensor.velocity)
         own = seen(0, game.evader.speed, exact)
         others = each(seen_pursuer, game.pursuers, noisy)
         wind = wind_at(climate, own.position)
@@ -237,36 +271,32 @@ def play(
                 spotted,
                 team,
                 game.evader_limits,
-                each(banded_pursuer, game.pursuer_limits, Heights(players, band)),
+                each(banded_pursuer, game.pursuer_limits, Heights(states, band)),
                 game.score,
             ),
             params,
         )
-        commands[0] = order(escape, players[0])
+        commands[0] = order(escape, states[0, 6])
         for i in range(len(decisions)):
-            commands[i + 1] = order(decisions[i], players[i + 1])
+            commands[i + 1] = order(decisions[i], states[i + 1, 6])
         for i in range(len(players)):
-            plane = players[i].plane
-            log[steps, i, 0] = plane.position.x
-            log[steps, i, 1] = plane.position.y
-            log[steps, i, 2] = plane.position.z
-            log[steps, i, 3] = plane.course
+            log[steps, i, 0] = states[i, 0]
+            log[steps, i, 1] = states[i, 1]
+            log[steps, i, 2] = states[i, 2]
+            log[steps, i, 3] = states[i, 6]
             log[steps, i, 4] = commands[i].angle
-        for _ in range(ratio):
-            if sample % GUST_EVERY == 0 and sample > 0:
-                tick += 1
-                for i in range(len(players)):
-                    n = gusts[tick, i]
-                    drive = GustNoise(n[0], n[1], n[2], n[3], n[4])
-                    players[i] = blown(players[i], GUST_EVERY * fleet.evader.dt, drive)
-            players[0] = fly(players[0], fleet.evader, commands[0], climate)
-            for i in range(1, len(players)):
-                players[i] = fly(players[i], fleet.pursuer, commands[i], climate)
-            sample += 1
-        reach = widened(reach, players[0], fleet.evader, game.evader.speed)
-        for i in range(len(decisions)):
-            reach = widened(reach, players[i + 1], fleet.pursuer, game.pursuers[i].speed)
-        after = Sight(players, climate, noise, 0.0, 0.0)
+        # Between two decisions nobody looks at anybody: each flies on alone.
+        flown = flown_on(players[0], fleet.evader, commands[0], climate, gusts, 0, sample, ratio)
+        reach = widened(reach, flown, fleet.evader, game.evader.speed)
+        note(states, 0, flown)
+        players[0] = flown
+        for i in range(1, len(players)):
+            flown = flown_on(players[i], fleet.pursuer, commands[i], climate, gusts, i, sample, ratio)
+            reach = widened(reach, flown, fleet.pursuer, game.pursuers[i - 1].speed)
+            note(states, i, flown)
+            players[i] = flown
+        sample += ratio
+        after = Sight(states, climate, noise, 0.0, 0.0)
         game = judged(
             game, seen(0, game.evader.speed, after), each(seen_pursuer, game.pursuers, after), params
         )

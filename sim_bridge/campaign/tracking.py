@@ -73,7 +73,7 @@ def fly_route(
     """
     flown = launched(plane, GustNoise(noise[0, 0], noise[0, 1], noise[0, 2], noise[0, 3], noise[0, 4]))
     memory = fresh()
-    command = command_for(sub(plane.velocity, wind_at(climate, plane.position)), plane)
+    command = command_for(sub(plane.velocity, wind_at(climate, plane.position)), plane.course)
     last = len(route) - 1
     count = int((route[last].time + OVERTIME) / model.dt)
     best = 1e300
@@ -110,7 +110,7 @@ def fly_route(
                 switches += 1
             away += distance(pseudo_target(route, time).position, state.position)
             steps += 1
-            command = command_for(step.steering.velocity, state)
+            command = command_for(step.steering.velocity, state.course)
         flown = fly(flown, model, command, climate)
     total = max(steps, 1)
     return Tracked(memory.leg - 1, pursued / total, switches, away / total)

@@ -1,0 +1,123 @@
+"""What an aircraft costs: interpreted beside an evader's decision, compiled beside a plain kernel."""
+
+from __future__ import annotations
+
+from math import radians
+from time import process_time
+from typing import Any
+
+import numpy as np
+import pytest
+
+from onboard.core.cones import blocked_cones
+from onboard.core.evasion import EvaderView, evader
+from onboard.core.states import Limits, Vehicle
+from onboard.core.vectors import ZERO, Vec
+from sim_bridge.campaign.games import _list, compiled_play, draw, spatial
+from sim_bridge.flight.aircraft import named
+from sim_bridge.flight.plane import Command, Steer, start_state, step_plane, trimmed
+from tests.benchmarks import plain_aircraft
+
+
+def cost(work: Any, count: int, rounds: int = 7) -> float:
+    """Least CPU time of one call [s]."""
+    best = 1e9
+    for _ in range(rounds):
+        start = process_time()
+        for _ in range(count):
+            work()
+        best = min(best, (process_time() - start) / count)
+    return best
+
+
+def decision() -> Any:
+    """An evader's decision in space against five pursuers, its direct way blocked."""
+    own = Vehicle(ZERO, Vec(50.0, 0.0, 0.0), 50.0)
+    places = [(2000, 100, 50), (2500, 900, -100), (1800, -900, 30), (2200, 300, 400), (2600, -300, -300)]
+    others = tuple(Vehicle(Vec(*map(float, p)), Vec(-40.0, 0.0, 0.0), 40.0) for p in places)
+    limits = Limits(40.0, 50.0, radians(-20), radians(20))
+    target = Vec(6000.0, 0.0, 0.0)
+
+    def work() -> object:
+        view = EvaderView(
+            own, limits, others, blocked_cones(own, others, 88.0), True, target, 25.0, 100.0, 1.0, False
+        )
+        return evader(view)
+
+    return work
+
+
+@pytest.mark.parametrize("name", ["nose", "slip", "coordinated"])
+def test_a_step_of_an_aircraft_beside_an_evader_s_decision(name: str) -> None:
+    model = named(name).model
+    state = trimmed(start_state(Vec(0.0, 0.0, -500.0), 0.1, 45.0, ZERO), model)
+    command = Command(Steer.COURSE, 1.0, 0.1, 45.0)
+    wind, gust = Vec(3.0, -4.0, 0.0), Vec(1.0, 2.0, -1.0)
+    step = cost(lambda: step_plane(state, model, command, wind, gust), 2000)
+    decide = cost(decision(), 500)
+    print(f"\n{name}: a step {1e6 * step:.1f} us, an evader's decision {1e6 * decide:.1f} us")
+    assert step < decide
+
+
+def flat(value: Any) -> list[float]:
+    return [x for part in value for x in flat(part)] if isinstance(value, tuple) else [float(value)]
+
+
+def test_the_compiled_game_of_six_aircraft_beside_a_plain_kernel() -> None:
+    scenario = spatial("five")
+    play = compiled_play()
+    count = 2000  # control steps of both
+
+    def ours() -> float:
+        d = draw(scenario, 1)
+        params = d.params._replace(R=0.0, epsilon=0.0, horizon=count * d.params.dt)
+        log = np.zeros((d.tracks.shape[0], 6, 5))
+        players = _list(d.players, True)
+        commands = _list([Command(Steer.COURSE, 0.0, 0.0, 0.0)] * 6, True)
+        start = process_time()
+        found = play(
+            d.game, params, players, commands, d.fleet, d.climate, d.sensor, d.band, False, d.gusts, d.tracks,
+            log,
+        )  # fmt: skip
+        spent = process_time() - start
+        assert found.steps == count
+        return spent
+
+    def theirs() -> float:
+        d = draw(scenario, 1)
+        m = d.fleet.evader
+        state = np.zeros((6, 29))
+        for index, flown in enumerate(d.players):
+            p = flown.plane
+            state[index] = [
+                *p.position, *p.velocity, p.speed, p.thrust, p.thrust_integral, *p.pitch, *p.yaw, *p.drift,
+                *flown.gusts,
+            ]  # fmt: skip
+        s = m.speed
+        speeds = (
+            s.gain, s.integral_gain, s.acceleration_min, s.acceleration_max, s.lag, s.lead, s.drag, s.gravity,
+            s.trim,
+        )  # fmt: skip
+        c, f = d.climate, m.follow
+        wind = np.array([*c.reference, c.axis_x, c.axis_y, f.carry_along, f.carry_across, f.carry_up])
+        declared = np.array([50.0] + [40.0] * 5)
+        arrays = [np.array(flat(x)) for x in (m.pitch, m.yaw, m.pitch_law, m.yaw_law)]
+        start = process_time()
+        plain_aircraft.play(
+            state, *arrays, speeds, declared, wind, c.sigma, d.gusts, d.tracks, np.array(d.sensor),
+            np.array(d.params.target), d.params.rho, count, radians(20.0),
+        )  # fmt: skip
+        spent = process_time() - start
+        assert np.all(np.isfinite(state))
+        assert np.ptp(state[:, 0]) > 100.0
+        return spent
+
+    ours()
+    theirs()
+    fast, plain = (min(work() for _ in range(9)) for work in (ours, theirs))
+    steps = 5 * count
+    print(
+        f"\nsix aircraft in wind at 100 Hz: compiled {steps / fast / 1e3:.0f} k game steps a CPU-second,"
+        f" plain kernel {steps / plain / 1e3:.0f} k, ratio {plain / fast:.2f}"
+    )
+    assert plain / fast >= 0.5
