@@ -163,6 +163,20 @@ class Run(NamedTuple):
             found.append(Gap(other.id, t, np.linalg.norm(apart, axis=1)))
         return tuple(found)
 
+    def playing(self, t: Array) -> NDArray[np.bool_]:
+        """Which of these instants lie within the game: from t₀ to the outcome."""
+        inside: NDArray[np.bool_] = t >= 0.0
+        return inside if self.outcome is None else inside & (t <= self.outcome.time)
+
+    def nearest(self) -> dict[int, float]:
+        """The smallest distance of each pursuer to the evader within the game [m], by id."""
+        found = {}
+        for gap in self.gaps():
+            inside = gap.distance[self.playing(gap.t)]
+            if len(inside):
+                found[gap.id] = float(inside.min())
+        return found
+
     def role_of(self, vehicle: int) -> str:
         """For a person: `evader 1`."""
         flown = self.flown.get(vehicle)

@@ -42,7 +42,7 @@ a {{ color: #0b5cad; text-decoration: none; }} a:hover {{ text-decoration: under
 table {{ border-collapse: collapse; width: 100%; font-size: 14px; font-variant-numeric: tabular-nums; }}
 th {{ text-align: left; color: {look.FAINT}; font-weight: 600; }}
 th, td {{ padding: 5px 14px 5px 0; border-bottom: 1px solid {look.GRID}; vertical-align: top; }}
-.n {{ text-align: right; white-space: nowrap; }}
+.n {{ text-align: right; }} td.n, td:first-child {{ white-space: nowrap; }}
 .tag {{ display: inline-block; border-radius: 5px; padding: 0 7px; font-size: 13px; white-space: nowrap; }}
 .error {{ background: #fde2e0; color: #8c1d18; }} .warning {{ background: #fff0cf; color: #6b4a00; }}
 .info {{ background: #e6eefb; color: #17407a; }} .good {{ background: #dff3e4; color: #14532d; }}
@@ -116,14 +116,14 @@ def facts(run: Run) -> str:
     """The numbers one asks for first."""
     start, end = run.span
     found = [(f"{end - start:.1f} s", "flown and recorded")]
-    gaps = [gap for gap in run.gaps() if len(gap.t)]
+    nearest = run.nearest()
     if run.outcome is not None:
         found.insert(0, (f"{run.outcome.time:.2f} s", "from start to end of the game"))
         if run.outcome.smallest_distance >= 0:
             found.append((f"{run.outcome.smallest_distance:.2f} m", "smallest distance, by the referee"))
-    elif gaps:
-        nearest = min(gaps, key=lambda gap: float(gap.distance.min()))
-        found.append((f"{nearest.distance.min():.2f} m", f"smallest distance, of pursuer {nearest.id}"))
+    elif nearest:
+        who = min(nearest, key=nearest.__getitem__)
+        found.append((f"{nearest[who]:.2f} m", f"smallest distance, of pursuer {who}"))
     if run.capture_radius is not None:
         found.append((f"{run.capture_radius:g} m", "capture radius R"))
     if run.safety_distance is not None:
@@ -141,14 +141,12 @@ def facts(run: Run) -> str:
 def vehicles(run: Run) -> str:
     """One row for each vehicle."""
     colors = look.colors(run)
-    nearest = {gap.id: float(gap.distance.min()) for gap in run.gaps() if len(gap.t)}
+    nearest = run.nearest()
     rows = []
     for vehicle_id, flown in sorted(run.flown.items()):
         member = run.member(vehicle_id)
         link = run.links.get(vehicle_id)
-        playing = flown.t >= 0.0
-        if run.outcome is not None:
-            playing &= flown.t <= run.outcome.time
+        playing = run.playing(flown.t)
         mean = f"{flown.groundspeed[playing].mean():.1f}" if playing.any() else ""
         late = flown.latency[np.isfinite(flown.latency)] * 1000.0
         median, most = np.percentile(late, [50, 99]) if len(late) else (0.0, 0.0)
@@ -167,7 +165,7 @@ def vehicles(run: Run) -> str:
             ]
         )
     heads = ["vehicle", "strategy", "declared m/s", "mean over ground m/s", "nearest to evader m"]
-    heads += ["age at arrival ms, median / 99 %", "battery %", "known from"]
+    heads += ["age ms, median / 99 %", "battery %", "known from"]
     return _table(heads, rows, numbers=(2, 3, 4, 5, 6))
 
 
