@@ -112,6 +112,8 @@ def free_ray(preferred: Vec, cones: tuple[Cone, ...]) -> Ray:
             if is_free(u, cones):
                 best = near
                 ray = u
+        if near <= best:
+            continue  # no point of this edge is nearer than its nearest
         # Where the edges of cones i and j < i cross.
         for j in range(i):
             b = cones[j]

@@ -72,6 +72,8 @@ def play(  # noqa: C901
                         )
                         if _free(x, y, z, ax, cosines, sines, n):
                             best, ux, uy, uz = near, x, y, z
+                    if near <= best:
+                        continue
                     for j in range(i):
                         c = ax[i, 0] * ax[j, 0] + ax[i, 1] * ax[j, 1] + ax[i, 2] * ax[j, 2]
                         q = 1.0 - c * c
