@@ -140,6 +140,52 @@ def command(
     return _play(programs.command(_settings(config, game, bus, zenoh, operator), order, sure=yes))
 
 
+RunArgument = Annotated[Path, typer.Argument(help="Run folder, or a recording in it.")]
+
+
+@app.command()
+def record(
+    config: ConfigOption = None,
+    game: GameOption = None,
+    bus: BusOption = None,
+    zenoh: ZenohOption = None,
+    runs: RunsOption = None,
+) -> int:
+    """Record everything that is heard, without a console, until ctrl-C or SIGTERM."""
+    from gcs import programs
+
+    return _play(programs.watch(_settings(config, game, bus, zenoh, None, runs), record=True, plain=True))
+
+
+@app.command()
+def replay(
+    run: RunArgument,
+    config: ConfigOption = None,
+    plain: PlainOption = False,
+    decide: Annotated[
+        bool, typer.Option("--decide", help="Run the strategies again; list where they decide otherwise.")
+    ] = False,
+    evader: Annotated[str, typer.Option("--evader", help="With --decide: this strategy for evaders.")] = "",
+    pursuer: Annotated[str, typer.Option("--pursuer", help="With --decide: this one for pursuers.")] = "",
+) -> int:
+    """Show a recorded run in the console: pause, speed, seek, step (? shows the keys)."""
+    from gcs import programs
+
+    if (evader or pursuer) and not decide:
+        raise ConfigError("--evader, --pursuer: found without --decide, expected with it")
+    if decide:
+        return programs.decide_again(run, {Role.EVADER: evader, Role.PURSUER: pursuer})
+    return programs.replay(run, gcs_settings.load(config).alerts, plain=plain)
+
+
+@app.command()
+def report(run: RunArgument, config: ConfigOption = None) -> int:
+    """Write the run's report: one page for any browser, without network, and pictures."""
+    from gcs import programs
+
+    return programs.report(run, gcs_settings.load(config).alerts)
+
+
 @game_app.command("run")
 def game_run(
     scenario: Annotated[Path, typer.Argument(help="Scenario file.")],

@@ -7,18 +7,24 @@ import signal
 import sys
 from collections.abc import Callable
 from contextlib import suppress
-from typing import NamedTuple
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
 
 from gcs.commands import ENDS_A_FLIGHT
 from gcs.export import to_json
 from gcs.picture import Leg, Picture
 from gcs.plain import Plain
 from gcs.plain import status as status_lines
-from gcs.session import Session, on_air
+from gcs.rules import Thresholds
+from gcs.session import Session, on_air, version
 from gcs.settings import Settings
+from onboard.runtime.clock import RealClock
 from onboard.runtime.config import ConfigError
 from onboard.runtime.scenario import Scenario
 from onboard.wire.swarm import CommandKind, Role
+
+if TYPE_CHECKING:
+    from gcs.replay import Player
 
 LOOK_S = 0.25
 GATHER_S = 1.5  # to learn who is there
@@ -188,3 +194,67 @@ async def play(
             by = f" by {picture.game.outcome.captor}" if picture.game.outcome.captor else ""
             print(f"evader {picture.game.outcome.verdict}{by} after {picture.game.outcome.time:.1f} s")
         return master.exit_code
+
+
+def replay(run: Path, limits: Thresholds, *, plain: bool) -> int:
+    """A recording in the console, or its log in lines."""
+    from gcs.replay import Player
+    from gcs.replay_source import ReplaySource, open_run
+
+    _demand_terminal(plain)
+    recording = open_run(run)
+    try:
+        for remark in recording.remarks:
+            print(f"gcs: {remark}", file=sys.stderr)
+        player = Player(recording, limits, version())
+        if plain:
+            _print_through(player)
+            return 0
+        from gcs.console.app import Console
+
+        source = ReplaySource(player, run.resolve().name, RealClock().monotonic_ns)
+        return asyncio.run(Console(source).run_async()) or 0
+    finally:
+        recording.close()
+
+
+def _print_through(player: Player) -> None:
+    """Every line of the log, and how all were every five seconds, without waiting."""
+    lines = Plain()
+    at_ns = player.start_ns
+    while True:
+        player.seek(at_ns)
+        for line in lines.lines(player.picture()):
+            print(line)
+        if player.ended:
+            return
+        at_ns += 1_000_000_000
+
+
+def decide_again(run: Path, strategies: dict[Role, str]) -> int:
+    """The strategies again over a recording: where they decide otherwise."""
+    from gcs.replay_decide import decide
+    from gcs.replay_source import open_run
+
+    recording = open_run(run)
+    try:
+        for remark in recording.remarks:
+            print(f"gcs: {remark}", file=sys.stderr)
+        given = {role: name for role, name in strategies.items() if name}
+        print("\n".join(decide(recording.entries(), given).lines()))
+    finally:
+        recording.close()
+    return 0
+
+
+def report(run: Path, limits: Thresholds) -> int:
+    """The report of a run."""
+    from gcs.report import write_report
+
+    written = write_report(run, limits, version())
+    for note in written.notes:
+        print(f"gcs: {note}", file=sys.stderr)
+    print(written.page)
+    for picture in written.pictures:
+        print(picture)
+    return 0

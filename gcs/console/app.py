@@ -108,6 +108,7 @@ class Console(App[int]):
 
     def on_mount(self) -> None:
         for key in self.source.keys:
+            self._bindings.key_to_bindings.pop(key.key, None)
             self._bindings.bind(key.key, f"source({key.action!r})", key.text, show=False)
         self.set_interval(1.0 / REFRESH_HZ, self.refresh_picture)
         self.refresh_picture()

@@ -4,9 +4,9 @@
                        └────────── another mode than asked for: TAKEN ─────────┘
 
 A command is repeated at most every 80 ms until the heartbeat reports the mode: at 20 % loss each way seven
-tries leave 0.08 % unconfirmed. After an accepted answer the heartbeat that proves it is asked for at the
-same pace (it comes by itself only once a second, and may be lost), after a refusal a second passes. From
-IDLE, LEFT and TAKEN the pilot hands (back) by choosing the guided mode himself.
+tries leave 0.08 % unconfirmed. From the second try on the heartbeat that proves it is asked for at the same
+pace (it comes by itself only once a second, and may be lost); after an accepted answer it alone. After a
+refusal a second passes. From IDLE, LEFT and TAKEN the pilot hands (back) by choosing the guided mode himself.
 """
 
 from __future__ import annotations
@@ -41,6 +41,11 @@ class Pacer:
         self._proof_at = NEVER  # when to ask for the proof of an accepted command
         self._proofs = 0
 
+    @property
+    def unanswered(self) -> bool:
+        """Tried more than once, and never answered."""
+        return self.tries > 1 and self._refused < 0 and self._proof_at == NEVER
+
     def proof_due(self, now: float) -> bool:
         """Whether to ask now for the proof of what was accepted; counts it."""
         if self._proof_at == NEVER or now < self._proof_at or self._proofs >= PATIENCE:
@@ -62,7 +67,7 @@ class Pacer:
         if result in (0, 5):
             self._next = now + AFTER_YES
             if self._proof_at == NEVER:
-                self._proof_at = now + RETRY  # most send a heartbeat at once when the mode changes
+                self._proof_at = now
             return False
         self._next = now + after_no
         new = result != self._refused
@@ -143,6 +148,8 @@ class Control:
             number = MODES[self.kind][self._wanted]
             px4 = self.kind is Kind.PX4_MULTICOPTER
             messages.append(commands.set_mode(self.to, number, px4=px4))
+            if self._mode.unanswered:  # it may have been obeyed, and heartbeat and answer lost
+                messages.append(commands.request_message(self.to, HEARTBEAT))
             if self._mode.tries == PATIENCE:
                 text = f"{self._wanted} asked for {PATIENCE} times, {telemetry.mode} reported: asking on"
                 self._notes.append(Note("error", "mode_unconfirmed", text))
