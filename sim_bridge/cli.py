@@ -17,7 +17,7 @@ from onboard.runtime.program import run  # noqa: E402
 ScenarioArgument = Annotated[
     Path, typer.Argument(help="Scenario file, or the name of a shipped one (demo, one-on-one …).")
 ]
-SeedOption = Annotated[int | None, typer.Option(help="Seed, in place of the scenario's.")]
+SeedOption = Annotated[int | None, typer.Option(min=0, help="Seed, in place of the scenario's.")]
 BusOption = Annotated[str, typer.Option(help="Zenoh endpoint [tcp/127.0.0.1:7447].")]
 
 app = typer.Typer(
@@ -163,10 +163,13 @@ def scenario_new(
 def scenario_check(scenario: ScenarioArgument) -> None:
     """Check a scenario; print turn radii, free cones and the expected duration."""
     from onboard.runtime.scenario import load
-    from sim_bridge.fly import scenario_file
+    from sim_bridge.fly import demand_strategies, scenario_file
     from sim_bridge.scenario_tools import check
 
-    print(check(load(scenario_file(scenario))))
+    file = scenario_file(scenario)
+    found = load(file)
+    demand_strategies(found, str(file))
+    print(check(found))
 
 
 @app.command()

@@ -16,11 +16,13 @@ from typing import NamedTuple
 from onboard.runtime.clock import RealClock
 from onboard.runtime.config import ConfigError
 from onboard.runtime.loop import run_virtual, virtual_clock
+from onboard.runtime.plugins import evader_strategy, pursuer_strategy
 from onboard.runtime.scenario import Scenario, load
 from sim_bridge import run_folder
 from sim_bridge.summary import Summary
 
 REPORT_S = 120.0
+ROOMS = ("flight", "spatial")  # below configs/scenarios/: what is known by its bare name
 
 
 class Options(NamedTuple):
@@ -45,18 +47,23 @@ class Flown(NamedTuple):
 def fly(path: Path, options: Options, say: Callable[[str], None] = print) -> Flown:
     """Fly a scenario file. Raises ConfigError for what the user can mend."""
     scenario = load(path)
+    demand_strategies(scenario, str(path))
     clock = RealClock()
     folder = run_folder.make(options.runs, scenario.name, clock.wall_ns())
     tell = (lambda line: None) if options.quiet else say
     run_folder.write_bytes(folder / "scenario.toml", path.read_bytes())
     run_folder.write(folder / "versions.json", run_folder.versions())
     began = clock.monotonic_ns()
-    if options.fast:
-        summary, timing = _fast(scenario, options, folder, path.parent, tell)
-    else:
-        from sim_bridge.fly_real import fly_real
+    try:
+        if options.fast:
+            summary, timing = _fast(scenario, options, folder, path.parent, tell)
+        else:
+            from sim_bridge.fly_real import fly_real
 
-        summary, timing = asyncio.run(fly_real(scenario, options, folder, path.parent, tell))
+            summary, timing = asyncio.run(fly_real(scenario, options, folder, path.parent, tell))
+    except ConfigError:
+        run_folder.discard(folder)
+        raise
     wall_s = (clock.monotonic_ns() - began) / 1e9
     run_folder.write(folder / "summary.json", summary)
     timing = {"wall_s": round(wall_s, 3), **timing}
@@ -91,6 +98,16 @@ def _fast(
         "virtual_s": round(virtual_s, 3),
         "times_real_time": round(virtual_s / took, 2),
     }
+
+
+def demand_strategies(scenario: Scenario, name: str) -> None:
+    """Raise ConfigError for a strategy that nobody here has: its vehicle would never be ready."""
+    for index, spec in enumerate(scenario.vehicles):
+        try:
+            (pursuer_strategy if index else evader_strategy)(spec.strategy)
+        except ConfigError as error:
+            at = f"pursuers[{index - 1}]" if index else "evader"
+            raise ConfigError(f"{name}: {at}.{error}") from None
 
 
 def _report(folder: Path, say: Callable[[str], None]) -> Path | None:
@@ -141,8 +158,8 @@ def scenario_file(name: Path) -> Path:
     if name.exists():
         return name
     shipped = configs() / "scenarios"
-    for candidate in (shipped / name, shipped / f"{name}.toml", shipped / "flight" / f"{name}.toml"):
-        if candidate.is_file():
-            return candidate
-    known = sorted(p.stem for p in (shipped / "flight").glob("*.toml"))
+    for candidate in (str(name), f"{name}.toml", *(f"{room}/{name}.toml" for room in ROOMS)):
+        if (shipped / candidate).is_file():
+            return shipped / candidate
+    known = sorted(p.stem for room in ROOMS for p in (shipped / room).glob("*.toml"))
     raise ConfigError(f"{name}: no such file; shipped scenarios: {', '.join(known)}")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import platform
+import shutil
 from datetime import UTC, datetime
 from importlib import metadata
 from pathlib import Path
@@ -30,6 +31,13 @@ def make(parent: Path, name: str, now_ns: int) -> Path:
             raise ConfigError(f"{folder}: {(error.strerror or str(error)).lower()}") from None
         return folder
     raise ConfigError(f"{parent}: too many runs of {at}-{safe}")
+
+
+def discard(folder: Path) -> None:
+    """Remove a run folder in which nothing was flown; where there is a log it stays, for it may tell why."""
+    if any(path.suffix in (".log", ".tlog") and path.stat().st_size for path in folder.iterdir()):
+        return
+    shutil.rmtree(folder, ignore_errors=True)
 
 
 def write(path: Path, value: object) -> None:

@@ -69,6 +69,8 @@ async def serve_scenario(
     """`serve` on the running loop; recordings of wind lie in `folder`; `started` is told what is up.
 
     `ending` is awaited when it shall end, while the vehicles still fly."""
+    if not options.game or set(options.game) & set("/*$?#"):
+        raise ConfigError(f"game: found '{options.game}', expected a name without / * $ ? #")
     loop, stop = asyncio.get_running_loop(), asyncio.Event()
     radios: dict[int, Radio] = {}
     bus: ZenohBus | None = None

@@ -227,6 +227,7 @@ def check(scenario: Scenario, name: str) -> Scenario:
         if not ok:
             raise ConfigError(f"{name}: {key}: found {found}, expected {expected}")
 
+    demand(scenario.seed >= 0, "seed", scenario.seed, "zero or more")
     demand(len(scenario.pursuers) > 0, "pursuers", "none", "at least one pursuer")
     p = scenario.parameters
     demand(p.R > 0, "parameters.R", p.R, "a positive distance [m]")
