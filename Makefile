@@ -51,7 +51,7 @@ check: install
 	$(BIN)/lint-imports
 
 bench: install
-	$(BIN)/python -m pytest tests/benchmarks -n 0 --timeout 1800 --benchmark-json benchmarks/results/latest.json
+	$(BIN)/python -m pytest tests/benchmarks -n 0 --timeout 1800 -o python_files="test_*.py bench_*.py" --benchmark-json benchmarks/results/latest.json
 
 # The base install of a single-board computer: wheels only, no compiler. A dry resolution for aarch64.
 check-aarch64: install
