@@ -4,34 +4,16 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Sequence
-from datetime import UTC, datetime
 from pathlib import Path
 
 from gcs.recorder import Recorder, Status, remark_of
 from gcs.recorder_file import OpenDisk, OsFile
 from gcs.recorder_tlog import TlogRecorder
 from gcs.station import Station
-from onboard.runtime.config import ConfigError
 from onboard.runtime.protocols import Link
 
 RECORDING = "recording.mcap"
 TICK_S = 0.2
-
-
-def new_run(parent: Path, game: str, now_ns: int) -> Path:
-    """Make a new run folder, `PARENT/<UTC time>-<game>`. Raises ConfigError where that cannot be."""
-    at = datetime.fromtimestamp(now_ns // 1_000_000_000, UTC).strftime("%Y%m%dT%H%M%SZ")
-    safe = "".join(c if c.isalnum() or c in "-_." else "_" for c in game)
-    for suffix in ("", *(f"-{n}" for n in range(2, 100))):
-        folder = parent / f"{at}-{safe}{suffix}"
-        try:
-            folder.mkdir(parents=True)
-        except FileExistsError:
-            continue
-        except OSError as error:
-            raise ConfigError(f"{folder}: {(error.strerror or str(error)).lower()}") from None
-        return folder
-    raise ConfigError(f"{parent}: too many runs of {at}-{safe}")
 
 
 class Keeper:

@@ -70,8 +70,9 @@ class Session:
 @asynccontextmanager
 async def on_air(settings: Settings, *, listen: bool, record: bool) -> AsyncIterator[Session]:
     """A station on the bus, recording if asked; all of it ends with the block. Raises ConfigError."""
-    from gcs.recorder_shell import Keeper, new_run
+    from gcs.recorder_shell import Keeper
     from onboard.runtime.links import open_link
+    from onboard.runtime.runs import new_run
 
     clock = RealClock()
     zenoh = Path(settings.bus.zenoh) if settings.bus.zenoh else None

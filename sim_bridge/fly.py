@@ -17,6 +17,7 @@ from onboard.runtime.clock import RealClock
 from onboard.runtime.config import ConfigError
 from onboard.runtime.loop import run_virtual, virtual_clock
 from onboard.runtime.plugins import evader_strategy, pursuer_strategy
+from onboard.runtime.runs import new_run
 from onboard.runtime.scenario import Scenario, load
 from sim_bridge import run_folder
 from sim_bridge.summary import Summary
@@ -49,7 +50,7 @@ def fly(path: Path, options: Options, say: Callable[[str], None] = print) -> Flo
     scenario = load(path)
     demand_strategies(scenario, str(path))
     clock = RealClock()
-    folder = run_folder.make(options.runs, scenario.name, clock.wall_ns())
+    folder = new_run(options.runs, scenario.name, clock.wall_ns())
     tell = (lambda line: None) if options.quiet else say
     run_folder.write_bytes(folder / "scenario.toml", path.read_bytes())
     run_folder.write(folder / "versions.json", run_folder.versions())

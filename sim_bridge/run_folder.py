@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import platform
 import shutil
-from datetime import UTC, datetime
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -15,22 +14,6 @@ import msgspec
 from onboard.runtime.config import ConfigError
 
 PACKAGES = ("apollonius", "numpy", "pymavlink", "eclipse-zenoh", "msgspec", "numba", "scipy", "control")
-
-
-def make(parent: Path, name: str, now_ns: int) -> Path:
-    """A new run folder `PARENT/<UTC time>-<name>`. Raises ConfigError where that cannot be."""
-    at = datetime.fromtimestamp(now_ns // 1_000_000_000, UTC).strftime("%Y%m%dT%H%M%SZ")
-    safe = "-".join("".join(c if c.isalnum() else " " for c in name).split())
-    for suffix in ("", *(f"-{n}" for n in range(2, 100))):
-        folder = parent / f"{at}-{safe}{suffix}"
-        try:
-            folder.mkdir(parents=True)
-        except FileExistsError:
-            continue
-        except OSError as error:
-            raise ConfigError(f"{folder}: {(error.strerror or str(error)).lower()}") from None
-        return folder
-    raise ConfigError(f"{parent}: too many runs of {at}-{safe}")
 
 
 def discard(folder: Path) -> None:

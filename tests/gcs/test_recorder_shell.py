@@ -11,13 +11,14 @@ from pymavlink import mavutil
 
 from gcs.recorder_file import OsFile
 from gcs.recorder_reader import Recording
-from gcs.recorder_shell import Keeper, new_run
+from gcs.recorder_shell import Keeper
 from gcs.recorder_tlog import TlogRecorder
 from gcs.station import Station
 from onboard.runtime.bus_memory import MemoryBroker
 from onboard.runtime.config import ConfigError
 from onboard.runtime.links import memory_pair
 from onboard.runtime.loop import virtual_clock
+from onboard.runtime.runs import new_run
 from onboard.wire import topics
 from onboard.wire.mavlink import Sender, dialect
 from onboard.wire.tlog import read_tlog
@@ -159,7 +160,7 @@ async def test_a_full_disk_is_an_alert_of_the_station_until_there_is_room(tmp_pa
 
 def test_run_folders_never_collide_and_bad_places_are_named(tmp_path: Path) -> None:
     first, second = (new_run(tmp_path, "a/b", EPOCH_NS) for _ in range(2))
-    assert (first.name, second.name) == ("20251009T085320Z-a_b", "20251009T085320Z-a_b-2")
+    assert (first.name, second.name) == ("20251009T085320Z-a-b", "20251009T085320Z-a-b-2")
     (tmp_path / "file").write_text("")
     with pytest.raises(ConfigError, match="not a directory"):
         new_run(tmp_path / "file", "g", EPOCH_NS)
