@@ -252,9 +252,6 @@ class Fleet:
             return None
         entry, health = found
         self._life(entry, vehicle_id, health.nonce, now_ns)
-        if entry.health is None or entry.health.stage != health.stage:
-            waits = f", lacks {', '.join(health.lacks)}" if health.lacks else ""
-            self._say(now_ns, vehicle_id, Severity.INFO, "stage", f"{health.stage}{waits}")
         entry.health, entry.health_ns = health, now_ns
         if entry.role is None:
             entry.role = health.role

@@ -29,7 +29,7 @@ TALL = 30  # lines from which on the table and the log take their share
 CONFIRM_S = 8.0  # how long a question waits for its answer
 
 KEYS: tuple[tuple[str, str, str], ...] = (  # key, action, text for the help
-    ("x", "abort_all", "ABORT ALL: everybody holds or returns, at once (ctrl+x while typing)"),
+    ("x", "abort_all", "ABORT ALL: everybody holds or returns (ctrl+x while typing)"),
     ("up,k", "move(-1)", "select the vehicle above"),
     ("down,j", "move(1)", "select the vehicle below"),
     ("h", "order('hold')", "hold the selected vehicle"),
@@ -72,7 +72,7 @@ class Console(App[int]):
     CSS = """
     #main { layout: grid; grid-size: 2; grid-gutter: 0 1; grid-columns: 1fr 1fr; grid-rows: 1 7 1fr 3 3 1; }
     #status, #vehicles, #alerts, #log, #prompt { column-span: 2; }
-    #status { background: $boost; }
+    #status, #alerts { background: $boost; }
     Screen.-tall #main { grid-rows: 1 3fr 4fr 2fr 3fr 1; }
     Screen.-wide #main { grid-columns: 82 1fr; }
     Screen.-wide #vehicles, Screen.-wide #alerts, Screen.-wide #log { column-span: 1; }

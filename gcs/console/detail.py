@@ -42,7 +42,7 @@ def _decision(vehicle: VehicleView) -> list[Line]:
     north, east, down = decision.aim
     old = f" ({age(vehicle.decision_age_s)} s ago)" if vehicle.decision_age_s > 1.0 else ""
     lines = [
-        (f"rule {decision.rule}{old}", "bold"),
+        (f"rule {decision.rule.replace('_', ' ')}{old}", "bold"),
         (f"{decision.level}, {decision.module}, {decision.strategy}", ""),
         (f"aim N {north:.0f} E {east:.0f} up {-down:.0f} m", ""),
         (f"in {decision.time_to_aim:.1f} s, predicted miss {decision.miss:.1f} m", ""),

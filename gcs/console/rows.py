@@ -126,7 +126,7 @@ def _cells(vehicle: VehicleView, grade: Grade, evader: Vec | None) -> tuple[str,
         f"{-position[2]:.0f}" if position else "–",
         f"{vehicle.groundspeed:.1f}"[:4] if vehicle.state else "–",
         _to_evader(vehicle, evader),
-        vehicle.rule or "–",
+        vehicle.rule.replace("_", " ") or "–",
     )
 
 

@@ -162,7 +162,7 @@ class LogPanel(Lines):
 class Prompt(Horizontal):
     """The last line: a hint, what was said last, or the command line."""
 
-    HINT = "x ABORT ALL  : command  h hold  r resume  b return  l land  a ack  ? help  q leave"
+    HINT = "x ABORT ALL  : command  h hold  r resume  b return  l land  a ack  ? help"
     DEFAULT_CSS = """
     Prompt { height: 1; }
     Prompt Input { height: 1; border: none; padding: 0; width: 1fr; display: none; }
