@@ -15,6 +15,7 @@ from sim_bridge.sensor import Sensor
 from sim_bridge.summary import Summary, VehicleSummary, kept, reached
 
 EVENTS_MAX = 100_000
+MEASURED = ("overrun", "skipped", "worst")  # counters with a part of the wall clock in them: timing.json's
 
 
 class Observer:
@@ -63,7 +64,7 @@ class Observer:
                     smallest_distance=kept(master.nearest.get(id)),
                     telemetry_rate_hz=round(flying.telemetry_rate_hz, 3) if flying else 0.0,
                     setpoint_rate_hz=round(flying.setpoint_rate_hz, 3) if flying else 0.0,
-                    counters=dict(sorted(health.counters.items())) if health else {},
+                    counters=_counted(health) if health else {},
                     link={cause: n for cause, n in sorted(counters.items()) if n},
                     events=sum(event.id == id for event in self.events),
                 )
@@ -97,3 +98,8 @@ class Observer:
             self.health[health.id] = health
             if health.stage == "acting":
                 self._flying[health.id] = health
+
+
+def _counted(health: Health) -> dict[str, int]:
+    counters = sorted(health.counters.items())
+    return {cause: number for cause, number in counters if not any(word in cause for word in MEASURED)}

@@ -18,7 +18,7 @@ class VehicleSummary(msgspec.Struct, frozen=True, kw_only=True):
     smallest_distance: float | None  # of a pursuer to the evader [m]
     telemetry_rate_hz: float  # the last while it acted
     setpoint_rate_hz: float
-    counters: dict[str, int]  # the agent's: drops and overruns by cause
+    counters: dict[str, int]  # the agent's: what it did, and drops by cause
     link: dict[str, int]  # the link's, impairment included
     events: int
 
