@@ -89,7 +89,7 @@ def test_training_learns_what_a_network_of_its_kind_says() -> None:
     after = network.cost(ACT, learnt, data, EPSILON)
     assert after < 0.05 * before
     assert after < 0.01 * float(((y - y.mean()) ** 2).sum())
-    assert slices == 80
+    assert 10 < slices <= 120
 
 
 def test_the_cost_never_rises() -> None:

@@ -8,9 +8,10 @@ from math import floor
 
 import numpy as np
 
-from onboard.core.vectors import Vec
 from onboard.pilot.filter import TrackFilter
 from onboard.pilot.predictor.activation import Array
+
+_Row = tuple[float, float, float, float, float, float]
 
 
 class Grid:
@@ -22,7 +23,7 @@ class Grid:
         self.step = step  # [s]
         self.gap = gap  # [s]
         self.added = 0  # points ever added
-        self._rows: deque[tuple[Vec, Vec]] = deque(maxlen=capacity)  # position [m], velocity [m/s]
+        self._rows: deque[_Row] = deque(maxlen=capacity)  # position [m], velocity [m/s]
         self._last = 0  # the newest point is at instant _last · step
         self._seen = float("-inf")  # newest sample that was taken in [s]
 
@@ -49,7 +50,7 @@ class Grid:
         while (self._last + 1) * self.step <= newest + 1e-9:
             self._last += 1
             here = track.estimate(self._last * self.step)
-            self._rows.append((here.position, here.velocity))
+            self._rows.append((*here.position, *here.velocity))
             self.added += 1
 
     def revise(self, track: TrackFilter, t: float) -> None:
@@ -63,7 +64,7 @@ class Grid:
 
     def arrays(self) -> tuple[Array, Array]:
         """Positions (n, 3) [m] and velocities (n, 3) [m a step], oldest first."""
-        both = np.array([(*position, *velocity) for position, velocity in self._rows]).reshape(-1, 6)
+        both = np.array(tuple(self._rows)).reshape(-1, 6)
         return both[:, :3], both[:, 3:] * self.step
 
     def window(self, track: TrackFilter, points: int) -> Array | None:
@@ -76,8 +77,7 @@ class Grid:
         out = np.empty((points, 3))
         out[-1] = track.estimate(newest).position
         out[-2] = track.estimate(newest - self.step).position
-        rows = [(*position, *velocity) for position, velocity in islice(reversed(self._rows), 1, points)]
-        both = np.array(rows)[::-1]  # (points − 1, 6): the points around each instant
+        both = np.array(tuple(islice(reversed(self._rows), 1, points)))[::-1]  # (points − 1, 6): around each
         place, speed = both[:, :3], both[:, 3:] * self.step
         u = shift
         h = u * u * (3.0 - 2.0 * u)

@@ -39,8 +39,8 @@ class ModelSettings(NamedTuple):
     lags: int = 6  # moves of a window that the network sees
     epsilon: float = 0.05  # smoothing of the slope at 0 in training
     decay: float = 0.1  # pull of the weights towards zero
-    iterations: int = 15  # of Levenberg–Marquardt before the choice
-    finishing: int = 5  # and after it, on all points
+    iterations: int = 8  # of Levenberg–Marquardt before the choice
+    finishing: int = 3  # and after it, on all points
     networks: bool = True  # off: the ridge base alone
 
 
@@ -115,7 +115,8 @@ def fit(
     yield
 
     every = [max(0, int(total - h - origins[0])) for h in horizons]
-    coefficients, base = _final(rows, wanted, every, enough, chosen, settings)
+    coefficients = _final(rows, wanted, every, enough, chosen, settings)
+    base = ridge.predict(coefficients, rows)
     if PredictorKind.NETWORK in kinds:
         yield
         data = _batch(net, wanted - base, known, every)
@@ -150,7 +151,7 @@ def refresh(positions: Array, velocities: Array, model: Model, settings: ModelSe
     wanted, _ = _targets(positions, view, origins, horizons)
     counts = [max(0, int(total - h - origins[0])) for h in horizons]
     enough = [bool(model.coefficients[i].any()) and counts[i] >= model.points for i in range(len(horizons))]
-    fresh, _ = _final(ridge.features(view.moves), wanted, counts, enough, model.penalty, settings)
+    fresh = _final(ridge.features(view.moves), wanted, counts, enough, model.penalty, settings)
     return model._replace(coefficients=fresh)
 
 
@@ -272,8 +273,8 @@ def _final(
     enough: list[bool],
     chosen: tuple[int, ...],
     settings: ModelSettings,
-) -> tuple[Array, Array]:
-    """Coefficients (H, 3, F) learnt from all points, and their answers (k, H, 3)."""
+) -> Array:
+    """Coefficients (H, 3, F) learnt from all points."""
     out = np.zeros((len(counts), 3, rows.shape[2]))
     for penalty in set(chosen):
         which = [i for i in range(len(counts)) if enough[i] and chosen[i] == penalty]
@@ -281,7 +282,7 @@ def _final(
             out[which] = ridge.fit(
                 rows, wanted[:, which], [counts[i] for i in which], (settings.penalties[penalty],)
             )[0]
-    return out, ridge.predict(out, rows)
+    return out
 
 
 def _inputs(moves: Array, lags: tuple[int, ...], axes: tuple[int, ...]) -> Array:

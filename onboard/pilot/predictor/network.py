@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from onboard.pilot.predictor.activation import Array, SParabola, smooth_root, smooth_root_slope
+from onboard.pilot.predictor.heading import Indices
 
 
 class Weights(NamedTuple):
@@ -39,12 +40,15 @@ class Batch(NamedTuple):
     inputs: Array  # (k, n + 1), column 0 is 1
     targets: Array  # (k, o)
     mask: Array  # (k, o), 1 = known, 0 = not
+    products: Array  # (k, n'(n'+1)/2) of each pair of inputs, n' = n + 1
+    pair: Indices  # (n', n') where in `products` a pair is
 
 
 def batch(inputs: Array, targets: Array, mask: Array) -> Batch:
     """A batch of inputs (k, n), targets (k, o) and mask (k, o)."""
-    ones = np.ones((len(inputs), 1))
-    return Batch(np.hstack([ones, inputs]), np.where(mask > 0.0, targets, 0.0), mask)
+    x = np.hstack([np.ones((len(inputs), 1)), inputs])
+    a, b = np.triu_indices(x.shape[1])
+    return Batch(x, np.where(mask > 0.0, targets, 0.0), mask, x[:, a] * x[:, b], _square(x.shape[1]))
 
 
 def output(act: SParabola, weights: Weights, inputs: Array, epsilon: float = 0.0) -> Array:
@@ -82,17 +86,19 @@ def normal(act: SParabola, weights: Weights, data: Batch, epsilon: float) -> Nor
     square = g2 * g2
     w = second[1:]  # (m, o)
 
-    # First layer with itself: Σ_k x_i x_i' · g1_j g1_j' · Σ_o g2² w_jo w_j'o.
-    pairs = (w[:, None, :] * w[None, :, :]).reshape(m * m, outputs)
-    coupling = (square @ pairs.T) * (g1[:, :, None] * g1[:, None, :]).reshape(count, m * m)
-    products = (x[:, :, None] * x[:, None, :]).reshape(count, n * n)
-    top = (products.T @ coupling).reshape(n, n, m, m).transpose(0, 2, 1, 3).reshape(n * m, n * m)
+    # First layer with itself: Σ_k x_i x_i' · g1_j g1_j' · Σ_o g2² w_jo w_j'o, symmetric in j and j'.
+    a, b = np.triu_indices(m)
+    coupling = (square @ (w[a] * w[b]).T) * (g1[:, a] * g1[:, b])  # (k, m(m+1)/2)
+    halves = data.products.T @ coupling  # (n(n+1)/2, m(m+1)/2)
+    full = halves[data.pair][:, :, _square(m)]  # (n, n, m, m)
+    top = full.transpose(0, 2, 1, 3).reshape(n * m, n * m)
 
     # First with second: Σ_k x_i g1_j y_l · g2² · w_jo.
     xg = (x[:, :, None] * g1[:, None, :]).reshape(count, n * m)  # (k, n·m)
-    xgy = (xg[:, :, None] * y1[:, None, :]).reshape(count, n * m * (m + 1))
-    cross = (xgy.T @ square).reshape(n, m, m + 1, outputs) * w[None, :, None, :]
-    cross = cross.reshape(n * m, (m + 1) * outputs)
+    cross = np.empty((n, m, m + 1, outputs))
+    for row in range(m + 1):  # one at a time: memory
+        cross[:, :, row] = ((xg * y1[:, row : row + 1]).T @ square).reshape(n, m, outputs)
+    cross = (cross * w[None, :, None, :]).reshape(n * m, (m + 1) * outputs)
 
     # Second with itself: one block an output.
     own = (y1[:, :, None] * y1[:, None, :]).reshape(count, -1).T @ square  # ((m+1)², o)
@@ -137,7 +143,7 @@ def start(
 def train(
     act: SParabola, weights: Weights, data: Batch, iterations: int, epsilon: float, decay: float
 ) -> Generator[None, None, Weights]:
-    """Levenberg–Marquardt: yields twice an iteration, returns the best weights.
+    """Levenberg–Marquardt: yields after each set of equations and each step, returns the best weights.
 
     `decay` pulls the weights towards zero (a prior of as many samples' worth); the damping follows
     success and failure. A step that does not lower the cost is not taken."""
@@ -164,8 +170,19 @@ def train(
                 damping = max(damping * 0.3, 1e-7)
                 break
             damping = min(damping * 5.0, 1e7)
+            yield
+        else:
+            return best  # no step lowers the cost: this is a minimum
         yield
     return best
+
+
+def _square(size: int) -> Indices:
+    """(size, size): the place of each pair among np.triu_indices(size)."""
+    out = np.zeros((size, size), dtype=np.intp)
+    a, b = np.triu_indices(size)
+    out[a, b] = out[b, a] = np.arange(len(a))
+    return out
 
 
 def _value(act: SParabola, s: Array, epsilon: float) -> Array:

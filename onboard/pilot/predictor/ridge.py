@@ -31,10 +31,14 @@ def fit(rows: Array, targets: Array, counts: Sequence[int], penalties: Sequence[
     size = rows.shape[2]
     gram = np.empty((len(counts), 3, size, size))
     right = np.empty((len(counts), 3, size))
-    for h, count in enumerate(counts):
-        known = rows[:, :count]
-        gram[h] = known.transpose(0, 2, 1) @ known
-        right[h] = np.einsum("akf,ka->af", known, targets[:count, h])
+    running, done = np.zeros((3, size, size)), 0
+    for h in sorted(range(len(counts)), key=lambda h: counts[h]):  # each has the rows of the one before
+        count = counts[h]
+        more = rows[:, done:count]
+        running = running + more.transpose(0, 2, 1) @ more
+        done = max(done, count)
+        gram[h] = running
+        right[h] = (targets[:count, h].T[:, None, :] @ rows[:, :count])[:, 0]
     each = np.arange(size)
     power = gram[..., each, each]
     floor = 1e-9 * power.max(initial=0.0) + 1e-12
