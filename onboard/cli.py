@@ -1,127 +1,121 @@
-"""`onboard-agent`: flies one vehicle; `onboard-agent check` tells beforehand whether it can."""
+"""`onboard-agent`: flies one vehicle; `onboard-agent check` tells beforehand whether it can.
+
+With argparse, unlike the other programs: an agent stays in memory for a whole flight on a small
+computer, and what a richer library imports (some 12 MB) would stay with it.
+"""
 
 from __future__ import annotations
 
+import argparse
 import os
+import sys
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any, NoReturn
 
-import typer
+from onboard.runtime.config import ConfigError
 
-from onboard.runtime.program import run
-
-app = typer.Typer(
-    add_completion=False,
-    rich_markup_mode=None,
-    pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
-    help="Fly one vehicle of a pursuit-evasion game through its autopilot.",
-)
-
-Config = Annotated[Path | None, typer.Option(help="TOML file; its template is configs/agent.toml.")]
-Id = Annotated[int | None, typer.Option(help="The vehicle: MAVLink system id, and name on the bus [2].")]
-RoleOption = Annotated[str | None, typer.Option(help="evader, pursuer or tracker [pursuer].")]
-LinkOption = Annotated[
-    list[str] | None,
-    typer.Option(help="udpin://HOST:PORT, udpout://HOST:PORT or serial:///dev/NAME:BAUD; twice: a second one "
-                 "stands by [udpin://127.0.0.1:14539+id]."),
-]  # fmt: skip
-Autopilot = Annotated[
-    str | None, typer.Option(help="auto, velocity, arduplane, arduplane-plain or mavsdk [auto].")
-]
-GameOption = Annotated[str | None, typer.Option(help="The game to join on the bus [game].")]
-BusOption = Annotated[str | None, typer.Option(help="Zenoh endpoint [tcp/127.0.0.1:7447].")]
-Zenoh = Annotated[Path | None, typer.Option(help="Zenoh configuration file (JSON5): TLS, routers.")]
-Strategy = Annotated[str | None, typer.Option(help="Strategy by name [the setup's].")]
-Route = Annotated[Path | None, typer.Option(help="Route file of a tracker.")]
-TakeControl = Annotated[
-    bool | None,
-    typer.Option("--take-control/--no-take-control", help="Enter GUIDED or OFFBOARD by itself [no]."),
-]
-MayArm = Annotated[bool | None, typer.Option("--may-arm/--never-arm", help="Arm for a ground start [no].")]
-DryRun = Annotated[
-    bool | None, typer.Option("--dry-run", help="Decide and publish, but send the autopilot nothing.")
-]
-Log = Annotated[Path | None, typer.Option(help="Write every MAVLink frame to this .tlog file.")]
-Timing = Annotated[Path | None, typer.Option(hidden=True, help="Latencies to this JSON file, at the end.")]
+NAME = "onboard-agent"
+OPTIONS = ("id", "role", "link", "autopilot", "game", "bus", "zenoh", "strategy", "route", "take_control",
+           "may_arm", "dry_run", "log")  # fmt: skip
 
 
-@app.callback(invoke_without_command=True)
-def fly(
-    context: typer.Context,
-    config: Config = None,
-    id: Id = None,
-    role: RoleOption = None,
-    link: LinkOption = None,
-    autopilot: Autopilot = None,
-    game: GameOption = None,
-    bus: BusOption = None,
-    zenoh: Zenoh = None,
-    strategy: Strategy = None,
-    route: Route = None,
-    take_control: TakeControl = None,
-    may_arm: MayArm = None,
-    dry_run: DryRun = None,
-    log: Log = None,
-    timing: Timing = None,
-    version: Annotated[bool, typer.Option("--version", help="Print the version.")] = False,
-) -> None:
-    """Fly one vehicle. Every setting has a default that works beside `sim-bridge serve`."""
-    if version:
-        from onboard.agent.program import version as own_version
+class Parser(argparse.ArgumentParser):
+    """One line for a mistake."""
 
-        print(own_version())
-        return
-    options = _options(
-        id=id, role=role, link=link or None, autopilot=autopilot, game=game, bus=bus, zenoh=zenoh,
-        strategy=strategy, route=route, take_control=take_control, may_arm=may_arm, dry_run=dry_run, log=log,
-    )  # fmt: skip
-    if context.invoked_subcommand is not None:
-        context.obj = (config, options)
-        return
-    from onboard.agent.config import load
-    from onboard.agent.program import fly as fly_agent
-
-    raise typer.Exit(fly_agent(load(config, options), timing))
+    def error(self, message: str) -> NoReturn:
+        """Print it and exit with code 2."""
+        fail(f"{message} (see {self.prog} --help)")
 
 
-@app.command()
-def check(
-    context: typer.Context,
-    config: Config = None,
-    id: Id = None,
-    role: RoleOption = None,
-    link: LinkOption = None,
-    autopilot: Autopilot = None,
-    game: GameOption = None,
-    bus: BusOption = None,
-    zenoh: Zenoh = None,
-    seconds: Annotated[float, typer.Option(help="How long to listen [s].")] = 8.0,
-) -> None:
-    """Preflight: link, autopilot, rates, clock, parameters, bus, keys, disk; exit code 1 if one fails."""
-    outer_config, outer = context.obj
-    options = outer | _options(
-        id=id, role=role, link=link or None, autopilot=autopilot, game=game, bus=bus, zenoh=zenoh
+def fail(text: str) -> NoReturn:
+    """A user's mistake: one line on standard error, exit code 2."""
+    print(f"{NAME}: {' '.join(text.split())}", file=sys.stderr)
+    sys.exit(2)
+
+
+def _common() -> Parser:
+    common = Parser(add_help=False, argument_default=argparse.SUPPRESS)
+    add = common.add_argument
+    add("--config", metavar="FILE", help="TOML file; its template is configs/agent.toml")
+    add("--id", type=int, metavar="N", help="the vehicle: MAVLink system id, and name on the bus [2]")
+    add("--role", choices=("evader", "pursuer", "tracker"), help="[pursuer]")
+    add("--link", action="append", metavar="URL",
+        help="udpin://HOST:PORT, udpout://HOST:PORT or serial:///dev/NAME:BAUD; given twice, the second "
+        "stands by [udpin://127.0.0.1:14539+id]")  # fmt: skip
+    add("--autopilot", choices=("auto", "velocity", "arduplane", "arduplane-plain", "mavsdk"),
+        help="which adapter flies it [auto: the one that fits its heartbeat]")  # fmt: skip
+    add("--game", metavar="NAME", help="the game to join on the bus [game]")
+    add("--bus", metavar="ENDPOINT", help="Zenoh endpoint [tcp/127.0.0.1:7447]")
+    add("--zenoh", metavar="FILE", help="Zenoh configuration (JSON5): TLS, access control, routers")
+    return common
+
+
+def parser() -> Parser:
+    """The command line."""
+    common = _common()
+    top = Parser(
+        prog=NAME,
+        parents=[common],
+        description="Fly one vehicle of a pursuit-evasion game through its autopilot. Every setting has a "
+        "default that works beside `sim-bridge serve` on the same machine.",
+        epilog=f"Examples: {NAME} --role evader --id 1 --take-control | {NAME} --id 2 --dry-run | "
+        f"{NAME} check --config /etc/apollonius/agent.toml",
+        allow_abbrev=False,
     )
-    from onboard.agent.config import load
-    from onboard.agent.program import check as check_agent
+    add = top.add_argument
+    given = argparse.SUPPRESS
+    add("--strategy", metavar="NAME", default=given, help="strategy by name [the setup's]")
+    add("--route", metavar="FILE", default=given, help="route file of a tracker")
+    add("--take-control", action=argparse.BooleanOptionalAction, default=given,
+        help="enter GUIDED or OFFBOARD by itself [no]")  # fmt: skip
+    add("--may-arm", action=argparse.BooleanOptionalAction, default=given,
+        help="arm and take off for a ground start [no]")  # fmt: skip
+    add("--dry-run", action="store_true", default=given,
+        help="decide and publish, but send the autopilot nothing")  # fmt: skip
+    add("--log", metavar="FILE", default=given, help="write every MAVLink frame to this .tlog file")
+    add("--timing", metavar="FILE", default=given, help=argparse.SUPPRESS)
+    add("--version", action="store_true", help="print the version and exit")
+    commands = top.add_subparsers(dest="command", metavar="check", parser_class=Parser)
+    check = commands.add_parser(
+        "check",
+        parents=[common],
+        help="preflight: what is in order and what is not",
+        description="Preflight: link, autopilot, rates, clock, parameters, bus, keys, disk. It commands "
+        "nothing; exit code 1 if anything fails.",
+        allow_abbrev=False,
+    )
+    check.add_argument("--seconds", type=float, default=8.0, metavar="S", help="how long to listen [8]")
+    return top
 
-    raise typer.Exit(check_agent(load(config or outer_config, options), seconds))
 
+def run(arguments: list[str] | None = None) -> int:
+    """Run the command line; gives the exit code. Raises ConfigError for a mistake in a file or option."""
+    given = vars(parser().parse_args(arguments))
+    if given["version"]:
+        from onboard.agent.version import version
 
-def _options(**given: Any) -> dict[str, Any]:
-    return {
-        name: str(value) if isinstance(value, Path) else value
-        for name, value in given.items()
-        if value is not None
-    }
+        print(version())
+        return 0
+    file = Path(given["config"]) if "config" in given else None
+    options: dict[str, Any] = {name: given[name] for name in OPTIONS if name in given}
+    from onboard.agent import config, program
+
+    settings = config.load(file, options)
+    if given["command"] == "check":
+        return program.check(settings, given["seconds"])
+    return program.fly(settings, Path(given["timing"]) if "timing" in given else None)
 
 
 def main() -> None:
     """Entry point of `onboard-agent`."""
     for library in ("OPENBLAS", "OMP", "MKL"):  # before NumPy: one thread is faster here, and deterministic
         os.environ.setdefault(f"{library}_NUM_THREADS", "1")
-    run(app, "onboard-agent")
+    try:
+        sys.exit(run())
+    except ConfigError as error:
+        fail(str(error))
+    except KeyboardInterrupt:
+        sys.exit(130)
 
 
 if __name__ == "__main__":

@@ -10,11 +10,11 @@ import os
 import secrets
 import signal
 from collections.abc import Sequence
-from importlib import metadata
 from pathlib import Path
 
 from onboard.agent.agent import Agent, to_stderr
 from onboard.agent.config import AgentConfig
+from onboard.agent.version import version
 from onboard.runtime.bus_zenoh import open_zenoh
 from onboard.runtime.clock import RealClock
 from onboard.runtime.config import ConfigError
@@ -27,14 +27,6 @@ from onboard.wire.tlog import TlogWriter
 
 CLOSE_S = 0.5  # for the bus to close; the process ends within 2 s of a signal
 FLUSH_NS = 1_000_000_000
-
-
-def version() -> str:
-    """The distribution's version."""
-    try:
-        return metadata.version("apollonius")
-    except metadata.PackageNotFoundError:
-        return "0+unknown"
 
 
 def fly(config: AgentConfig, timing: Path | None = None) -> int:

@@ -175,7 +175,7 @@ async def test_at_20_percent_loss_no_gap_in_the_stream_reaches_half_a_second() -
         heard.clear()
         await passes(game, 60.0)
         gaps = [(b - a) / 1e9 for a, b in pairwise(heard)]
-        assert len(heard) > 0.7 * 20 * 60
+        assert len(heard) > 0.6 * 20 * 60
         assert max(gaps) < 0.5
 
 
