@@ -1,0 +1,89 @@
+"""Real agents on a real bus: killed, stopped, started again. Waits are three times what is promised."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+import sys
+from contextlib import asynccontextmanager
+from pathlib import Path
+
+import pytest
+
+import onboard
+from gcs.picture import Presence
+from gcs.station import Station
+from onboard.runtime.bus_zenoh import open_zenoh
+from onboard.runtime.clock import RealClock
+from tests.support.buses import free_port
+from tests.support.waiting import until
+
+ROOT = Path(onboard.__file__).parents[1]
+LOST_S, BACK_S = 1.5, 2.0  # promised
+SLACK = 3.0
+STARTED_S = 30.0
+
+pytestmark = pytest.mark.real
+
+
+async def agent(i: int, endpoint: str) -> asyncio.subprocess.Process:
+    """An agent of its own; it has no autopilot, and says so twice a second."""
+    return await asyncio.create_subprocess_exec(
+        sys.executable, "-m", "onboard.cli", "--id", str(i), "--link", "udpin://127.0.0.1:0",
+        "--bus", endpoint, "--game", "field", stderr=asyncio.subprocess.DEVNULL,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+    )  # fmt: skip
+
+
+@asynccontextmanager
+async def field(*ids: int):
+    """Agents, and a station that listens."""
+    endpoint = f"tcp/127.0.0.1:{free_port()}"
+    bus = await open_zenoh(endpoint, listen=True)
+    station = Station(bus, RealClock(), "field")
+    watching = asyncio.create_task(station.run())
+    processes = {i: await agent(i, endpoint) for i in ids}
+    try:
+        await until(lambda: len(present(station)) == len(ids), STARTED_S)
+        yield station, processes, endpoint
+    finally:
+        for process in processes.values():
+            if process.returncode is None:
+                process.kill()
+            await process.wait()
+        watching.cancel()
+        await asyncio.gather(watching, return_exceptions=True)
+        await bus.close()
+
+
+def present(station: Station) -> list[int]:
+    """Who is there."""
+    return [v.id for v in station.picture().vehicles if v.presence is Presence.PRESENT]
+
+
+def alerts(station: Station) -> set[str]:
+    """What is wrong."""
+    return {alert.name for alert in station.picture().alerts}
+
+
+async def test_killed_stopped_and_back_again():
+    async with field(2, 3, 4) as (station, processes, endpoint):
+        processes[2].kill()
+        processes[3].send_signal(signal.SIGSTOP)
+        await until(lambda: {"lost:2", "lost:3"} <= alerts(station), LOST_S * SLACK)
+        assert present(station) == [4]
+        assert "lost:4" not in alerts(station)
+        processes[3].send_signal(signal.SIGCONT)
+        await until(lambda: 3 in present(station), BACK_S * SLACK)
+        await processes[2].wait()
+        processes[2] = await agent(2, endpoint)
+        await until(lambda: present(station) == [2, 3, 4], STARTED_S)
+        await until(lambda: not {"lost:2", "lost:3"} & alerts(station), BACK_S * SLACK)
+        assert any(line.kind == "restarted" and line.id == 2 for line in station.picture().log)
+
+
+async def test_two_agents_of_one_id_are_found_out():
+    async with field(2) as (station, processes, endpoint):
+        processes[102] = await agent(2, endpoint)
+        await until(lambda: "double_id:2" in alerts(station), STARTED_S)
