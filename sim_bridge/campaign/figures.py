@@ -11,7 +11,8 @@ from onboard.runtime.scenario import Scenario
 from sim_bridge.campaign.games import Played
 
 EVADER, PURSUER, TARGET = "crimson", "0.45", "green"
-ARROW = 0.07  # length of an arrow, as a share of the picture
+ARROW = 0.05  # length of an arrow's barbs, as a share of the picture
+BARB = 0.45  # [rad] between barb and shaft
 
 
 def draw_stages(scenario: Scenario, played: Played, folder: Path, name: str) -> list[Path]:
@@ -22,7 +23,8 @@ def draw_stages(scenario: Scenario, played: Played, folder: Path, name: str) -> 
     import matplotlib.pyplot as plt
 
     folder.mkdir(parents=True, exist_ok=True)
-    figure = plt.figure(figsize=(12, 6), layout="constrained")
+    figure = plt.figure(figsize=(12, 6))
+    figure.subplots_adjust(left=0.02, right=0.94, wspace=0.12, bottom=0.06, top=0.88)
     count = len(played.log)
     stages = (("(a) initial stage", max(2, count // 5)), ("(b) final stage", count))
     for index, (title, steps) in enumerate(stages, start=1):
@@ -58,11 +60,18 @@ def _stage(axes: Any, scenario: Scenario, played: Played, steps: int) -> None:
         axes.plot(*line.T, color=color, linestyle="--" if evader else "-", linewidth=1.3, label=label)
         axes.scatter(*line[0], facecolors="none", edgecolors=color, s=35)
         ahead = line[-1] - line[-min(len(line), 10)]
-        size = float(np.linalg.norm(ahead))
-        if size > 0.0:
-            arrow = ahead / size * ARROW * float(np.max(high - low))
-            axes.quiver(*line[-1], *arrow, color=color, linewidth=1.8, arrow_length_ratio=0.5)
+        level = float(np.hypot(ahead[0], ahead[1]))
+        if level > 0.0:  # a head drawn in the level plane: axes of unequal scale would distort a 3-D one
+            size = ARROW * float(np.max((high - low)[:2]))
+            for turn in (-BARB, BARB):
+                c, s = -np.cos(turn) * size / level, -np.sin(turn) * size / level
+                barb = line[-1] + np.array([c * ahead[0] - s * ahead[1], s * ahead[0] + c * ahead[1], 0.0])
+                axes.plot(*np.stack([line[-1], barb]).T, color=color, linewidth=2.0)
     axes.set(xlabel="east [km]", ylabel="north [km]", zlabel="height [km]")
-    axes.set_box_aspect((*(np.maximum(high - low, 0.3)[:2]), 0.45 * float(np.max((high - low)[:2]))))
+    middle, half = 0.5 * (low[2] + high[2]), max(0.5 * (high[2] - low[2]), 0.6)
+    axes.set_zlim(middle - half, middle + half)
+    axes.set_box_aspect(
+        (*(np.maximum(high - low, 0.3)[:2]), 0.45 * float(np.max((high - low)[:2]))), zoom=0.9
+    )
     axes.view_init(elev=32, azim=-60)
     axes.legend(loc="upper left")
