@@ -56,7 +56,8 @@ def test_a_weave_is_foreseen_in_the_plane_and_in_space(climb: float) -> None:
     truth = weave(climb=climb)
     model = trained(truth[:200])
     assert model is not None
-    assert all(kind is PredictorKind.NETWORK for kind in model.kinds)
+    assert STEADY not in model.kinds
+    assert PredictorKind.NETWORK in model.kinds
     assert model.axes == ((0, 1, 2) if climb else (0, 1))
     assert ratios(model, truth, truth).max() < 0.1
 

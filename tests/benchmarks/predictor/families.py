@@ -78,7 +78,8 @@ def turns(rng: np.random.Generator, t: Array, speed: float) -> Array:
 def weave(rng: np.random.Generator, t: Array, speed: float) -> Array:
     """A sinusoidal weave about a straight course."""
     period, swing = rng.uniform(6.0, 12.0), rng.uniform(0.4, 0.9)
-    heading = rng.uniform(-np.pi, np.pi) + swing * np.sin(2 * np.pi * t / period + rng.uniform(0.0, 2 * np.pi))
+    course = rng.uniform(-np.pi, np.pi)
+    heading = course + swing * np.sin(2 * np.pi * t / period + rng.uniform(0.0, 2 * np.pi))
     return _velocities(heading, np.zeros_like(t), speed)
 
 
@@ -86,7 +87,8 @@ def zigzag(rng: np.random.Generator, t: Array, speed: float) -> Array:
     """Legs of equal length left and right of a course, turned between at 1 rad/s."""
     period, swing = rng.uniform(5.0, 10.0), rng.uniform(0.5, 0.9)
     side = np.where((t / period + rng.uniform(0.0, 1.0)) % 1.0 < 0.5, 1.0, -1.0)
-    return _velocities(_limited(rng.uniform(-np.pi, np.pi) + swing * side, t[1] - t[0], 1.0), np.zeros_like(t), speed)
+    heading = _limited(rng.uniform(-np.pi, np.pi) + swing * side, t[1] - t[0], 1.0)
+    return _velocities(heading, np.zeros_like(t), speed)
 
 
 def _flee(rng: np.random.Generator, t: Array, speed: float, spatial: bool) -> Array:
@@ -112,7 +114,8 @@ def _flee(rng: np.random.Generator, t: Array, speed: float, spatial: bool) -> Ar
         out[k] = speed * ahead
         me = me + out[k] * dt
         chase = me - others
-        others = others + 0.8 * speed * dt * chase / np.maximum(np.linalg.norm(chase, axis=1, keepdims=True), 1.0)
+        gap = np.maximum(np.linalg.norm(chase, axis=1, keepdims=True), 1.0)
+        others = others + 0.8 * speed * dt * chase / gap
         caught = np.linalg.norm(me - others, axis=1) < 0.2 * size
         if caught.any():  # a caught pursuer begins anew, so that the flight goes on
             fresh = me + rng.normal(0.0, 2.0 * size, (5, 3)) * np.array([1.0, 1.0, 1.0 if spatial else 0.0])

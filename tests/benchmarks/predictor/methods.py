@@ -6,8 +6,9 @@ from typing import Protocol
 
 import numpy as np
 
-from onboard.pilot.predictor.model import Model, ModelSettings, fit, forecast
+from onboard.pilot.predictor.model import Model, ModelSettings, fit, forecast, refresh
 from onboard.pilot.predictor.paper import PaperNetwork, PaperSettings
+from onboard.pilot.predictor.trust import Trust
 from tests.benchmarks.predictor.families import Array
 
 HORIZONS = (1, 5, 10, 20)  # [steps]
@@ -60,6 +61,43 @@ class Flying:
         said = forecast(self.model, positions, velocity, self.settings)
         out: Array = positions[-1] + said.velocities[ROWS] * np.array(HORIZONS)[:, None]
         return out
+
+
+class Online:
+    """The predictor as it flies: the last 200 points, the ridge fitted at every step, the network every 20,
+    and belief that follows what became of the last predictions."""
+
+    def fit(self, positions: Array, velocities: Array, seed: int) -> None:
+        self.seed, self.count, self.window = seed, 0, len(positions)
+        self.trust = Trust(SETTINGS.horizons)
+        self.inner = Flying()
+        early = len(positions) - 40  # belief begins with the last predictions of the training set
+        self.inner.fit(positions[:early], velocities[:early], seed)
+        for k in range(early, len(positions)):
+            self._step(positions[: k + 1], velocities[: k + 1])
+
+    def predict(self, positions: Array, velocity: Array) -> Array:
+        velocities = np.vstack([positions[1:2] - positions[:1], np.diff(positions, axis=0)])
+        self._step(positions[-self.window :], velocities[-self.window :])
+        model = self.inner.model
+        assert model is not None
+        said = forecast(model, positions, velocity, SETTINGS, self.trust.shares())
+        out: Array = positions[-1] + said.velocities[ROWS] * np.array(HORIZONS)[:, None]
+        return out
+
+    def _step(self, positions: Array, velocities: Array) -> None:
+        self.count += 1
+        model = self.inner.model
+        assert model is not None
+        if self.count % 20 == 0:
+            self.inner.fit(positions, velocities, self.seed + self.count)
+            model = self.inner.model
+            assert model is not None
+        else:
+            model = self.inner.model = refresh(positions, velocities, model, SETTINGS)
+        self.trust.judge(self.count, positions)
+        said = forecast(model, positions, velocities[-1], SETTINGS)
+        self.trust.tell(self.count, positions[-1], velocities[-1], said.velocities - velocities[-1])
 
 
 class Paper:

@@ -41,7 +41,7 @@ class Net(nn.Module):
 class Recurrent:
     """One network for one trajectory."""
 
-    def __init__(self, kind: str, horizons: tuple[int, ...], points: int = 16) -> None:
+    def __init__(self, kind: str, horizons: tuple[int, ...], points: int = 20) -> None:
         self.kind, self.horizons, self.points = kind, np.array(horizons), points
 
     def fit(self, positions: Array, velocities: Array, seed: int) -> None:
@@ -67,8 +67,9 @@ class Recurrent:
 
         def both(part: slice) -> tuple[Any, Any, Any]:
             xs, ys, ms = x[part], y[part], mask[part]
-            rows = np.concatenate([xs, xs * mirror]), np.concatenate([ys, ys * mirror]), np.concatenate([ms, ms])
-            return tuple(torch.tensor(row, dtype=torch.float32) for row in rows)  # type: ignore[return-value]
+            copies = ((xs, xs * mirror), (ys, ys * mirror), (ms, ms))
+            a, b, c = (torch.tensor(np.concatenate(pair), dtype=torch.float32) for pair in copies)
+            return a, b, c
 
         train, test = both(slice(0, cut)), both(slice(cut, len(x)))
         net = Net(self.kind, len(self.axes), y[0].size)
@@ -98,7 +99,8 @@ class Recurrent:
     def predict(self, positions: Array, velocity: Array) -> Array:
         """Places (H, 3) from the last positions and the velocity now [m a step]."""
         recent = positions[-self.points :]
-        view = windows(recent, np.broadcast_to(velocity, recent.shape), np.array([self.points - 1]), self.points)
+        newest = np.broadcast_to(velocity, recent.shape)
+        view = windows(recent, newest, np.array([self.points - 1]), self.points)
         x = (view.moves[:, ::-1][:, :, self.axes] - self.middle) / self.scale
         with torch.no_grad():
             raw = self.net(torch.tensor(x, dtype=torch.float32)).numpy().reshape(len(self.horizons), -1)
