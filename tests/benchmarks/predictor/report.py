@@ -158,13 +158,19 @@ def _page(m: Measured, found: list[Target], missed: int) -> list[str]:
     lines = [
         "# Predictors compared",
         "",
-        f"One run of `make bench-predictor` of {m.seconds / 60.0:.0f} minutes on {platform.machine()}, Python "
-        f"{platform.python_version()}, NumPy {np.__version__}, one thread. Only ratios of times mean something.",
+        f"One run of `make bench-predictor` of {m.seconds / 60.0:.0f} minutes on "
+        f"{platform.machine()}, Python "
+        f"{platform.python_version()}, NumPy {np.__version__}, one thread. Only ratios of "
+        f"times mean something.",
         "",
-        f"{len(FAMILIES)} families × {len(study.SEEDS)} held-out seeds, 15 m/s, 0.2 s steps; 200 samples to learn "
-        "from, origins 200 to 279. Error: mean distance to the true place [m], geometric mean over the families, "
-        "at 1 / 5 / 10 / 20 steps. LSTM and GRU get the same windows, frames, mirrored copies and targets as the "
-        f"s-parabola predictor. The paper's training has 300 epochs and {len(study.PAPER_SEEDS)} seed a family. "
+        f"{len(FAMILIES)} families × {len(study.SEEDS)} held-out seeds, 15 m/s, 0.2 s steps; "
+        f"200 samples to learn "
+        "from, origins 200 to 279. Error: mean distance to the true place [m], geometric mean "
+        "over the families, "
+        "at 1 / 5 / 10 / 20 steps. LSTM and GRU get the same windows, frames, mirrored copies "
+        "and targets as the "
+        f"s-parabola predictor. The paper's training has 300 epochs and "
+        f"{len(study.PAPER_SEEDS)} seed a family. "
         "All learn once, but for the row 'online', which is the predictor as it flies.",
         "",
         "| method | fit ms | predict µs | " + " | ".join(CONDITIONS) + " |",
@@ -189,7 +195,8 @@ def _page(m: Measured, found: list[Target], missed: int) -> list[str]:
     online, there = study.worst(s, ONLINE, 5)
     lines += [
         "",
-        f"Worst trajectory at 5 steps: {ratio:.2f} of constant velocity learnt once ({where}); {online:.2f} online "
+        f"Worst trajectory at 5 steps: {ratio:.2f} of constant velocity learnt once ({where}); "
+        f"{online:.2f} online "
         f"({there}).",
         "",
         "## By family, wind: ratio to constant velocity",
@@ -216,12 +223,14 @@ def _page(m: Measured, found: list[Target], missed: int) -> list[str]:
         "",
         "## The game's own regime",
         "",
-        f"50 m/s in gusts, {regime.SIGMA:g} m of position noise, no velocity measured, {len(regime.SEEDS)} seeds a "
+        f"50 m/s in gusts, {regime.SIGMA:g} m of position noise, no velocity measured, "
+        f"{len(regime.SEEDS)} seeds a "
         "family, predictions from the 40th second on, through the track filter, at "
         + " / ".join(f"{a:g}" for a in regime.AHEAD)
         + " s.",
         "",
-        "| rate | filtered constant velocity [m] | s-parabola [m] | ratio | worst family | error ÷ stated error |",
+        "| rate | filtered constant velocity [m] | s-parabola [m] | ratio | worst family "
+        "| error ÷ stated error |",
         "|---|---|---|---|---|---|",
     ]
     for r in m.regimes:
@@ -232,7 +241,8 @@ def _page(m: Measured, found: list[Target], missed: int) -> list[str]:
         "## Games with a late sensor",
         "",
         games.__doc__.split("\n\n", 1)[1].strip().replace("\n", " ") if games.__doc__ else "",
-        f"{len(games.SEEDS)} seeds ({len(games.WEAVING)} of the weave) of {games.SECONDS:g} s; smallest distance of any "
+        f"{len(games.SEEDS)} seeds ({len(games.WEAVING)} of the weave) of {games.SECONDS:g} s; "
+        f"smallest distance of any "
         f"pursuer [m]; the evader keeps {games.SAFE:g} m from pursuers by rule 1.",
         "",
         "| evader | track carried by | mean | quartiles | track's error [m] | nearer than last known |",
@@ -249,10 +259,13 @@ def _page(m: Measured, found: list[Target], missed: int) -> list[str]:
         "",
         "## What it costs an agent",
         "",
-        f"Six tracks at 20 Hz, CPU time of the thread: a control step's share {1e3 * x.step_median:.2f} ms in the "
+        f"Six tracks at 20 Hz, CPU time of the thread: a control step's share "
+        f"{1e3 * x.step_median:.2f} ms in the "
         f"median, {1e3 * x.step_worst:.2f} ms at worst; of it training {1e3 * x.training_median:.2f} and "
-        f"{1e3 * x.training_worst:.2f} ms; {1e3 * x.per_second:.0f} ms a second of game. One track with its training "
-        f"takes {x.memory / 1e6:.2f} MB at its peak. A fit of 200 samples takes {1e3 * m.mine_fit:.0f} ms, the "
+        f"{1e3 * x.training_worst:.2f} ms; {1e3 * x.per_second:.0f} ms a second of game. One "
+        f"track with its training "
+        f"takes {x.memory / 1e6:.2f} MB at its peak. A fit of 200 samples takes "
+        f"{1e3 * m.mine_fit:.0f} ms, the "
         f"paper's training {m.paper_fit:.1f} s.",
         "",
         "## The activation",
