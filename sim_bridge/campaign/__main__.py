@@ -97,6 +97,39 @@ def games(
     print(f"written: {output(out, 'games.md', text)}")
 
 
+@app.command()
+def flown(
+    seeds: Annotated[int, typer.Option(help="Games a way, from seed 1.", min=1)] = 10,
+    scenario: Annotated[Path | None, typer.Option(help="Scenario file; default: five pursuers.")] = None,
+    runs: Annotated[Path, typer.Option(help="Folder for the run folders.")] = Path("runs/campaign"),
+    out: Out = RESULTS,
+) -> None:
+    """Repeat seeds of the spatial game whole, with agents and MAVLink, by `sim-bridge fly --fast`."""
+    from onboard.runtime.resources import configs
+    from onboard.runtime.scenario import load
+    from sim_bridge.campaign.flown_games import fly_game
+    from sim_bridge.campaign.games import output, play_seed
+
+    path = configs() / "scenarios" / "spatial" / "five.toml" if scenario is None else scenario
+    one = load(path)
+    lines = [
+        "| seed | evader | flown: verdict | time [s] | smallest distance [m] | compiled: verdict | time [s] |"
+        " smallest distance [m] |",
+        "|---|---|---|---|---|---|---|---|",
+    ]
+    for seed in range(1, seeds + 1):
+        for brave in (False, True):
+            game = fly_game(path, seed, brave, runs)
+            kernel = play_seed(one, seed, brave)
+            lines.append(
+                f"| {seed} | {game.way} | {game.verdict} | {game.time:.1f} | {game.smallest:.0f} |"
+                f" {kernel.verdict.name.lower()} | {kernel.time:.1f} | {kernel.smallest:.0f} |"
+            )
+            print(lines[-1], flush=True)
+            text = preface("The spatial game, flown", f"python -m sim_bridge.campaign flown --seeds {seeds}")
+            output(out, "games-flown.md", text + f"\n{one.name}\n\n" + "\n".join(lines))
+
+
 if __name__ == "__main__":
     from onboard.runtime.program import run
 
