@@ -88,7 +88,7 @@ class Requests:
             first = span > 1e8
             share = max(0.1, quality)
             rates = {name: count / span / share for name, count in self._arrived.items()}
-            messages += self._rates.step(now, rates, self._buffer_free)
+            messages += self._rates.step(now, rates, self._buffer_free, share)
             if first:
                 messages.append(commands.request_message(self._to, HOME))
             self._arrived.clear()

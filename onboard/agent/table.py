@@ -138,6 +138,10 @@ class Table:
         setup = swarm.SETUP.decode(sample.payload, self.drops)
         if setup is None or setup == self.setup:
             return
+        holder = self._obeyed
+        if holder is not None and self._masters.get(holder, NEVER) >= self.now and setup.master != holder[0]:
+            self._trouble("two_masters", f"setup from {setup.master}, but {holder[0]} is the master: ignored")
+            return
         self.setup = setup
         self.setup_number += 1
 

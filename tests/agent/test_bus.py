@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
+from msgspec.structs import replace
 
 from onboard.agent.agent import Agent
 from onboard.agent.config import AgentConfig
@@ -193,6 +194,20 @@ async def test_two_masters_are_reported_and_the_first_ones_clock_counts() -> Non
         agent = game.agents[PURSUER]
         assert game.kinds(PURSUER).count("two_masters") == 1
         assert abs(agent.table.clock.offset_s) < 0.05
+        assert flies(agent)
+
+
+@virtual
+async def test_a_setup_from_another_than_the_master_is_ignored() -> None:
+    async with game_of(chase()) as game:
+        await under_way(game, 1.0)
+        agent = game.agents[PURSUER]
+        assert agent.table.setup is not None
+        other = replace(agent.table.setup, master="usurper", capture_radius=99.0, safety_distance=199.0)
+        game.bus.publish(key(game.game, SETUP), swarm.SETUP.encode(other), SETUP.delivery)
+        await passes(game, 1.0)
+        assert agent.table.setup.master == "sim-bridge"
+        assert "two_masters" in game.kinds(PURSUER)
         assert flies(agent)
 
 

@@ -187,3 +187,13 @@ async def test_from_the_ground_multicopters_take_off_before_the_game() -> None:
         await under_way(game, 10.0)
         assert -place(game, PURSUER).z == pytest.approx(30.0, abs=5.0)
         assert speed(game, EVADER) > 4.0
+
+
+@virtual
+async def test_in_the_field_profile_everybody_keeps_to_a_layer_of_height_and_plays_in_the_plane() -> None:
+    async with game_of(chase(pursuers=2, field_profile=True)) as game:
+        await under_way(game, 30.0)
+        heights = sorted(-place(game, id).z for id in (EVADER, PURSUER, MATE))
+        assert heights == pytest.approx([120.0, 140.0, 160.0], abs=2.0)
+        assert speed(game, EVADER) == pytest.approx(5.0, abs=0.3)
+        assert all(flies(agent) for agent in game.agents.values())
