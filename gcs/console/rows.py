@@ -145,6 +145,8 @@ def age(seconds: float) -> str:
     """An age in four characters or fewer."""
     if isinf(seconds):
         return "–"
+    if seconds < 0.95:
+        return "<1"  # a figure that flickers tells nothing, and costs a slow line dear
     if seconds < 9.95:
         return f"{seconds:.1f}"
     if seconds < 600:

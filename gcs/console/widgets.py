@@ -11,6 +11,7 @@ from rich.text import Text
 from textual import events
 from textual.app import ComposeResult
 from textual.containers import Horizontal
+from textual.geometry import Region
 from textual.message import Message
 from textual.strip import Strip
 from textual.widget import Widget
@@ -33,10 +34,16 @@ class Lines(Widget):
         self.lines: list[Runs] = []
 
     def put(self, lines: list[Runs]) -> None:
-        """Show these lines; nothing is drawn where nothing has changed."""
-        if lines != self.lines:
-            self.lines = lines
-            self.refresh()
+        """Show these lines; only those that have changed are drawn again."""
+        old, self.lines = self.lines, lines
+        width = self.size.width
+        changed = [
+            Region(0, y, width, 1)
+            for y in range(max(len(lines), len(old)))
+            if y >= len(lines) or y >= len(old) or lines[y] != old[y]
+        ]
+        if changed:
+            self.refresh(*changed)
 
     def render_line(self, y: int) -> Strip:
         width = self.size.width

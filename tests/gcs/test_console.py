@@ -389,15 +389,24 @@ def test_the_refresh_rate_spares_a_slow_line():
     assert 2.0 <= REFRESH_HZ <= 4.0
 
 
-async def test_nothing_is_drawn_again_where_nothing_has_changed():
+async def test_only_lines_that_have_changed_are_drawn_again(monkeypatch):
     source = desk()
     app = Console(source)
+    drawn: list[int] = []
+    draw = VehicleTable.render_line
+
+    def counting(table: VehicleTable, y: int):
+        drawn.append(y)
+        return draw(table, y)
+
     async with app.run_test(size=(80, 24)) as pilot:
         await pilot.pause()
-        table = app.query_one(VehicleTable)
-        before = table.lines
+        monkeypatch.setattr(VehicleTable, "render_line", counting)
         app.refresh_picture()
-        assert table.lines is before
-        source.tower.hear(state(2, source.tower.now_ns, mode="LOITER"))
+        await pilot.pause()
+        assert drawn == []
+        source.tower.hear(state(4, source.tower.now_ns, mode="LOITER"))
         app.refresh_picture()
-        assert table.lines is not before
+        await pilot.pause()
+        assert set(drawn) == {4}
+        assert "LOITER" in screen(app).splitlines()[5]

@@ -127,7 +127,8 @@ def test_rows_have_their_width_and_columns_can_be_clicked():
         assert len(line(cells, width)) == len(heading("battery", True, width)) == width
     assert column_at(0).sort == "id"
     assert column_at(heading("id", False, 80).index("batt") + 1).sort == "battery"
-    assert [age(s) for s in (0.04, 9.96, 75.0, 6000.0, float("inf"))] == ["0.0", "10", "75", "100m", "–"]
+    ages = {0.04: "<1", 1.0: "1.0", 9.96: "10", 75.0: "75", 6000.0: "100m", float("inf"): "–"}
+    assert {seconds: age(seconds) for seconds in ages} == ages
 
 
 @settings(max_examples=300, deadline=None)
