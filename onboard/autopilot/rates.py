@@ -2,12 +2,15 @@
 
 The budget starts at the link's nominal capacity and follows what is measured: it falls by a fifth when
 messages stay out or a radio's buffer fills, and rises by a twentieth while all is well, for a minute not up
-to where it failed.
+to where it failed. All messages together are judged, over seconds: of a slow message on a lossy link a
+second's count says nothing.
 """
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
+from math import sqrt
 from typing import NamedTuple
 
 from onboard.autopilot.base import NEVER
@@ -20,7 +23,9 @@ FULL = 0.9  # share of the expected messages that must arrive
 BUFFER = 0.2  # of a radio's transmit buffer free, or it is congested
 FALL, RISE = 0.8, 1.05
 UNDER, REMEMBER = 0.9, 60.0  # stay this far under a budget that failed, for so long [s]
-SETTLE = 3.0  # [s] after a change before it is judged
+SETTLE = 3.0  # [s] that are judged at once, and after a change
+SIGMAS = 2.0  # of what chance takes on a lossy link before less counts as too little
+SURPLUS = 1.2  # more of one message than asked for does not make up for another's lack
 ASK_AGAIN = 0.15  # change of a rate that is worth asking for
 
 
@@ -95,7 +100,9 @@ class Asking:
         self._ceiling = min(most, capacity * SHARE) if capacity is not None else most
         self.budget = self._ceiling  # [bytes/s] now planned with
         self.rates: dict[str, float] = {}  # [Hz] asked for
-        self._changed_at = 0.0
+        self._judged_at = 0.0  # the last judgement, or change
+        self._heard: Counter[str] = Counter()  # rates since then, summed up over `_looks`
+        self._looks = 0
         self._failed = (0.0, NEVER)  # the budget that last was too much, and when
         self._stale = True  # ask for everything, whatever was asked before
 
@@ -103,17 +110,24 @@ class Asking:
         """The autopilot started again, or another link is used: ask for everything again."""
         self._stale = True
 
-    def step(self, now: float, arrived: dict[str, float], buffer_free: float = 1.0) -> list[MavMessage]:
+    def step(
+        self, now: float, arrived: dict[str, float], buffer_free: float = 1.0, quality: float = 1.0
+    ) -> list[MavMessage]:
         """Requests due now; call about once a second.
 
-        `arrived`: measured rates [Hz] by message; `buffer_free`: of the telemetry radio, 0…1 (1 if none).
+        `arrived`: measured rates [Hz] by message, as they were sent; `quality`: the share of frames that
+        comes through, by which they were estimated; `buffer_free`: of the telemetry radio, 0…1 (1 if none).
         """
         if not self._stale:
-            if now - self._changed_at < SETTLE:
+            self._heard.update(arrived)
+            self._looks += 1
+            span = now - self._judged_at
+            if span < SETTLE:
                 return []
-            short = [name for name, rate in self.rates.items() if arrived.get(name, 0.0) < FULL * rate]
-            silent = [name for name in short if arrived.get(name, 0.0) == 0.0]
-            congested = buffer_free < BUFFER or len(short) > len(silent) or len(silent) == len(self.rates)
+            rates = {name: self._heard[name] / self._looks for name in self.rates}
+            self._judged(now)
+            silent = [name for name, rate in self.rates.items() if rate > 0.0 and rates[name] == 0.0]
+            congested = buffer_free < BUFFER or self._short(rates, silent, span, quality)
             top = self._ceiling
             if now - self._failed[1] < REMEMBER:
                 top = min(top, self._failed[0] * UNDER)
@@ -121,17 +135,31 @@ class Asking:
                 self._failed = (self.budget, now)
                 self.budget = max(self._floor(), self.budget * FALL)
             elif silent:  # the others come in full: it was the request that was lost
-                self._changed_at = now
                 return self._requests(silent)
             elif self.budget < top:
                 self.budget = min(top, self.budget * RISE)
         planned = plan(self._needs, self.budget, signed=self._signed)
         changed = [name for name, rate in planned.items() if self._stale or self._differs(name, rate)]
         if changed:
-            self._changed_at = now
+            self._judged(now)
         self._stale = False
         self.rates.update({name: planned[name] for name in changed})
         return self._requests(changed)
+
+    def _judged(self, now: float) -> None:
+        self._judged_at, self._looks = now, 0
+        self._heard.clear()
+
+    def _short(self, rates: dict[str, float], silent: Sequence[str], span: float, quality: float) -> bool:
+        """Whether less comes than asked for, beyond what chance explains; the silent count if all are."""
+        speaking = [name for name, rate in self.rates.items() if rate > 0.0 and name not in silent]
+        if not speaking:
+            return bool(silent)
+        wanted = sum(self.rates[name] for name in speaking)
+        came = sum(min(rates[name], SURPLUS * self.rates[name]) for name in speaking)
+        share = min(1.0, max(0.1, quality))
+        chance = sqrt((1.0 - share) / (share * wanted * span))
+        return came < (FULL - SIGMAS * chance) * wanted
 
     def _differs(self, name: str, rate: float) -> bool:
         return abs(rate - self.rates[name]) > ASK_AGAIN * max(rate, self.rates[name])

@@ -91,6 +91,21 @@ def test_a_lost_request_is_asked_again_without_slowing_the_rest() -> None:
     assert len(asking.step(5.0, arrived)) == len(PLANE)
 
 
+@pytest.mark.parametrize("quality", [0.9, 0.7, 0.5])
+def test_what_is_lost_on_the_way_by_chance_is_no_reason_to_ask_for_less(quality: float) -> None:
+    rng, asking = np.random.default_rng(5), Asking(Kind.ARDUCOPTER, Target(1))
+    asking.step(0.0, {})
+    falls = 0
+    for second in range(1, 600):
+        rates = asking.rates.items()
+        came = {name: rng.binomial(round(rate), quality) / quality for name, rate in rates}
+        before = asking.budget
+        asking.step(float(second), came, quality=quality)
+        falls += asking.budget < before
+    assert falls <= 3
+    assert min(asking.rates.values()) >= 0.5
+
+
 def attitude(sender: Sender, boot_ms: int) -> Packet:
     raw = sender.pack(dialect.MAVLink_attitude_message(boot_ms, 0, 0, boot_ms * 1e-4, 0, 0, 0))
     return Framer().feed(raw)[0]

@@ -203,7 +203,7 @@ def test_an_agent_lost_in_the_countdown_takes_everybody_back_to_staging() -> Non
     field.fly(2.0)
     assert field.master.phase is Phase.READY
     del field.agents[3]
-    field.fly(3.0)
+    field.fly(4.0)
     assert field.phases()[-1].phase is Phase.STAGING
     assert field.phases()[-1].t0_ns == 0
     assert field.phases()[-1].reason == "vehicle 3: agent silent"
@@ -216,7 +216,7 @@ def test_a_restarted_agent_acts_again_only_with_the_masters_word() -> None:
     field = Range()
     field.begin()
     del field.agents[3]
-    field.fly(3.0)
+    field.fly(4.0)
     assert field.news[-1] == "agent 3 is silent"
     field.agents[3] = health(3, "waiting", nonce=999, lacks=("the master's word",))
     field.fly(1.0)
