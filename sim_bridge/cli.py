@@ -65,6 +65,10 @@ def planar(
     for name in names:
         pursuer_strategy(name)
     pictures = figures is not None or animate is not None
+    if animate is not None:
+        from sim_bridge.planar_figures import check_film
+
+        check_film(animate)
     if figures is not None:
         _folder(figures)
     results: list[room.Result] = []

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from functools import partial
 from math import atan2, degrees, pi
 from pathlib import Path
 from typing import Any
@@ -50,7 +51,7 @@ def draw_game(played: Played, folder: Path) -> list[Path]:
     for ending in ("png", "svg"):
         path = folder / f"{stem}.{ending}"
         metadata = {"Date": None} if ending == "svg" else None
-        figure.savefig(path, dpi=110, metadata=metadata)
+        whole_or_nothing(path, partial(figure.savefig, dpi=110, metadata=metadata))
         written.append(path)
     plt.close(figure)
     return written
@@ -99,16 +100,26 @@ def draw_stage(axis: Any, played: Played, index: int) -> None:
     _frame(axis, played)
 
 
-def animate(played: Played, path: Path, seconds: float = 10.0, fps: int = 20) -> None:
-    """The game as GIF, or as MP4 where ffmpeg is at hand. Raises ConfigError."""
-    plt = _pyplot()
-    from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
-
+def check_film(path: Path) -> None:
+    """Demand a kind of film that can be written here. Raises ConfigError."""
     ending = path.suffix.lower()
     if ending not in (".gif", ".mp4"):
         raise ConfigError(f"--animate: found '{path.name}', expected a name ending in .gif or .mp4")
-    if ending == ".mp4" and not FFMpegWriter.isAvailable():
-        raise ConfigError("--animate: .mp4 needs ffmpeg, which is not here; .gif needs nothing")
+    if ending == ".mp4":
+        from matplotlib.animation import FFMpegWriter
+
+        if not FFMpegWriter.isAvailable():
+            raise ConfigError("--animate: .mp4 needs ffmpeg, which is not here; .gif needs nothing")
+    if not path.parent.is_dir():
+        raise ConfigError(f"--animate: found the folder '{path.parent}', expected one that exists")
+
+
+def animate(played: Played, path: Path, seconds: float = 10.0, fps: int = 12) -> None:
+    """The game as GIF, or as MP4 where ffmpeg is at hand. Raises ConfigError."""
+    check_film(path)
+    plt = _pyplot()
+    from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
+
     figure, axis = plt.subplots(figsize=(7.5, 7.5), layout="constrained")
     count = min(len(played.frames), max(2, int(seconds * fps)))
     chosen = [round(k * (len(played.frames) - 1) / (count - 1)) for k in range(count)]
@@ -121,7 +132,7 @@ def animate(played: Played, path: Path, seconds: float = 10.0, fps: int = 20) ->
         axis.set_title(title)
 
     movie = FuncAnimation(figure, draw, frames=chosen)
-    writer = PillowWriter(fps=fps) if ending == ".gif" else FFMpegWriter(fps=fps)
+    writer = PillowWriter(fps=fps) if path.suffix.lower() == ".gif" else FFMpegWriter(fps=fps)
     whole_or_nothing(path, lambda part: movie.save(part, writer=writer, dpi=80))
     plt.close(figure)
 

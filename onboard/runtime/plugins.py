@@ -58,4 +58,5 @@ def _load(point: EntryPoint) -> Any:
     try:
         return point.load()
     except Exception as error:  # a foreign module may fail in any way
-        raise ConfigError(f"strategy: '{point.name}' ({point.value}) does not load: {error}") from None
+        why = " ".join(str(error).split()) or type(error).__name__
+        raise ConfigError(f"strategy: '{point.name}' ({point.value}) does not load: {why}") from None
