@@ -7,11 +7,15 @@ from contextlib import asynccontextmanager
 
 import pytest
 
+from gcs.master import FieldMaster
 from gcs.picture import Presence
 from gcs.station import Station
 from onboard.agent import acting
 from onboard.runtime.impairment import CLEAR, CUT
 from onboard.runtime.loop import virtual_clock
+from onboard.runtime.master import Standing
+from onboard.runtime.resources import configs
+from onboard.runtime.scenario import load
 from onboard.wire.swarm import CommandKind, Phase
 from sim_bridge.rehearsal import Rehearsal
 from tests.support.aborts import CHASE, WITHIN_S, trials
@@ -135,6 +139,36 @@ async def test_a_pilot_who_takes_over_is_told_to_the_ground():
         await asyncio.sleep(2.0)
         assert "handed_over:5" in names(station)
         assert any("not by this agent: hands off" in line.text for line in station.picture().log)
+
+
+@virtual
+async def test_the_ground_station_runs_a_whole_game_and_the_bridges_master_yields():
+    duel = load(configs() / "scenarios" / "flight" / "one-on-one.toml")
+    by_bridge = await ended(duel, by_ground=False)
+    by_ground = await ended(duel, by_ground=True)
+    assert by_bridge.verdict == by_ground.verdict
+    assert by_ground.time == pytest.approx(by_bridge.time, abs=2.0)  # t₀ differs, and with it all noise
+    assert by_ground.captor == by_bridge.captor
+
+
+async def ended(scenario, *, by_ground: bool):
+    """The outcome, as everybody is told it."""
+    game = Rehearsal(scenario, virtual_clock())
+    station = Station(game.broker.connect("gcs"), game.clock, game.game)
+    tasks = [asyncio.create_task(station.run())]
+    master = FieldMaster(station, scenario, nonce=7)
+    if by_ground:
+        tasks.append(asyncio.create_task(master.run()))
+        await asyncio.sleep(2.0)
+    async with game:
+        assert await game.until(lambda: station.picture().game.outcome is not None, 120.0)
+        outcome = station.picture().game.outcome
+        assert (game.master.standing is Standing.YIELDED) is by_ground
+        assert (master.exit_code == 0) is by_ground
+    for task in tasks:
+        task.cancel()
+    await asyncio.gather(*tasks, return_exceptions=True)
+    return outcome
 
 
 def done(station: Station, command: str) -> bool:
