@@ -10,100 +10,16 @@ Most callers want `gcs.watch.Watch`, which adds alerts and commands to this.
 from __future__ import annotations
 
 from collections import Counter, deque
-from math import inf
 
 from gcs import journal
-from gcs.picture import GameView, LogLine, Presence, TrackView, VehicleView
+from gcs.picture import GameView, LogLine, TrackView, VehicleView
+from gcs.records import NS, TrackRecord, VehicleRecord, age_s
 from onboard.wire import swarm, topics
-from onboard.wire.swarm import Event, Health, Master, Message, Phase, Role, Severity, State
+from onboard.wire.swarm import Master, Message, Phase, Severity
 
-NS = 1_000_000_000
-LOST_NS = 1 * NS  # silence from all sources after which a vehicle is lost
-DOUBLE_NS = 3 * NS  # a double id is reported until this long after its last sign
-TRAIL_STEP_NS = NS // 2
-TRAIL_LENGTH = 120
 LOG_LENGTH = 500
 TRACK_KEPT_NS = 30 * NS
 MOST_VEHICLES = 250  # MAVLink's system ids: nothing on the bus can make the picture grow without end
-
-
-class _Rate:
-    """Messages in the last whole second."""
-
-    __slots__ = ("count", "last", "start_ns")
-
-    def __init__(self, now_ns: int) -> None:
-        self.start_ns = now_ns
-        self.count = 0
-        self.last = -1.0
-
-    def tick(self, now_ns: int) -> None:
-        passed = now_ns - self.start_ns
-        if passed >= NS:
-            self.last = self.count * NS / passed
-            self.start_ns, self.count = now_ns, 0
-        self.count += 1
-
-    def value(self, now_ns: int) -> float:
-        """[Hz]; 0 after two silent seconds, and until a whole second has been seen."""
-        return max(0.0, self.last) if now_ns - self.start_ns < 2 * NS else 0.0
-
-
-class _Trail:
-    """Thinned positions, a bounded number of them."""
-
-    __slots__ = ("last_ns", "points", "taken")
-
-    def __init__(self) -> None:
-        self.points: deque[tuple[float, float, float]] = deque(maxlen=TRAIL_LENGTH)
-        self.last_ns = -TRAIL_STEP_NS
-        self.taken: tuple[tuple[float, float, float], ...] | None = ()
-
-    def add(self, position: tuple[float, float, float], now_ns: int) -> None:
-        if now_ns - self.last_ns >= TRAIL_STEP_NS:
-            self.points.append(position)
-            self.last_ns = now_ns
-            self.taken = None
-
-    def view(self) -> tuple[tuple[float, float, float], ...]:
-        if self.taken is None:
-            self.taken = tuple(self.points)
-        return self.taken
-
-
-class _Entry:
-    """What is known of one vehicle."""
-
-    def __init__(self, now_ns: int) -> None:
-        self.first_ns = 0
-        self.heard_ns: int | None = None
-        self.token = False
-        self.role: Role | None = None
-        self.state: State | None = None
-        self.state_ns = 0
-        self.decision: swarm.DecisionReport | None = None
-        self.decision_ns = 0
-        self.health: Health | None = None
-        self.health_ns = 0
-        self.rate = _Rate(now_ns)
-        self.trail = _Trail()
-        self.drops: Counter[str] = Counter()
-        self.schema_ns: int | None = None
-        self.nonce = 0
-        self.old_nonces: deque[int] = deque(maxlen=8)
-        self.double_ns: int | None = None
-        self.events: dict[int, set[int]] = {}  # numbers seen, by nonce
-        self.missed_events = 0
-
-
-class _Tracked:
-    """What is known of one track."""
-
-    def __init__(self, track: swarm.Track, now_ns: int) -> None:
-        self.track = track
-        self.heard_ns = now_ns
-        self.rate = _Rate(now_ns)
-        self.trail = _Trail()
 
 
 class Fleet:
@@ -115,14 +31,14 @@ class Fleet:
         self.bad_ns: int | None = None  # the last message that was foreign or bad
         self.drops: Counter[str] = Counter()
         self.log: deque[LogLine] = deque(maxlen=LOG_LENGTH)
-        self._entries: dict[int, _Entry] = {}
-        self._tracks: dict[int, _Tracked] = {}
+        self._entries: dict[int, VehicleRecord] = {}
+        self._tracks: dict[int, TrackRecord] = {}
         self._setup: swarm.Setup | None = None
         self._phase: swarm.PhaseChange | None = None
         self._outcome: swarm.Outcome | None = None
         self._brief: swarm.EvaderBrief | None = None
         self._master: Master | None = None
-        self._master_ns = 0
+        self._master_ns: int | None = None
         self._masters: dict[tuple[str, int], int] = {}
         self._handlers = {
             topics.SETUP: self._on_setup,
@@ -173,19 +89,19 @@ class Fleet:
         self.drops["foreign"] += 1
         return None
 
-    def _entry(self, vehicle_id: int, now_ns: int) -> _Entry:
+    def _entry(self, vehicle_id: int, now_ns: int) -> VehicleRecord:
         entry = self._entries.get(vehicle_id)
         if entry is None:
-            entry = self._entries[vehicle_id] = _Entry(now_ns)
+            entry = self._entries[vehicle_id] = VehicleRecord(now_ns)
         return entry
 
-    def _bad(self, entry: _Entry, drops: Counter[str], now_ns: int) -> None:
+    def _bad(self, entry: VehicleRecord, drops: Counter[str], now_ns: int) -> None:
         self.drops.update(drops)
         entry.drops.update(drops)
         if drops["schema"]:
             entry.schema_ns = now_ns
 
-    def _life(self, entry: _Entry, vehicle_id: int, nonce: int, now_ns: int) -> None:
+    def _life(self, entry: VehicleRecord, vehicle_id: int, nonce: int, now_ns: int) -> None:
         """Any good message counts as life; the nonce tells processes of one id apart."""
         if entry.heard_ns is None:
             entry.first_ns = now_ns
@@ -205,7 +121,7 @@ class Fleet:
 
     def _decoded(
         self, codec: swarm.Codec[swarm.M], vehicle_id: int, payload: bytes, now_ns: int
-    ) -> tuple[_Entry, swarm.M] | None:
+    ) -> tuple[VehicleRecord, swarm.M] | None:
         drops: Counter[str] = Counter()
         message = codec.decode(payload, drops)
         if message is not None and message.id != vehicle_id:  # type: ignore[attr-defined]
@@ -263,27 +179,9 @@ class Fleet:
             return None
         entry, event = found
         self._life(entry, vehicle_id, 0, now_ns)
-        self._note_event(entry, vehicle_id, event, now_ns)
+        if entry.take_event(event):
+            self._say(now_ns, vehicle_id, event.severity, event.kind, event.text)
         return event
-
-    def _note_event(self, entry: _Entry, vehicle_id: int, event: Event, now_ns: int) -> None:
-        """Recovered events come twice or late: each is shown once; gaps are counted until they fill."""
-        seen = entry.events.get(event.nonce)
-        if seen is None:
-            if len(entry.events) >= 8:
-                entry.events.pop(next(iter(entry.events)))
-            seen = entry.events[event.nonce] = set()
-        if event.number in seen:
-            entry.drops["duplicate"] += 1
-            return
-        if seen and event.number < max(seen):
-            entry.missed_events -= 1
-        elif seen:
-            entry.missed_events += event.number - max(seen) - 1
-        seen.add(event.number)
-        if len(seen) > 2 * LOG_LENGTH:
-            seen.discard(min(seen))
-        self._say(now_ns, vehicle_id, event.severity, event.kind, event.text)
 
     def _on_track(self, track_id: int, payload: bytes, now_ns: int) -> Message | None:
         track = swarm.TRACK.decode(payload, self.drops)
@@ -294,7 +192,7 @@ class Fleet:
             return None
         known = self._tracks.get(track_id)
         if known is None:
-            known = self._tracks[track_id] = _Tracked(track, now_ns)
+            known = self._tracks[track_id] = TrackRecord(track, now_ns)
         known.rate.tick(now_ns)
         restarted = now_ns - known.heard_ns > NS  # a sensor may come back with another clock
         if track.stamp_ns >= known.track.stamp_ns or restarted:
@@ -392,7 +290,7 @@ class Fleet:
 
     def bad_age_s(self, now_ns: int) -> float:
         """Since the last message that was foreign or bad [s]."""
-        return _age(self.bad_ns, now_ns)
+        return age_s(self.bad_ns, now_ns)
 
     def game(self, now_ns: int) -> GameView:
         """The game as its master tells it."""
@@ -413,56 +311,18 @@ class Fleet:
             outcome=outcome,
             target=self._brief.target if self._brief else None,
             master=self._master,
-            master_age_s=_age(self._master_ns, now_ns, self._master is not None),
+            master_age_s=age_s(self._master_ns, now_ns),
             two_masters=alive > 1,
         )
 
     def vehicles(self, now_ns: int) -> tuple[VehicleView, ...]:
         """Every vehicle heard or expected, by id."""
-        return tuple(self._view(i, self._entries[i], now_ns) for i in sorted(self._entries))
-
-    def _view(self, vehicle_id: int, entry: _Entry, now_ns: int) -> VehicleView:
-        if entry.heard_ns is None:
-            presence, age = Presence.EXPECTED, inf
-        else:
-            silent = now_ns - entry.heard_ns
-            presence = Presence.LOST if silent > LOST_NS else Presence.PRESENT
-            age = silent / NS
-        return VehicleView(
-            id=vehicle_id,
-            role=entry.role,
-            presence=presence,
-            age_s=age,
-            token=entry.token,
-            first_ns=entry.first_ns,
-            state=entry.state,
-            state_age_s=_age(entry.state_ns, now_ns, entry.state is not None),
-            decision=entry.decision,
-            decision_age_s=_age(entry.decision_ns, now_ns, entry.decision is not None),
-            health=entry.health,
-            health_age_s=_age(entry.health_ns, now_ns, entry.health is not None),
-            state_rate_hz=entry.rate.value(now_ns),
-            double_id=entry.double_ns is not None and now_ns - entry.double_ns < DOUBLE_NS,
-            dropped=tuple(sorted(entry.drops.items())),
-            schema_age_s=_age(entry.schema_ns, now_ns),
-            missed_events=entry.missed_events,
-            trail=entry.trail.view(),
-        )
+        return tuple(self._entries[i].view(i, now_ns) for i in sorted(self._entries))
 
     def tracks(self, now_ns: int) -> tuple[TrackView, ...]:
         """Every track of the last half minute, by id."""
         return tuple(
-            TrackView(
-                id=i,
-                track=t.track,
-                age_s=(now_ns - t.heard_ns) / NS,
-                rate_hz=t.rate.value(now_ns),
-                trail=t.trail.view(),
-            )
-            for i, t in sorted(self._tracks.items())
-            if now_ns - t.heard_ns < TRACK_KEPT_NS
+            known.view(i, now_ns)
+            for i, known in sorted(self._tracks.items())
+            if now_ns - known.heard_ns < TRACK_KEPT_NS
         )
-
-
-def _age(at_ns: int | None, now_ns: int, known: bool = True) -> float:
-    return (now_ns - at_ns) / NS if known and at_ns is not None else inf

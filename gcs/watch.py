@@ -13,9 +13,10 @@ from gcs import rules
 from gcs.alerts import Alerts, Finding
 from gcs.assess import assess
 from gcs.commands import CommandBook
-from gcs.fleet import NS, Fleet
+from gcs.fleet import Fleet
 from gcs.journal import Acknowledged, Remark, Replied, Sent
 from gcs.picture import Alert, LogLine, Picture
+from gcs.records import NS
 from onboard.wire.swarm import Message, Severity
 
 GRID_NS = NS // 10

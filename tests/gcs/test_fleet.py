@@ -8,8 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gcs.fleet import LOST_NS, Fleet
+from gcs.fleet import Fleet
 from gcs.picture import Presence
+from gcs.records import LOST_NS
 from gcs.watch import Watch
 from onboard.wire import swarm, topics
 from onboard.wire.swarm import Phase, Role
