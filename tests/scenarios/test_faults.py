@@ -1,0 +1,212 @@
+"""Faults in the middle of a game: who is struck stops and comes back, the others play on."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from onboard.autopilot.base import Stage
+from onboard.runtime.impairment import CLEAR, CUT, Impairment
+from onboard.wire import swarm
+from onboard.wire.mavlink import Sender, dialect
+from onboard.wire.swarm import Phase
+from onboard.wire.tlog import read_tlog
+from onboard.wire.topics import PHASE, SETUP, STATE, Delivery, key
+from tests.support.duels import duel
+from tests.support.flights import (
+    EVADER,
+    MATE,
+    PURSUER,
+    autopilot,
+    chase,
+    choose_mode,
+    flies,
+    game_of,
+    mode,
+    passes,
+    place,
+    under_way,
+)
+from tests.support.virtual import virtual
+
+STATION, STATION_COMPONENT = 255, 190
+
+
+@pytest.mark.game
+@virtual
+async def test_a_pursuer_cut_off_for_three_seconds_holds_comes_back_and_still_wins() -> None:
+    async with game_of(duel(gap=90.0)) as game:
+        await under_way(game, 1.0)
+        game.impair(PURSUER, CUT)
+        await passes(game, 3.0)
+        assert "supervisor_hold" in game.kinds(PURSUER)
+        assert game.health[PURSUER].stage == "held"
+        assert flies(game.agents[EVADER])
+        game.impair(PURSUER, CLEAR)
+        outcome = await game.until_ended()
+        assert (outcome.verdict, outcome.captor) == ("captured", PURSUER)
+        kinds = game.kinds(PURSUER)
+        back = kinds[kinds.index("supervisor_hold") :]
+        assert {"supervisor_ok", "supervisor_clip"} & set(back)
+        assert game.links[PURSUER].counters()["in_cut"] > 50
+
+
+@virtual
+async def test_in_the_log_of_a_reboot_sequence_and_boot_time_begin_anew_and_the_game_goes_on(
+    tmp_path: Path,
+) -> None:
+    async with game_of(chase(pursuers=2), folder=tmp_path) as game:
+        await under_way(game, 8.0)
+        before = game.agents[PURSUER].craft.telemetry.link_quality
+        autopilot(game, PURSUER).reboot(game.bridge.world.elapsed_ns)
+        assert await game.until(lambda: "reboot" in game.kinds(PURSUER), 5.0)
+        assert await game.until(lambda: flies(game.agents[PURSUER]), 30.0)
+        assert game.agents[PURSUER].craft.telemetry.link_quality > before - 0.2
+        assert flies(game.agents[MATE])
+        assert "reboot" not in game.kinds(MATE)
+        assert game.phase is Phase.RUNNING
+    packets = [entry.packet for entry in read_tlog((tmp_path / "vehicle-2.tlog").read_bytes())]
+    boots = [p for p in packets if p.message.get_type() == "GLOBAL_POSITION_INT"]
+    times = [p.message.time_boot_ms for p in boots]
+    (again,) = [n for n in range(1, len(times)) if times[n] < times[n - 1]]
+    assert times[again - 1] > 8000
+    assert times[again] < 1500
+    assert boots[again].sequence < 40
+
+
+@virtual
+async def test_a_second_ground_station_on_the_same_links_changes_nothing() -> None:
+    """The same game twice, once with a stranger who talks to everybody: both fly the same path."""
+    paths = []
+    for stranger in (False, True):
+        async with game_of(chase(pursuers=1)) as game:
+            paths.append(await flown(game, stranger))
+    quiet, disturbed = paths
+    assert len(quiet) == 40
+    assert quiet == disturbed
+
+
+async def flown(game, stranger: bool) -> list[tuple[float, ...]]:  # type: ignore[no-untyped-def]
+    """The pursuer's way, a place each quarter of a second from t₀ on; what the stranger says is for others,
+    or is asked of the autopilot without touching who flies it."""
+    station = Sender(STATION, STATION_COMPONENT)
+    await under_way(game, 0.0)
+    way = []
+    for _ in range(40):
+        if stranger:
+            for message in (*words(PURSUER, 191), *words(PURSUER + 1, 1)):
+                to_agent, to_autopilot = station.pack(message), station.pack(message)
+                game.bridge.world.vehicles[PURSUER].links[0].send(to_agent)
+                game.links[PURSUER].link.send(to_autopilot)
+        await passes(game, 0.25)
+        way.append(tuple(place(game, PURSUER)))
+    agent = game.agents[PURSUER]
+    assert flies(agent)
+    assert "take_over" not in game.kinds(PURSUER)
+    if stranger:
+        assert agent.craft.foreign["foreign_system"] >= 200
+        assert autopilot(game, PURSUER).counters["for_others"] >= 200
+        assert game.health[PURSUER].counters["foreign_system"] > 100
+    return way
+
+
+def words(system: int, component: int) -> list[object]:
+    """A heartbeat, and orders for somebody: another mode, disarm, a place to go to, fewer positions."""
+    long = dialect.MAVLink_command_long_message
+    return [
+        dialect.MAVLink_heartbeat_message(dialect.MAV_TYPE_GCS, dialect.MAV_AUTOPILOT_INVALID, 0, 0, 4, 3),
+        long(system, component, dialect.MAV_CMD_DO_SET_MODE, 0, 1, 6, 0, 0, 0, 0, 0),
+        long(system, component, dialect.MAV_CMD_COMPONENT_ARM_DISARM, 0, 0, 21196, 0, 0, 0, 0, 0),
+        long(system, component, dialect.MAV_CMD_SET_MESSAGE_INTERVAL, 0, 33, 5e6, 0, 0, 0, 0, 0),
+        dialect.MAVLink_set_position_target_local_ned_message(
+            0, system, component, 1, 0x0DC7, 0, 0, 0, 9.0, 9.0, 9.0, 0, 0, 0, 0, 0
+        ),
+    ]
+
+
+@virtual
+async def test_an_agent_killed_and_started_again_is_let_in_by_the_master_and_nobody_else_stops() -> None:
+    async with game_of(chase(pursuers=2)) as game:
+        await under_way(game, 3.0)
+        game.kill_agent(PURSUER)
+        connections = len(game.broker.buses)
+        await passes(game, 4.0)
+        assert len(game.broker.buses) == connections - 1, "its connection went with it"
+        assert "agent 2 is silent" in game.told
+        held = [place(game, PURSUER)]
+        again = game.start_agent(PURSUER)
+        assert await game.until(lambda: flies(again) and game.health[PURSUER].stage == "acting", 10.0)
+        assert {"agent 2 was started again and may act again", "agent 2 is back"} <= set(game.told)
+        kinds = game.kinds(PURSUER)
+        second_life = kinds[kinds.index("started", 1) :]
+        assert second_life.count("resumed") == 1
+        assert second_life.index("resumed") < second_life.index("control") < second_life.index("supervisor_clip")
+        await passes(game, 3.0)
+        assert abs(place(game, PURSUER).x - held[0].x) > 5.0
+        assert "supervisor_hold" not in game.kinds(MATE)
+        assert flies(game.agents[MATE])
+
+
+@virtual
+async def test_a_pilot_takes_one_vehicle_out_of_the_game_and_its_setpoints_cease_at_once() -> None:
+    async with game_of(chase(pursuers=2)) as game:
+        await under_way(game, 3.0)
+        heard: list[int] = []
+        receive = autopilot(game, PURSUER).receive
+
+        def listening(now_ns: int, data: bytes, peer: object) -> None:
+            if data[7] == 84:  # SET_POSITION_TARGET_LOCAL_NED
+                heard.append(now_ns)
+            receive(now_ns, data, peer)  # type: ignore[arg-type]
+
+        autopilot(game, PURSUER).receive = listening  # type: ignore[method-assign]
+        taken_ns = game.bridge.world.elapsed_ns
+        choose_mode(game, PURSUER, "ALT_HOLD")
+        await passes(game, 8.0)
+        assert heard == [] or heard[-1] - taken_ns <= 100_000_000
+        assert game.agents[PURSUER].craft.stage is Stage.TAKEN
+        assert game.health[PURSUER].stage == "handed_over"
+        assert [event.text for event in game.events if event.id == PURSUER and event.kind == "take_over"]
+        assert mode(game, PURSUER) == "ALT_HOLD"
+        assert flies(game.agents[MATE])
+        assert flies(game.agents[EVADER])
+
+
+@virtual
+async def test_on_a_noisy_field_everything_bad_is_counted_by_cause_and_shown_in_health_and_summary() -> None:
+    noisy = Impairment(
+        loss=0.05, delay_s=0.01, jitter_s=0.02, duplication=0.1, reordering=0.1, bit_error=0.1
+    )
+    async with game_of(chase(pursuers=2)) as game:
+        await under_way(game, 1.0)
+        game.impair(PURSUER, noisy)
+        foreign = Sender(77, 1)
+        vehicle = game.bridge.world.vehicles[PURSUER]
+        heartbeat = words(1, 1)[0]
+        wrong_schema = b"\x92\x09" + swarm.TRACK.encode(_track(game))[2:]
+        for n in range(60):
+            vehicle.links[0].send(bytes([n, 0, 255 - n, 7] * 5))
+            vehicle.links[0].send(foreign.pack(heartbeat))
+            vehicle.links[0].send(foreign.pack(heartbeat)[:9])
+            game.bus.publish(f"apollonius/{game.game}/tracks/1", wrong_schema, Delivery.LATEST)
+            game.bus.publish(key(game.game, STATE, MATE), b"\xc1nonsense", Delivery.LATEST)
+            game.bus.publish(key(game.game, PHASE), b"\x92\x09\x90", Delivery.LATEST)
+            game.bus.publish(key(game.game, SETUP), b"", Delivery.LATEST)
+            await passes(game, 0.1)
+        await passes(game, 1.0)
+        counters = game.health[PURSUER].counters
+        for cause in ("garbage_bytes", "bad_crc", "truncated", "foreign_system", "schema", "undecodable"):
+            assert counters.get(cause, 0) >= 20, (cause, counters)
+        assert flies(game.agents[MATE])
+        assert game.phase is Phase.RUNNING
+        summary = game.summary()
+        link = summary.vehicles[1].link
+        assert min(link[f"in_{what}"] for what in ("lost", "duplicated", "reordered", "bit_error")) > 10
+        assert summary.vehicles[1].counters["bad_crc"] >= 20
+        assert autopilot(game, PURSUER).counters["bad_crc"] > 0
+
+
+def _track(game) -> swarm.Track:  # type: ignore[no-untyped-def]
+    zero = (0.0, 0.0, 0.0)
+    return swarm.Track(EVADER, game.clock.wall_ns(), zero, zero, (1.0,) * 6)  # type: ignore[arg-type]

@@ -1,0 +1,113 @@
+"""Whole games from staging to recovery: as a person at the field would tell them afterwards."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from onboard.runtime.scenario import ImpairmentSpec, Kind, SensorSpec
+from onboard.wire import swarm
+from onboard.wire.swarm import Phase
+from onboard.wire.tlog import read_tlog
+from onboard.wire.topics import EVADER_BRIEF, OUTCOME, key, topic_of, vehicle_of
+from tests.support.duels import GUIDED, HOLD, STORY, Heard, duel, phases
+from tests.support.flights import EVADER, MATE, PURSUER, game_of, mode, passes, place, speed
+from tests.support.virtual import virtual
+
+pytestmark = pytest.mark.game
+
+
+@pytest.mark.parametrize("kind", list(Kind), ids=lambda kind: kind.value)
+@virtual
+async def test_a_game_stages_starts_plays_and_ends_with_a_capture(kind: Kind) -> None:
+    async with game_of(duel(kind)) as game:
+        assert await game.until(lambda: game.phase is Phase.RUNNING and game.now > 2.0, 20.0)
+        assert [mode(game, id) for id in (EVADER, PURSUER)] == [GUIDED[kind]] * 2
+        assert speed(game, EVADER) == pytest.approx(40.0 if kind is Kind.ARDUPLANE else 4.0, rel=0.1)
+        outcome = await game.until_ended()
+        await passes(game, 1.0)
+        assert (outcome.verdict, outcome.captor) == ("captured", PURSUER)
+        assert 3.0 < outcome.time < (40.0 if kind is Kind.ARDUPLANE else 8.0)
+        assert [phases(game, id) for id in (EVADER, PURSUER)] == [STORY, STORY]
+        assert [mode(game, id) for id in (EVADER, PURSUER)] == [HOLD[kind]] * 2
+        await game.land_agents()
+        for id in (EVADER, PURSUER):
+            kinds = game.kinds(id)
+            story = ("started", "autopilot", "setup", "control", "released", "stopped")
+            assert [kinds.index(one) for one in story] == sorted(kinds.index(one) for one in story)
+        summary = game.summary()
+        radius = game.scenario.parameters.R
+        assert (summary.verdict, summary.captor, summary.time) == ("captured", 2, round(outcome.time, 6))
+        assert summary.smallest_distance == pytest.approx(radius, abs=0.1 * radius)
+        assert summary.vehicles[1].smallest_distance == summary.smallest_distance
+        assert {v.stage for v in summary.vehicles} == {"ended"}
+        assert all(18.0 < v.telemetry_rate_hz < 22.0 and v.setpoint_rate_hz > 15.0 for v in summary.vehicles)
+
+
+@virtual
+async def test_who_comes_late_to_a_game_that_is_over_learns_how_it_ended() -> None:
+    async with game_of(duel(horizon=1.0)) as game:
+        assert (await game.until_ended()).verdict == "escaped"
+        late = game.broker.connect("late")
+        heard: list[bytes] = []
+        late.subscribe(key(game.game, OUTCOME), lambda sample: heard.append(sample.payload))
+        assert await game.until(lambda: bool(heard), 1.0)
+        outcome = swarm.OUTCOME.decode(heard[0], game.observer.drops)
+        assert outcome == game.outcome
+
+
+@virtual
+async def test_with_three_in_ten_messages_lost_everywhere_it_still_plays_to_the_end(tmp_path: Path) -> None:
+    rough = ImpairmentSpec(loss=0.3, delay_s=0.02, jitter_s=0.03, bus=True)
+    sensor = SensorSpec(rate_hz=10.0, sigma=0.1, sigma_velocity=0.05, delay_s=0.05, dropout=0.1)
+    async with game_of(duel(mates=1, impairment=rough, sensor=sensor), folder=tmp_path) as game:
+        heard = Heard(game)
+        outcome = await game.until_ended()
+        await passes(game, 3.0)
+        assert (outcome.verdict, outcome.captor) == ("captured", PURSUER)
+        for id in game.scenario.ids:
+            assert phases(game, id)[-3:] == STORY[-3:], "what is cached arrives, be it late"
+            counts = game.links[id].counters()
+            for way in ("in", "out"):
+                lost, sent = counts[f"{way}_lost"], counts["received" if way == "in" else "sent"]
+                share = lost / (lost + sent) if way == "out" else lost / sent
+                assert share == pytest.approx(0.3, abs=0.06), way
+        assert {mode(game, id) for id in game.scenario.ids} == {"LOITER"}
+        assert len({vehicle_of(sample.key) for sample in heard.samples}) > 3
+    log = [entry.packet for entry in read_tlog((tmp_path / "vehicle-2.tlog").read_bytes())]
+    assert {packet.component for packet in log} == {1, 191}
+    assert sum(packet.message.get_type() == "GLOBAL_POSITION_INT" for packet in log) > 80
+
+
+@virtual
+async def test_no_agent_is_ever_handed_what_it_must_not_know() -> None:
+    """Not what it asks for counts here, but what its connection delivers, from the start to the end."""
+    async with game_of(duel(mates=1, horizon=2.0), agents=False) as game:
+        delivered: dict[int, set[str]] = {id: set() for id in game.scenario.ids}
+        for id in game.scenario.ids:
+            bus = game.start_agent(id).bus
+            tap(bus, delivered[id])
+        await game.until_ended()
+        brief = key(game.game, EVADER_BRIEF)
+        assert brief in delivered[EVADER]
+        for id, keys in delivered.items():
+            others = {vehicle_of(k) for k in keys if "/vehicles/" in k and vehicle_of(k) != id}
+            assert others == ({MATE if id == PURSUER else PURSUER} if id != EVADER else set())
+            assert {topic_of(k).suffix for k in keys if "/vehicles/" in k} <= {  # type: ignore[union-attr]
+                "vehicles/{id}/state", "vehicles/{id}/health",
+            }  # fmt: skip
+            if id != EVADER:
+                assert brief not in keys
+        assert place(game, EVADER).x > 4.0
+
+
+def tap(bus: object, keys: set[str]) -> None:
+    """Note the keys of what a connection hands to anybody."""
+    hand = bus._hand  # type: ignore[attr-defined]
+
+    def noting(listeners, sample, *rest):  # type: ignore[no-untyped-def]
+        keys.add(sample.key)
+        hand(listeners, sample, *rest)
+
+    bus._hand = noting  # type: ignore[attr-defined]
