@@ -9,7 +9,7 @@ from __future__ import annotations
 from math import sqrt
 from typing import NamedTuple
 
-from onboard.core.vectors import TINY, Vec, along, cross, distance, dot, norm, sub
+from onboard.core.vectors import TINY, Vec, distance
 
 
 class Sphere(NamedTuple):
@@ -50,12 +50,17 @@ def intercept(e: Vec, heading: Vec, v_e: float, p: Vec, v_p: float) -> Meeting:
     quadratic is written in v_e² − v_p² so that γ → 1, γ > 1 and a resting evader need no case
     of their own, and its root in the form that does not cancel.
     """
-    line = sub(p, e)
-    dd = dot(line, line)
+    ex, ey, ez = e
+    hx, hy, hz = heading
+    x, y, z = p
+    x -= ex
+    y -= ey
+    z -= ez
+    dd = x * x + y * y + z * z
     if dd <= TINY * TINY:
         return Meeting(True, 0.0, e, 0.0)
     a = v_e * v_e - v_p * v_p
-    b = v_e * dot(line, heading)
+    b = v_e * (x * hx + y * hy + z * hz)
     inside = b * b - a * dd
     if inside < 0.0:
         return Meeting(False, 0.0, e, 0.0)
@@ -69,7 +74,8 @@ def intercept(e: Vec, heading: Vec, v_e: float, p: Vec, v_p: float) -> Meeting:
         time = (b - root) / a
     else:
         return Meeting(False, 0.0, e, 0.0)
-    return Meeting(True, time, along(e, heading, v_e * time), 0.0)
+    k = v_e * time
+    return Meeting(True, time, Vec(ex + hx * k, ey + hy * k, ez + hz * k), 0.0)
 
 
 def closest_approach(e: Vec, heading: Vec, v_e: float, p: Vec, v_p: float) -> Meeting:
@@ -80,14 +86,24 @@ def closest_approach(e: Vec, heading: Vec, v_e: float, p: Vec, v_p: float) -> Me
     printed (19) lacks a factor v_e in its denominator and (20) is ambiguous by 180°; the vector
     form here agrees with the corrected ones.
     """
-    line = sub(p, e)
-    s = dot(line, heading)
+    ex, ey, ez = e
+    hx, hy, hz = heading
+    x, y, z = p
+    x -= ex
+    y -= ey
+    z -= ez
+    s = x * hx + y * hy + z * hz
     if s <= 0.0 or v_e <= TINY or v_p >= v_e:
         return Meeting(False, 0.0, e, 0.0)
     gamma = v_p / v_e
     root = sqrt(max(0.0, 1.0 - gamma * gamma))
     if root <= TINY:
         return Meeting(False, 0.0, e, 0.0)
-    h = norm(cross(heading, line))
+    cx = hy * z - hz * y
+    cy = hz * x - hx * z
+    cz = hx * y - hy * x
+    h = sqrt(cx * cx + cy * cy + cz * cz)
     time = (s + h * gamma / root) / v_e  # (19)
-    return Meeting(True, time, along(e, heading, v_e * time), max(0.0, h * root - s * gamma))  # (20)
+    k = v_e * time
+    aim = Vec(ex + hx * k, ey + hy * k, ez + hz * k)
+    return Meeting(True, time, aim, max(0.0, h * root - s * gamma))  # (20)

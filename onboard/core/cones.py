@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from onboard.core.each import each
 from onboard.core.states import Limits, Vehicle
-from onboard.core.vectors import DOWN, NORTH, TINY, Vec, cross, dot, unit
+from onboard.core.vectors import DOWN, NORTH, TINY, Vec, dot, unit
 
 EDGE = 1e-9  # a ray within this angle of an edge counts as free [rad]
 
@@ -53,16 +53,18 @@ def blocked_cone(pursuer: Vehicle, _index: int, seen: Seen) -> Cone:
     A pursuer as fast as the evader (γ ≥ 1), or in the same place, blocks everything. Within the
     safety distance, ρ/d counts as 1: what is left are the rays on which the distance grows.
     """
-    x = pursuer.position.x - seen.position.x
-    y = pursuer.position.y - seen.position.y
-    z = pursuer.position.z - seen.position.z
+    (px, py, pz), _velocity, speed = pursuer
+    (ex, ey, ez), evader_speed, rho = seen
+    x = px - ex
+    y = py - ey
+    z = pz - ez
     d = sqrt(x * x + y * y + z * z)
-    if pursuer.speed >= seen.speed or d <= TINY:
+    if speed >= evader_speed or d <= TINY:
         return EVERYTHING
-    sa = pursuer.speed / seen.speed  # γ
-    ca = sqrt(max(0.0, 1.0 - sa * sa))
-    sb = min(1.0, seen.rho / d)
-    cb = sqrt(max(0.0, 1.0 - sb * sb))
+    sa = speed / evader_speed  # γ
+    ca = sqrt(1.0 - sa * sa)
+    sb = rho / d if rho < d else 1.0
+    cb = sqrt(1.0 - sb * sb)
     return Cone(Vec(x / d, y / d, z / d), ca * cb - sa * sb, sa * cb + ca * sb)
 
 
@@ -73,9 +75,34 @@ def blocked_cones(evader: Vehicle, pursuers: tuple[Vehicle, ...], rho: float) ->
 
 def is_free(u: Vec, cones: tuple[Cone, ...]) -> bool:
     """Whether a unit vector lies in no cone, edges counting as free."""
-    for cone in cones:
-        axis = cone.axis
-        if u.x * axis.x + u.y * axis.y + u.z * axis.z > cone.cos + EDGE * cone.sin:
+    ux, uy, uz = u
+    for axis, c, s in cones:  # noqa: SIM110 (a loop compiles, and costs less)
+        if ux * axis.x + uy * axis.y + uz * axis.z > c + EDGE * s:
+            return False
+    return True
+
+
+class Edge(NamedTuple):
+    """A cone's edge beside a preferred direction: what every candidate needs of it."""
+
+    x: float  # axis
+    y: float
+    z: float
+    cos: float  # of the half-angle
+    sin: float
+    limit: float  # cosine to the axis up to which a ray is free
+    level: float  # cosine of the angle from the axis to the preferred direction
+
+
+def edge_of(cone: Cone, _index: int, preferred: Vec) -> Edge:
+    """The edge of a cone (for `each`)."""
+    (x, y, z), c, s = cone
+    return Edge(x, y, z, c, s, c + EDGE * s, x * preferred.x + y * preferred.y + z * preferred.z)
+
+
+def _clear(x: float, y: float, z: float, edges: tuple[Edge, ...]) -> bool:
+    for ax, ay, az, _c, _s, limit, _level in edges:  # noqa: SIM110
+        if x * ax + y * ay + z * az > limit:
             return False
     return True
 
@@ -83,68 +110,83 @@ def is_free(u: Vec, cones: tuple[Cone, ...]) -> bool:
 def free_ray(preferred: Vec, cones: tuple[Cone, ...]) -> Ray:
     """The free direction in space nearest to `preferred` (unit), exact; `exists` False if all is blocked.
 
-    Candidates nearer than the best so far are tested against all cones, the others never.
+    Candidates nearer than the best so far are tested against all cones, the others never. Written
+    out in floats: the interpreted onboard agent spends its time here.
     """
     if is_free(preferred, cones):
         return Ray(True, preferred, 1.0)
+    px, py, pz = preferred
+    edges = each(edge_of, cones, preferred)
     best = -2.0
     ray = preferred
-    for i in range(len(cones)):
-        a = cones[i]
-        if a.cos < -1.0:
+    for i in range(len(edges)):
+        ax, ay, az, ac, sine, _limit, pa = edges[i]
+        if ac < -1.0:
             return Ray(False, preferred, -2.0)
-        if a.cos > 1.0:
+        if ac > 1.0:
             continue
         # The nearest point on the edge of cone i.
-        pa = dot(preferred, a.axis)
-        x = preferred.x - pa * a.axis.x
-        y = preferred.y - pa * a.axis.y
-        z = preferred.z - pa * a.axis.z
+        x = px - pa * ax
+        y = py - pa * ay
+        z = pz - pa * az
         n = sqrt(x * x + y * y + z * z)
-        # On the axis every point of the edge is as near: take any. Near it, rounding turns the
-        # side out of the perpendicular: make it so again.
-        side = _perpendicular(a.axis) if n <= TINY else Vec(x / n, y / n, z / n)
-        if n < 1e-3:
-            side = unit(_blend(side, 1.0, a.axis, -dot(side, a.axis)), preferred)
-        near = pa * a.cos + n * a.sin
-        if near > best:
-            u = unit(_blend(a.axis, a.cos, side, a.sin), preferred)
-            if is_free(u, cones):
-                best = near
-                ray = u
+        near = pa * ac + n * sine
         if near <= best:
             continue  # no point of this edge is nearer than its nearest
+        if n < 1e-3:
+            # On the axis every point of the edge is as near: take any. Near it, rounding turns the
+            # side out of the perpendicular: make it so again.
+            axis = Vec(ax, ay, az)
+            side = _perpendicular(axis) if n <= TINY else Vec(x / n, y / n, z / n)
+            side = unit(_blend(side, 1.0, axis, -dot(side, axis)), preferred)
+            u = unit(_blend(axis, ac, side, sine), preferred)
+        else:
+            k = sine / n
+            u = Vec(ax * ac + x * k, ay * ac + y * k, az * ac + z * k)
+        if _clear(u.x, u.y, u.z, edges):
+            best = near
+            ray = u
+            continue
         # Where the edges of cones i and j < i cross.
         for j in range(i):
-            b = cones[j]
-            if b.cos > 1.0:
-                continue
-            c = dot(a.axis, b.axis)
+            bx, by, bz, bc, _sine, _limit, pb = edges[j]
+            c = ax * bx + ay * by + az * bz
             k = 1.0 - c * c
-            if k <= TINY:
+            if bc > 1.0 or k <= TINY:
                 continue
-            alpha = (a.cos - b.cos * c) / k
-            beta = (b.cos - a.cos * c) / k
+            alpha = (ac - bc * c) / k
+            beta = (bc - ac * c) / k
             square = 1.0 - alpha * alpha - beta * beta - 2.0 * alpha * beta * c
             if square < 0.0:
                 continue
             t = sqrt(square / k)
-            level = alpha * pa + beta * dot(preferred, b.axis)
-            across = cross(a.axis, b.axis)
-            rise = t * dot(preferred, across)
-            if level + abs(rise) <= best:
+            x = t * (ay * bz - az * by)
+            y = t * (az * bx - ax * bz)
+            z = t * (ax * by - ay * bx)
+            level = alpha * pa + beta * pb
+            rise = px * x + py * y + pz * z
+            if rise < 0.0:
+                rise = -rise
+                x = -x
+                y = -y
+                z = -z
+            if level + rise <= best:
                 continue
-            base = _blend(a.axis, alpha, b.axis, beta)
-            first = t if rise >= 0.0 else -t
-            u = unit(_blend(base, 1.0, across, first), preferred)
-            if is_free(u, cones):
-                best = level + abs(rise)
-                ray = u
-            elif level - abs(rise) > best:
-                u = unit(_blend(base, 1.0, across, -first), preferred)
-                if is_free(u, cones):
-                    best = level - abs(rise)
-                    ray = u
+            lx = ax * alpha + bx * beta
+            ly = ay * alpha + by * beta
+            lz = az * alpha + bz * beta
+            # Nearly parallel axes magnify rounding: make the candidates unit vectors again.
+            n = sqrt(square + lx * lx + ly * ly + lz * lz)
+            if abs(n - 1.0) > 1e-12:
+                n = max(n, TINY)
+                x, y, z = x / n, y / n, z / n
+                lx, ly, lz = lx / n, ly / n, lz / n
+            if _clear(lx + x, ly + y, lz + z, edges):
+                best = level + rise
+                ray = Vec(lx + x, ly + y, lz + z)
+            elif level - rise > best and _clear(lx - x, ly - y, lz - z, edges):
+                best = level - rise
+                ray = Vec(lx - x, ly - y, lz - z)
     return Ray(best >= -1.5, ray, best)
 
 
@@ -231,9 +273,8 @@ def _in_wedge(
 
 def within(preferred: Vec, limits: Limits, planar: bool) -> Vec:
     """The direction nearest to `preferred` that the limits (2)–(3) allow (`preferred` if none is)."""
-    if limits.yaw_max - limits.yaw_min >= 2.0 * pi and (
-        planar or (limits.pitch_min <= -pi / 2 and limits.pitch_max >= pi / 2)
-    ):
+    _slow, _fast, pitch_min, pitch_max, yaw_min, yaw_max = limits
+    if yaw_max - yaw_min >= 2.0 * pi and (planar or (pitch_min <= -pi / 2 and pitch_max >= pi / 2)):
         return preferred
     ray = free_ray_limited(preferred, (NOTHING,), limits, planar)
     return ray.direction

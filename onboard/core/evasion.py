@@ -78,9 +78,11 @@ def _along_ray(view: EvaderView, ray: Ray, rule: RuleId, length: float) -> Decis
 
 def free_ray_to_target(view: EvaderView) -> Decision:
     """Rules 1–2 of 3.4.1: the free ray F_esc closest to F_g."""
+    if not view.has_target:
+        return silent(NORTH, view.target)
     goal = target_direction(view)
     ray = free_ray_limited(goal, view.cones, view.limits, view.planar)
-    if not view.has_target or not ray.exists:
+    if not ray.exists:
         return silent(goal, view.target)
     length = distance(view.own.position, view.target)
     return _along_ray(view, ray, RuleId.FREE_RAY_TO_TARGET, length)
@@ -88,9 +90,11 @@ def free_ray_to_target(view: EvaderView) -> Decision:
 
 def free_ray_from_pursuers(view: EvaderView) -> Decision:
     """Rules 1–2 without a target: the free ray closest to the direction of F_res (21)."""
+    if view.has_target:
+        return silent(NORTH, view.target)
     away = unit(resultant_force(view), heading_of(view.own))
     ray = free_ray_limited(away, view.cones, view.limits, view.planar)
-    if view.has_target or not ray.exists:
+    if not ray.exists:
         return silent(away, view.target)
     return _along_ray(view, ray, RuleId.FREE_RAY_FROM_PURSUERS, view.own.speed)
 

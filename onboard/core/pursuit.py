@@ -35,16 +35,22 @@ class PursuerView(NamedTuple):
 
 
 def _head(view: PursuerView, aim: Vec, rule: RuleId, time: float, miss: float) -> Decision:
-    own = view.own
-    ahead = within(unit(sub(aim, own.position), view.heading), view.limits, view.planar)
-    return Decision(True, ahead, own.speed, rule, aim, time, miss)
+    (x, y, z), _velocity, speed = view.own
+    x = aim.x - x
+    y = aim.y - y
+    z = aim.z - z
+    far = sqrt(x * x + y * y + z * z)
+    ahead = view.heading if far <= TINY else Vec(x / far, y / far, z / far)
+    return Decision(True, within(ahead, view.limits, view.planar), speed, rule, aim, time, miss)
 
 
 def keep_off_mate(view: PursuerView) -> Decision:
     """Figure 8b: a team mate is nearer than the separation: outwards, and past it towards the evader."""
     own = view.own
+    if not view.has_mate:
+        return silent(view.heading, own.position)
     apart = sub(own.position, view.mate)
-    if not view.has_mate or dot(apart, apart) >= view.separation * view.separation:
+    if dot(apart, apart) >= view.separation * view.separation:
         return silent(view.heading, own.position)
     out = unit(apart, view.heading)
     wanted = unit(sub(view.evader.position, own.position), view.heading)
@@ -56,18 +62,13 @@ def keep_off_mate(view: PursuerView) -> Decision:
 
 def exact_intercept(view: PursuerView) -> Decision:
     """Rule 4 of 3.4.2: the evader's ray meets the sphere, so to the point of (11)–(12)."""
-    e = view.evader
-    p = view.own
-    x = p.position.x - e.position.x
-    y = p.position.y - e.position.y
-    z = p.position.z - e.position.z
-    s = x * view.heading.x + y * view.heading.y + z * view.heading.z
-    if s <= 0.0 and p.speed < e.speed:
-        return silent(view.heading, e.position)
-    meeting = intercept(e.position, view.heading, e.speed, p.position, p.speed)
-    if not meeting.exists:
-        return silent(view.heading, e.position)
-    return _head(view, meeting.point, RuleId.INTERCEPT, meeting.time, 0.0)
+    place, _velocity, speed = view.evader
+    own = view.own
+    # "Comes closer" needs no test of its own: a faster evader with cos φ ≤ 0 is never met.
+    exists, time, point, _miss = intercept(place, view.heading, speed, own.position, own.speed)
+    if not exists:
+        return silent(view.heading, place)
+    return _head(view, point, RuleId.INTERCEPT, time, 0.0)
 
 
 def greatest_approach(view: PursuerView) -> Decision:
