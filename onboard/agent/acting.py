@@ -23,12 +23,12 @@ from onboard.core.strategies import EVADERS, PURSUERS
 from onboard.core.vectors import ZERO, Vec, along
 from onboard.pilot.memory import Memory
 from onboard.pilot.pilot import Pilot, Thought
-from onboard.pilot.setup import GameSetup, Own, Side
+from onboard.pilot.setup import GameSetup, Own, Side, TrackSample
 from onboard.runtime.config import ConfigError
 from onboard.runtime.plugins import evader_strategy, pursuer_strategy
 from onboard.runtime.protocols import Clock
 from onboard.wire.geodesy import Frame
-from onboard.wire.swarm import Phase, PhaseChange, Role, Setup, Severity
+from onboard.wire.swarm import Phase, PhaseChange, Role, Setup, Severity, Track
 
 SILENT_S = 1.0  # a link silent for longer explains that the autopilot changed to hold by itself
 REGAIN_S = 6.0  # … for so long afterwards
@@ -67,6 +67,7 @@ class Acting:
         self._watch = Watch()
         self._jumps = JumpWatch(config.safety.clock_jump_s)
         self._base_ns = clock.wall_ns()
+        table.on_track = self.measured
         self._setup_seen = 0
         self._phase_seen: PhaseChange | None = None
         self._failing = False
@@ -87,7 +88,6 @@ class Acting:
             self._think(now, wall_ns, telemetry, begun_ns)
         else:
             self.thought = self.verdict = None
-            self._memory.take(self._table.tracks(self._base_ns))
             self._stand_by(now, telemetry)
 
     @property
@@ -124,6 +124,14 @@ class Acting:
     def _near(self) -> bool:
         """Whether control should be taken."""
         return self.part.about_to(self._table.phase) and not self.late
+
+    def measured(self, track: Track) -> None:
+        """A measurement came: the predictor takes it now, so that no setpoint waits for that."""
+        at = (track.stamp_ns - self._base_ns) / _NS
+        sample = TrackSample(track.id, at, Vec(*track.position), Vec(*track.velocity), track.covariance)
+        self._memory.take((sample,))
+        if self.thought is not None:  # in play: what the next step asks for is reckoned now
+            self._memory.predict(track.id, (self._clock.wall_ns() - self._base_ns) / _NS)
 
     def train(self, wall_ns: int) -> None:
         """Give the predictors a little time, after everything else is done."""
@@ -261,8 +269,8 @@ class Acting:
             game = game._replace(has_target=True, target=table.target)
             self.flying = flying._replace(game=game)
         at = (wall_ns - self._base_ns) / _NS
-        samples, mates = table.tracks(self._base_ns), table.mate_states(self._base_ns)
-        thought, self._memory = flying.pilot.step(at, own, samples, mates, game, wind, self._memory)
+        mates = table.mate_states(self._base_ns)
+        thought, self._memory = flying.pilot.step(at, own, (), mates, game, wind, self._memory)
         return thought
 
     def _think(self, now: float, wall_ns: int, t: Telemetry, begun_ns: int) -> None:

@@ -92,6 +92,7 @@ class SafetyConfig(Part, frozen=True):
     mate_age_s: float = _DEFAULT.mate_age
     telemetry_age_s: float = _DEFAULT.telemetry_age
     heartbeat_age_s: float = _DEFAULT.heartbeat_age
+    heartbeat_alone_s: float = _DEFAULT.heartbeat_alone  # while other telemetry comes
     strategy_age_s: float = _DEFAULT.strategy_age
     track_sigma: float = _DEFAULT.track_sigma  # [m]
     track_action: Reaction = Reaction.HOLD
@@ -191,7 +192,7 @@ def check(found: AgentConfig, name: str) -> AgentConfig:
         ("envelope", ("speed_min", "speed_max", "climb_max", "sink_max", "turn_rate_deg", "turn_radius",
                       "acceleration", "deceleration")),
         ("safety", ("fence_margin", "height_margin", "fence_far", "reaction_s", "separation", "mate_age_s",
-                    "telemetry_age_s", "heartbeat_age_s", "strategy_age_s", "track_sigma", "ground_age_s",
+                    "telemetry_age_s", "heartbeat_age_s", "heartbeat_alone_s", "strategy_age_s", "track_sigma", "ground_age_s",
                     "clock_jump_s", "clock_hold_s", "battery", "settle_s")),
     ):  # fmt: skip
         for key in keys:

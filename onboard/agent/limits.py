@@ -83,6 +83,7 @@ def policy_of(config: AgentConfig, setup: Setup | None, hovers: bool) -> Policy:
         mate_age=s.mate_age_s,
         telemetry_age=s.telemetry_age_s,
         heartbeat_age=s.heartbeat_age_s,
+        heartbeat_alone=max(s.heartbeat_age_s, s.heartbeat_alone_s),
         strategy_age=s.strategy_age_s,
         track_sigma=s.track_sigma,
         track_action=s.track_action.action(),

@@ -20,8 +20,11 @@ def vehicle_lacks(now: float, craft: Craft, policy: Policy) -> list[str]:
         others = sorted(craft.heard_systems)
         heard = f" (heard: system {', '.join(map(str, others))})" if others else ""
         return [f"an autopilot: {craft.refusal}" if craft.refusal else f"an autopilot{heard}"]
+    fresh = now - t.position_at <= policy.telemetry_age
     limits = Thresholds(
-        heartbeat_age=policy.heartbeat_age, telemetry_age=policy.telemetry_age, battery_min=policy.battery
+        heartbeat_age=policy.heartbeat_alone if fresh else policy.heartbeat_age,
+        telemetry_age=policy.telemetry_age,
+        battery_min=policy.battery,
     )
     health = read(now, t, limits)
     lacks += [*health.lacks, *health.faults]

@@ -6,18 +6,17 @@ the evader's brief only as the evader. Nothing that arrives raises; what is wron
 
 from __future__ import annotations
 
-from collections import Counter, OrderedDict, deque
+from collections import Counter, OrderedDict
 from collections.abc import Callable
 
 from onboard.agent.clocks import MasterClock
 from onboard.agent.journal import Journal
 from onboard.core.vectors import Vec
-from onboard.pilot.setup import MateState, TrackSample
+from onboard.pilot.setup import MateState
 from onboard.runtime.protocols import Bus, Clock, Sample, Subscription
 from onboard.wire import swarm, topics
 from onboard.wire.swarm import EvaderBrief, Health, Master, Outcome, PhaseChange, Role, Setup, State, Track
 
-SAMPLES_MAX = 512  # track samples between two control steps
 MASTERS_MAX = 8
 SAY_AGAIN_S = 30.0  # a trouble that goes on is said again after this
 NEVER = -1e9
@@ -48,8 +47,7 @@ class Table:
         self.mates: dict[int, Heard] = {}
         self.clock = MasterClock()
         self.master_at = NEVER  # when the master was last heard [s, monotonic]
-        self.track_at: dict[int, float] = {}
-        self._samples: deque[Track] = deque(maxlen=SAMPLES_MAX)
+        self.on_track: Callable[[Track], None] = lambda track: None  # called as they arrive
         self._game, self._id, self._role, self._nonce = game, id, role, nonce
         self._clock, self._bus, self._journal = clock, bus, journal
         self._masters: OrderedDict[tuple[str, int], float] = OrderedDict()
@@ -101,21 +99,6 @@ class Table:
             if id not in self._of_mates and id != self._id:
                 key = topics.key(self._game, topics.STATE, id)
                 self._of_mates[id] = self._bus.subscribe(key, self._take_mate)
-
-    def tracks(self, base_ns: int) -> tuple[TrackSample, ...]:
-        """The track samples since the last call, with instants in seconds since `base_ns`."""
-        found = tuple(
-            TrackSample(
-                track.id,
-                (track.stamp_ns - base_ns) / _NS,
-                Vec(*track.position),
-                Vec(*track.velocity),
-                track.covariance,
-            )
-            for track in self._samples
-        )
-        self._samples.clear()
-        return found
 
     def mate_states(self, base_ns: int) -> tuple[MateState, ...]:
         """What the team mates last said of themselves."""
@@ -177,11 +160,7 @@ class Table:
             return
         if id in self._of_mates:  # team mates tell of themselves
             return
-        if len(self._samples) == SAMPLES_MAX:
-            self.drops["tracks_overflow"] += 1
-        self._samples.append(track)
-        if len(self.track_at) < SAMPLES_MAX or track.id in self.track_at:
-            self.track_at[track.id] = self.now
+        self.on_track(track)
 
     def _take_mate(self, sample: Sample) -> None:
         state = swarm.STATE.decode(sample.payload, self.drops)

@@ -145,7 +145,8 @@ def test_a_quiet_team_mate_gets_twice_the_distance() -> None:
     [
         ({"telemetry_age": 0.6}, Action.HOLD, Cause.TELEMETRY),
         ({"position": Vec(nan, 0.0, 0.0)}, Action.HOLD, Cause.TELEMETRY),
-        ({"heartbeat_age": 2.1}, Action.END, Cause.HEARTBEAT),
+        ({"heartbeat_age": 2.1, "telemetry_age": 0.6}, Action.END, Cause.HEARTBEAT),
+        ({"heartbeat_age": 6.1}, Action.END, Cause.HEARTBEAT),
         ({"strategy_age": 0.21}, Action.END, Cause.STRATEGY),
         ({"track_sigma": 101.0}, Action.HOLD, Cause.TRACKS),
         ({"track_sigma": nan}, Action.HOLD, Cause.TRACKS),
@@ -198,7 +199,8 @@ def test_when_a_pilot_takes_over_hands_go_off_until_he_hands_back() -> None:
 def test_a_graver_fault_on_top_and_gone_again_leaves_the_latched_one_in_force() -> None:
     flight = copter()
     flight.step(NORTH, battery=0.1)
-    assert flight.step(NORTH, heartbeat_age=3.0).action == Action.END
+    assert flight.step(NORTH, heartbeat_age=3.0).action == Action.RETURN
+    assert flight.step(NORTH, heartbeat_age=7.0).action == Action.END
     verdict = flight.fly(2.0, NORTH, heartbeat_age=0.1, battery=0.9)
     assert (verdict.action, verdict.cause) == (Action.RETURN, Cause.BATTERY)
 

@@ -26,7 +26,8 @@ def health(seen: Seen, policy: Policy, far_outside: bool) -> Demand:
     """
     if seen.pilot:
         return Demand(Action.END, Cause.PILOT, True)
-    if not seen.heartbeat_age <= policy.heartbeat_age:
+    fresh = seen.telemetry_age <= policy.telemetry_age
+    if not seen.heartbeat_age <= (policy.heartbeat_alone if fresh else policy.heartbeat_age):
         return Demand(Action.END, Cause.HEARTBEAT, False)
     if not seen.strategy_age <= policy.strategy_age:
         return Demand(Action.END, Cause.STRATEGY, False)
@@ -47,8 +48,7 @@ def health(seen: Seen, policy: Policy, far_outside: bool) -> Demand:
     if policy.track_action > worst.action and not seen.track_sigma <= policy.track_sigma:
         worst = Demand(policy.track_action, Cause.TRACKS, policy.track_latched)
     if worst.action < Action.HOLD:
-        stale = not seen.telemetry_age <= policy.telemetry_age
-        if stale or not believable(seen.position, seen.velocity):
+        if not fresh or not believable(seen.position, seen.velocity):
             worst = Demand(Action.HOLD, Cause.TELEMETRY, False)
         elif not seen.clock_jump_age >= policy.clock_hold:
             worst = Demand(Action.HOLD, Cause.CLOCK, False)

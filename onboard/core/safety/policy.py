@@ -87,6 +87,7 @@ class Policy(NamedTuple):
     layer_band: float = 5.0  # a vehicle this near to it is in its layer [m]
     telemetry_age: float = 0.5  # [s]
     heartbeat_age: float = 2.0  # [s]
+    heartbeat_alone: float = 6.0  # the same while telemetry still comes: a lossy link loses beats [s]
     strategy_age: float = 0.2  # [s]
     track_sigma: float = 100.0  # stated position error of the worst track that is needed [m]
     track_action: Action = Action.HOLD
