@@ -192,8 +192,8 @@ def check(found: AgentConfig, name: str) -> AgentConfig:
         ("envelope", ("speed_min", "speed_max", "climb_max", "sink_max", "turn_rate_deg", "turn_radius",
                       "acceleration", "deceleration")),
         ("safety", ("fence_margin", "height_margin", "fence_far", "reaction_s", "separation", "mate_age_s",
-                    "telemetry_age_s", "heartbeat_age_s", "heartbeat_alone_s", "strategy_age_s", "track_sigma", "ground_age_s",
-                    "clock_jump_s", "clock_hold_s", "battery", "settle_s")),
+                    "telemetry_age_s", "heartbeat_age_s", "heartbeat_alone_s", "strategy_age_s",
+                    "track_sigma", "ground_age_s", "clock_jump_s", "clock_hold_s", "battery", "settle_s")),
     ):  # fmt: skip
         for key in keys:
             value = getattr(getattr(found, part), key)
