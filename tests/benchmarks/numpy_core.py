@@ -110,7 +110,7 @@ def pursuer(e: Array, heading: Array, v_e: float, p: Array, v_p: float) -> Aim:
 
 
 def pursuer_lean(e: Array, heading: Array, v_e: float, p: Array, v_p: float) -> Array:
-    """The direction alone, with as few and as cheap NumPy calls as can be: Python floats wherever possible."""
+    """The direction alone, with as few and as cheap NumPy calls as can be: Python floats elsewhere."""
     line = p - e
     s = float(line @ heading)
     if s <= 0.0:

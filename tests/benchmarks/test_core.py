@@ -75,7 +75,7 @@ ALL_IN_THE_WAY = around(0.6)
 # γ = 0.96: five cones close every ray, and every candidate is tried in vain.
 ENCLOSED = tuple(
     Vehicle(Vec(*place), ZERO, 4.8)
-    for place in ((60.0, 0.0, 1.0), (-55.0, 2.0, 0.0), (0.0, 62.0, 3.0), (1.0, -30.0, 52.0), (2.0, -31.0, -54.0))
+    for place in ((60.0, 0, 1), (-55.0, 2, 0), (0, 62.0, 3), (1, -30.0, 52), (2, -31.0, -54))
 )
 
 
@@ -132,14 +132,15 @@ def test_pursuer_beside_numpy(bearing: float, floor: float, benchmark: Benchmark
     assert decision.rule == rules[bearing]
     theirs = numpy_core.pursuer(e, heading, 5.0, p, 4.0)
     lean = numpy_core.pursuer_lean(e, heading, 5.0, p, 4.0)
-    for mine in (decision.direction, lean):
-        np.testing.assert_allclose(mine, theirs.direction, atol=1e-9)
+    for way in (decision.direction, lean):
+        np.testing.assert_allclose(way, theirs.direction, atol=1e-9)
     np.testing.assert_allclose(decision.aim, theirs.point, atol=1e-9)
     assert (decision.time, decision.miss) == (pytest.approx(theirs.time), pytest.approx(theirs.miss))
     found = beside(ours, lambda: numpy_core.pursuer(e, heading, 5.0, p, 4.0), 500)
     spare = beside(ours, lambda: numpy_core.pursuer_lean(e, heading, 5.0, p, 4.0), 500)
-    print(f"\npursuer, {decision.rule.name}: {found.ours * 1e6:.2f} µs, NumPy {found.theirs * 1e6:.2f} µs "
-          f"(× {found.ratio:.2f}), direction alone in the leanest NumPy {spare.theirs * 1e6:.2f} µs")  # fmt: skip
+    mine, numpys, least = found.ours * 1e6, found.theirs * 1e6, spare.theirs * 1e6
+    print(f"\npursuer, {decision.rule.name}: {mine:.2f} µs, NumPy {numpys:.2f} µs (× {found.ratio:.2f}), "
+          f"its direction alone in the leanest NumPy {least:.2f} µs")  # fmt: skip
     benchmark.extra_info.update(numpy_us=found.theirs * 1e6, ratio=found.ratio, lean_us=spare.theirs * 1e6)
     benchmark(ours)
     assert found.ratio >= floor

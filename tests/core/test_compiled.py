@@ -21,6 +21,9 @@ from sim_bridge.compiled import Ends, Starts, campaign, starts_of
 from sim_bridge.planar import play, table1
 from sim_bridge.setup import game_of, params_of
 
+# Compiling takes a while, and so do ten games of 2000 steps interpreted.
+pytestmark = pytest.mark.timeout(480)
+
 TEAM = 5
 KEEP = 2000
 MARGIN = 1e-6  # a decision nearer than this to another may turn out differently in both modes

@@ -18,6 +18,8 @@ from onboard.runtime.program import run
 from sim_bridge.cli import app
 from sim_bridge.planar import table1
 
+pytestmark = pytest.mark.timeout(300)  # twenty games at 0.01 s are 200,000 steps
+
 ROW = table1()[9].read_text(encoding="utf-8")  # captured after 12 s: a short game
 
 
@@ -44,7 +46,8 @@ def process(*words: object, folder: Path) -> Ended:
     """`sim-bridge planar …` as a process of its own."""
     done = subprocess.run(
         [sys.executable, "-m", "sim_bridge.cli", "planar", *map(str, words)], cwd=folder, timeout=100,
-        check=False, capture_output=True, text=True, env={**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])},
+        check=False, capture_output=True, text=True,
+        env={**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])},
     )  # fmt: skip
     return Ended(done.returncode, done.stdout, done.stderr)
 
