@@ -16,14 +16,14 @@ import numpy as np
 
 @numba.njit
 def _free(x: float, y: float, z: float, ax: Any, cosines: Any, sines: Any, n: int) -> bool:
-    for k in range(n):
+    for k in range(n):  # noqa: SIM110
         if x * ax[k, 0] + y * ax[k, 1] + z * ax[k, 2] > cosines[k] + 1e-9 * sines[k]:
             return False
     return True
 
 
 @numba.njit
-def play(  # noqa: C901
+def play(
     e: Any, v_e: float, p: Any, v_p: Any, target: Any, R: float, rho: float, lam: float, beta: float,
     epsilon: float, dt: float, horizon: float,
 ) -> Any:  # fmt: skip

@@ -39,7 +39,8 @@ def test_intercept_is_the_first_meeting_that_a_scan_finds(e, heading, v_e, p, v_
     first = brentq(lambda t: left_after(e, heading, v_e, p, v_p, t), times[crossing], times[crossing + 1])
     # Near a touch both roots lie close together and the scan may see the second; never an earlier one.
     assert meeting.time <= first * (1.0 + 1e-6) + 1e-9
-    assert left_after(e, heading, v_e, p, v_p, meeting.time) == pytest.approx(0.0, abs=1e-6 * (1 + v_e * first))
+    left = left_after(e, heading, v_e, p, v_p, meeting.time)
+    assert left == pytest.approx(0.0, abs=1e-6 * (1 + v_e * first))
     assert distance(meeting.point, along(e, heading, v_e * meeting.time)) < 1e-9 * (1 + v_e * meeting.time)
 
 
