@@ -62,8 +62,16 @@ check-aarch64: install
 bench-games: install
 	$(BIN)/python -m sim_bridge.campaign
 
-bench-predictor: install
-	$(BIN)/python -m tests.benchmarks.predictor
+# PyTorch, for the comparison with LSTM and GRU, in an environment of its own that sees this one's packages.
+TORCH := .venv-torch
+$(TORCH)/.installed: locks/bench-predictor.in $(STAMP)
+	@$(BIN)/python -m venv $(TORCH)
+	@$(TORCH)/bin/python -m pip --disable-pip-version-check --quiet --no-input install -r locks/bench-predictor.in
+	@$(BIN)/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))' > "$$($(TORCH)/bin/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/apollonius.pth"
+	@touch $@
+
+bench-predictor: install $(TORCH)/.installed
+	$(TORCH)/bin/python -m tests.benchmarks.predictor
 
 fuzz: install
 	$(BIN)/python -m tests.fuzz.framing --count 10000000 --seed 1 --resume .fuzz-framing.json
