@@ -68,4 +68,7 @@ class Memory:
 
     def train(self, now: float, slices: int = 1) -> int:
         """Advance the predictors' training by at most `slices` of about 1 ms; returns how many were done."""
-        return self.trainer.advance(now, self.tracks, slices)
+        done = self.trainer.advance(now, self.tracks, slices)
+        for predictor in self.tracks.values():
+            predictor.prepare()
+        return done

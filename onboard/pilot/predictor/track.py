@@ -86,6 +86,11 @@ class TrackPredictor:
         kind = PredictorKind.CONSTANT_VELOCITY
         return Prediction(estimate.position, estimate.velocity, estimate.sigma, kind, True)
 
+    def prepare(self) -> None:
+        """Reckon now what the next prediction needs, so that no control step waits for it."""
+        if self.model is not None and not self.filter.empty:
+            self._line()
+
     @property
     def longest(self) -> float:
         """The longest horizon [s]; beyond it constant velocity goes on."""
