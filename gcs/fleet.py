@@ -15,9 +15,10 @@ from gcs import journal
 from gcs.picture import GameView, LogLine, TrackView, VehicleView
 from gcs.records import NS, TrackRecord, VehicleRecord, age_s
 from onboard.wire import swarm, topics
-from onboard.wire.swarm import Master, Message, Phase, Severity
+from onboard.wire.swarm import Master, Message, Phase, Severity, State
 
 LOG_LENGTH = 500
+FARTHEST = 1e6  # [m] and [m/s]: no game is larger, nothing flies so fast
 TRACK_KEPT_NS = 30 * NS
 MOST_VEHICLES = 250  # MAVLink's system ids: nothing on the bus can make the picture grow without end
 
@@ -127,6 +128,9 @@ class Fleet:
         if message is not None and message.id != vehicle_id:  # type: ignore[attr-defined]
             drops["wrong_id"] += 1
             message = None
+        elif isinstance(message, State) and not _sane(*message.position, *message.velocity, *message.wind):
+            drops["implausible"] += 1
+            message = None
         if message is None:
             self._bad(self._entry(vehicle_id, now_ns), drops, now_ns)
             return None
@@ -190,6 +194,9 @@ class Fleet:
         if track.id != track_id:
             self.drops["wrong_id"] += 1
             return None
+        if not _sane(*track.position, *track.velocity):
+            self.drops["implausible"] += 1
+            return None
         known = self._tracks.get(track_id)
         if known is None:
             known = self._tracks[track_id] = TrackRecord(track, now_ns)
@@ -204,6 +211,11 @@ class Fleet:
     def _on_setup(self, payload: bytes, now_ns: int) -> Message | None:
         setup = swarm.SETUP.decode(payload, self.drops)
         if setup is None:
+            return None
+        lengths = (setup.capture_radius, setup.safety_distance, setup.separation)
+        sizes = (*lengths, *(member.speed_max for member in setup.roster))
+        if not _sane(*sizes) or min(sizes) < 0.0:
+            self.drops["implausible"] += 1
             return None
         if self._setup is None or setup.scenario_hash != self._setup.scenario_hash:
             who = f"{len(setup.roster)} vehicles, from {setup.master}"
@@ -240,6 +252,9 @@ class Fleet:
 
     def _on_brief(self, payload: bytes, now_ns: int) -> Message | None:
         brief = swarm.EVADER_BRIEF.decode(payload, self.drops)
+        if brief is not None and brief.target is not None and not _sane(*brief.target):
+            self.drops["implausible"] += 1
+            return None
         self._brief = brief or self._brief
         return brief
 
@@ -326,3 +341,8 @@ class Fleet:
             for i, known in sorted(self._tracks.items())
             if now_ns - known.heard_ns < TRACK_KEPT_NS
         )
+
+
+def _sane(*values: float) -> bool:
+    """Whether these can be places and speeds of a game: what cannot would only break sums further on."""
+    return all(-FARTHEST < value < FARTHEST for value in values)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from gcs.console.bars import clock
 from gcs.console.rows import GRADE_WORDS, age, grades
 from gcs.picture import LogLine, Picture
+from gcs.text import printable
 from onboard.wire.swarm import Severity
 
 STATUS_EVERY_S = 5.0
@@ -25,7 +26,7 @@ class Plain:
         if due:
             self._status_ns = picture.now_ns
             found += status(picture)
-        return found
+        return [printable(line) for line in found]
 
     def _fresh(self, picture: Picture) -> list[LogLine]:
         log = picture.log

@@ -18,6 +18,7 @@ from gcs.plain import status as status_lines
 from gcs.rules import Thresholds
 from gcs.session import Session, on_air, version
 from gcs.settings import Settings
+from gcs.text import printable
 from onboard.runtime.clock import RealClock
 from onboard.runtime.config import ConfigError
 from onboard.runtime.scenario import Scenario
@@ -89,7 +90,7 @@ async def status(settings: Settings, *, json: bool, wait_s: float) -> int:
     async with on_air(settings, listen=False, record=False) as session:
         await asyncio.sleep(wait_s)
         picture = session.picture()
-        print(to_json(picture) if json else "\n".join(status_lines(picture)), flush=True)
+        print(to_json(picture) if json else "\n".join(map(printable, status_lines(picture))), flush=True)
         if not picture.vehicles and picture.game.setup is None:
             print(f"gcs: nobody heard in game {settings.game}: {session.bus.status()}", file=sys.stderr)
             return 1
@@ -144,7 +145,7 @@ def _told(session: Session, order: Order, told: dict[int, str], game: str) -> in
     for leg in legs:
         state = "no answer" if leg.state == "sent" else leg.state
         parts = [f"  vehicle {leg.id}: {state}", f"({leg.reason})" if leg.reason else "", leg.mode]
-        print(" ".join(part for part in (*parts, f"after {leg.took_s:.2f} s") if part), flush=True)
+        print(printable(" ".join(part for part in (*parts, f"after {leg.took_s:.2f} s") if part)), flush=True)
     return 0 if confirmed == len(legs) else 1
 
 

@@ -6,7 +6,7 @@ about as wide as it is high. Everything that colour says is said by a sign as we
 
 from __future__ import annotations
 
-from math import atan2, ceil, cos, floor, hypot, log10, pi, sin
+from math import atan2, ceil, cos, floor, hypot, log10, pi, remainder, sin
 from typing import NamedTuple
 
 from gcs.console.rows import GRADE_WORDS, STYLES, Grade, grades
@@ -17,6 +17,7 @@ Run = tuple[str, str]  # text, style
 ARROWS = "↑↗→↘↓↙←↖"
 BRAILLE = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))  # [row][column]
 MOST_DOTS = 2000  # of one line or circle
+FAR = 1e9  # [dots] what lies farther off is not drawn: Apollonius circles have no greatest radius
 MARGIN = 0.15  # share of the view kept free when it is fitted
 
 
@@ -103,7 +104,10 @@ class _Canvas:
 
     def line(self, a: tuple[float, float], b: tuple[float, float], style: str, gap: int = 1) -> None:
         """A line between two places (north, east), every `gap`-th dot."""
-        ends = _clipped(self.place(*a), self.place(*b), 2.0 * self.width, 4.0 * self.height)
+        start, end = self.place(*a), self.place(*b)
+        if not all(abs(x) < FAR for x in (*start, *end)):
+            return
+        ends = _clipped(start, end, 2.0 * self.width, 4.0 * self.height)
         if ends is None:
             return
         (x0, y0), (x1, y1) = ends
@@ -113,7 +117,7 @@ class _Canvas:
 
     def circle(self, north: float, east: float, radius: float, style: str) -> None:
         r = radius / self.view.scale
-        if r < 1.5:
+        if not 1.5 <= r < FAR:
             return
         x, y = self.place(north, east)
         count = min(MOST_DOTS, ceil(2 * pi * r))
@@ -132,8 +136,8 @@ class _Canvas:
     def sign(self, north: float, east: float, text: str, style: str) -> None:
         """Text whose first character stands at a place; moved left where it would leave the view."""
         x, y = self.place(north, east)
-        column, row = floor(x / 2), floor(y / 4)
-        if 0 <= column < self.width and 0 <= row < self.height:
+        if 0.0 <= x < 2 * self.width and 0.0 <= y < 4 * self.height:
+            column, row = floor(x / 2), floor(y / 4)
             self.text(max(0, min(column, self.width - len(text))), row, text, style)
 
     def rows(self) -> list[list[Run]]:
@@ -237,7 +241,7 @@ def _label(vehicle: VehicleView, grade: Grade, selected: bool) -> tuple[str, str
         return f"✕{name}", STYLES[grade]
     north, east, _ = vehicle.state.velocity
     course = atan2(east, north) if hypot(north, east) > 0.5 else vehicle.state.yaw
-    arrow = ARROWS[round(course / (pi / 4)) % 8]
+    arrow = ARROWS[round(remainder(course, 2 * pi) / (pi / 4)) % 8]
     alarm = "!" if grade in (Grade.ERROR, Grade.WARN) else ""
     style = "bold red" if vehicle.role is Role.EVADER else "bold cyan"
     return f"{arrow}{name}{alarm}", STYLES[grade] if alarm else style

@@ -22,6 +22,7 @@ from gcs.console.bars import alert_lines, log_lines, status_line
 from gcs.console.detail import detail
 from gcs.console.rows import STYLES, Row, column_at, heading, line
 from gcs.picture import Picture
+from gcs.text import printable
 
 Runs = list[tuple[str, str]]
 
@@ -49,7 +50,7 @@ class Lines(Widget):
         width = self.size.width
         runs = self.lines[y] if y < len(self.lines) else []
         base = self.rich_style
-        strip = Strip([Segment(text, base + Style.parse(style)) for text, style in runs])
+        strip = Strip([Segment(printable(text), base + Style.parse(style)) for text, style in runs])
         return strip.adjust_cell_length(width, base).crop(0, width)
 
     @property

@@ -12,6 +12,7 @@ from gcs.console.help import HelpScreen
 from gcs.console.source import Key
 from gcs.console.widgets import AlertBoard, Detail, Lines, LogPanel, Plan, Prompt, StatusBar, VehicleTable
 from gcs.picture import Picture
+from gcs.plain import Plain
 from onboard.wire import swarm
 from onboard.wire.swarm import Command, CommandKind, CommandReply, Phase
 from tests.support.radio import START_NS, Tower, decision, health, phase, setup, state
@@ -410,3 +411,17 @@ async def test_only_lines_that_have_changed_are_drawn_again(monkeypatch):
         await pilot.pause()
         assert set(drawn) == {4}
         assert "LOITER" in screen(app).splitlines()[5]
+
+
+async def test_words_from_the_network_cannot_steer_the_terminal():
+    source = desk()
+    evil = "\x1b[2J\x07calm\nE all is lost"
+    source.tower.hear(swarm.Event(2, 1, START_NS, swarm.Severity.INFO, "note", evil))
+    source.tower.hear(state(2, source.tower.now_ns, mode="\x1b[31m"))
+    app = Console(source)
+    async with app.run_test(size=(80, 24)) as pilot:
+        await pilot.pause()
+        strips = app.screen._compositor.render_strips()
+        assert all(segment.text.isprintable() for strip in strips for segment in strip)
+        assert "·[2J·calm·E all is lost" in screen(app)
+    assert all(line.isprintable() for line in Plain().lines(source.tower.picture))

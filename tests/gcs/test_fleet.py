@@ -153,11 +153,14 @@ def test_bad_foreign_and_newer_messages_are_counted_by_cause_and_never_raise():
     tower.hear_raw(key, b"\x92\x63" + payload[2:])  # schema 99
     tower.hear_raw(key, swarm.STATE.encode(state(3)))  # says 3 under the key of 2
     tower.hear_raw(key, swarm.STATE.encode(state(2, airspeed=float("nan"))))
+    tower.hear(state(2, position=(1e300, 0.0, 0.0)))
     tower.hear_raw(f"apollonius/{GAME}/weather", b"")
     tower.hear_raw(f"apollonius/{GAME}/vehicles/9999/state", payload)
     tower.hear_raw("elsewhere", b"")
     counted = dict(tower.picture.dropped)
-    assert counted == {"undecodable": 1, "schema": 1, "wrong_id": 1, "not_finite": 1, "foreign": 3}
+    assert counted == {
+        "undecodable": 1, "schema": 1, "wrong_id": 1, "not_finite": 1, "implausible": 1, "foreign": 3,
+    }  # fmt: skip
     assert tower.vehicle(2).presence is Presence.EXPECTED
     assert tower.vehicle(2).schema_age_s == 0.0
 
