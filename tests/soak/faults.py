@@ -1,0 +1,122 @@
+"""What may befall a vehicle in flight: each fault strikes, and gives what ends it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from onboard.runtime.impairment import CLEAR, CUT, Impairment
+from onboard.runtime.scenario import Kind
+from sim_bridge.autopilot.health import Fault
+from sim_bridge.rehearsal import Rehearsal
+
+Rng = np.random.Generator
+Undo = Callable[[], None]
+Strike = Callable[[Rehearsal, int, Rng], Undo]
+PILOTS = {Kind.PX4: "POSCTL", Kind.ARDUCOPTER: "LOITER", Kind.ARDUPLANE: "LOITER"}
+
+
+def rough(rng: Rng) -> Impairment:
+    """An impairment of one kind or all."""
+    share = float(rng.uniform(0.05, 0.5))
+    time = float(rng.uniform(0.01, 0.3))
+    kinds = (
+        Impairment(loss=share),
+        Impairment(delay_s=time, jitter_s=time),
+        Impairment(duplication=share, jitter_s=0.05),
+        Impairment(reordering=share),
+        Impairment(burst_rate=0.5, burst_s=time),
+        Impairment(bit_error=share),
+        Impairment(loss=0.2, delay_s=0.05, jitter_s=0.05, duplication=0.1, reordering=0.1, bit_error=0.05),
+        CUT,
+    )
+    return kinds[int(rng.integers(len(kinds)))]
+
+
+def radio(game: Rehearsal, id: int, rng: Rng) -> Undo:
+    """The link to the autopilot is rough, or cut."""
+    game.impair(id, rough(rng))
+    return lambda: game.impair(id, CLEAR)
+
+
+def air(game: Rehearsal, id: int, rng: Rng) -> Undo:
+    """The agent's way to the bus is rough, or cut."""
+    bus = game.agents[id].bus
+    channel = bus.channel  # type: ignore[attr-defined]
+    channel.impairment = rough(rng)
+
+    def undo() -> None:
+        channel.impairment = CLEAR
+
+    return undo
+
+
+def bus(game: Rehearsal, id: int, rng: Rng) -> Undo:
+    """The bus dies."""
+    game.broker.kill()
+    return game.broker.restore
+
+
+def reboot(game: Rehearsal, id: int, rng: Rng) -> Undo:
+    """The autopilot starts again."""
+    game.bridge.world.vehicles[id].autopilot.reboot(game.bridge.world.elapsed_ns)
+    return lambda: None
+
+
+def gps(game: Rehearsal, id: int, rng: Rng) -> Undo:
+    """No satellites."""
+    return _failing(game, id, Fault.GPS)
+
+
+def ekf(game: Rehearsal, id: int, rng: Rng) -> Undo:
+    """The estimator loses its position."""
+    return _failing(game, id, Fault.EKF)
+
+
+def battery(game: Rehearsal, id: int, rng: Rng) -> Undo:
+    """The battery is nearly empty, until another one is there."""
+    autopilot = game.bridge.world.vehicles[id].autopilot
+    autopilot.set_battery(0.1)
+    return lambda: autopilot.set_battery(1.0)
+
+
+def pilot(game: Rehearsal, id: int, rng: Rng) -> Undo:
+    """The safety pilot takes it."""
+    kind = game.scenario.flight.autopilot
+    game.bridge.world.vehicles[id].autopilot.pilot_mode(game.bridge.world.elapsed_ns, PILOTS[kind])
+    return lambda: None
+
+
+def killed(game: Rehearsal, id: int, rng: Rng) -> Undo:
+    """The agent's process dies, and is started again later."""
+    game.kill_agent(id)
+
+    def undo() -> None:
+        game.start_agent(id)
+
+    return undo
+
+
+def blind(game: Rehearsal, id: int, rng: Rng) -> Undo:
+    """The sensor sees nobody."""
+    game.bridge.sensor.step = lambda wall_ns, motions: []  # type: ignore[method-assign]
+
+    def undo() -> None:
+        game.bridge.sensor.__dict__.pop("step", None)
+
+    return undo
+
+
+def _failing(game: Rehearsal, id: int, fault: Fault) -> Undo:
+    autopilot = game.bridge.world.vehicles[id].autopilot
+    autopilot.fail(fault)
+    return lambda: autopilot.fail(fault, False)
+
+
+OF_ONE: dict[str, Strike] = {
+    "radio": radio, "air": air, "reboot": reboot, "gps": gps, "ekf": ekf, "battery": battery, "pilot": pilot,
+    "killed": killed,
+}  # fmt: skip
+OF_ALL: dict[str, Strike] = {"bus": bus, "blind": blind}
+NAMES = (*OF_ONE, *OF_ALL)
