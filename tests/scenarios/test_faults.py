@@ -139,9 +139,9 @@ async def test_an_agent_killed_and_started_again_is_let_in_by_the_master_and_nob
         assert await game.until(lambda: flies(again) and game.health[PURSUER].stage == "acting", 10.0)
         assert {"agent 2 was started again and may act again", "agent 2 is back"} <= set(game.told)
         kinds = game.kinds(PURSUER)
-        second_life = kinds[kinds.index("started", 1) :]
-        assert second_life.count("resumed") == 1
-        assert second_life.index("resumed") < second_life.index("control") < second_life.index("supervisor_clip")
+        second = kinds[kinds.index("started", 1) :]
+        assert second.count("resumed") == 1
+        assert second.index("resumed") < second.index("control") < second.index("supervisor_clip")
         await passes(game, 3.0)
         assert abs(place(game, PURSUER).x - held[0].x) > 5.0
         assert "supervisor_hold" not in game.kinds(MATE)
