@@ -45,7 +45,7 @@ GAME = "bench"
 EVADER, PURSUER = 21, 22  # beyond the numbered ports: other games may be played on this machine
 HEAVY = ("scipy", "control", "numba", "matplotlib", "pymavlink.mavutil")
 SETTLE_S, LOOK_S = 3.0, 20.0
-ROUND_S, ROUNDS = 8.0, 3
+ROUND_S, ROUNDS = 6.0, 3
 ENV = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 _NS = 1_000_000_000
 
@@ -178,10 +178,10 @@ def _used(process: psutil.Process) -> tuple[float, float, float]:
 
 
 def _toml(what: Scenario) -> str:
-    rows = [f'name = "{what.name}"', "[parameters]", f"R = {what.parameters.R}",
-            f"horizon = {what.parameters.horizon}", "[flight]", f"ready_s = {what.flight.ready_s}",
-            "[flight.sensor]", f"sigma = {what.flight.sensor.sigma}", f"delay_s = {what.flight.sensor.delay_s}",
-            f"sigma_velocity = {what.flight.sensor.sigma_velocity}"]  # fmt: skip
+    parameters, flight, sensor = what.parameters, what.flight, what.flight.sensor
+    rows = [f'name = "{what.name}"', "[parameters]", f"R = {parameters.R}", f"horizon = {parameters.horizon}"]
+    rows += ["[flight]", f"ready_s = {flight.ready_s}", "[flight.sensor]", f"sigma = {sensor.sigma}"]
+    rows += [f"sigma_velocity = {sensor.sigma_velocity}", f"delay_s = {sensor.delay_s}"]
     for number, spec in enumerate(what.vehicles):
         rows += ["[[pursuers]]" if number else "[evader]", f"id = {spec.id}", f"speed = {spec.speed}"]
         rows.append(f"position = {list(spec.position)}")
@@ -248,7 +248,8 @@ class Stage:
         t = (now - self._begun_ns) / _NS
         for id in (EVADER, *self._mates):
             place = (-4.0 * t, 20.0 * sin(0.3 * t), -50.0)
-            track = Track(id, now, place, (-4.0, 6.0 * cos(0.3 * t), 0.0), (0.01,) * 3 + (0.0025,) * 3, "bench")
+            velocity = (-4.0, 6.0 * cos(0.3 * t), 0.0)
+            track = Track(id, now, place, velocity, (0.01,) * 3 + (0.0025,) * 3, "bench")
             self._put(topics.TRACK, swarm.TRACK.encode(track), id)
 
 
