@@ -10,9 +10,21 @@ from math import acos, atan2, cos, pi, sin, sqrt
 from typing import NamedTuple
 
 from onboard.core.apollonius import intercept
-from onboard.core.cones import Cone, blocked_cones, is_free
+from onboard.core.cones import Cone, blocked_cones, is_free, perpendicular
 from onboard.core.states import Vehicle
-from onboard.core.vectors import NORTH, TINY, Vec, along, angle_between, cross, distance, dot, scale, unit
+from onboard.core.vectors import (
+    NORTH,
+    TINY,
+    Vec,
+    along,
+    angle_between,
+    cross,
+    distance,
+    dot,
+    norm,
+    scale,
+    unit,
+)
 
 
 class Gap(NamedTuple):
@@ -123,7 +135,9 @@ def _centres(seats: tuple[Seat, ...]) -> list[Vec]:
             b, hb = seats[j]
             apart = angle_between(a, b)
             r = 0.5 * (2.0 * pi - apart - ha - hb)
-            side = unit(along(b, a, -dot(a, b)), NORTH)
+            off = along(b, a, -dot(a, b))
+            # Opposite axes leave a band between the cones: any way across it is as good.
+            side = scale(off, 1.0 / norm(off)) if norm(off) > 1e-9 else perpendicular(a)
             if apart > TINY:  # away from b, around a
                 found.append(along(scale(a, cos(r + ha)), side, -sin(r + ha)))
             for k in range(j):

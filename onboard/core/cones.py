@@ -137,7 +137,7 @@ def free_ray(preferred: Vec, cones: tuple[Cone, ...]) -> Ray:
             # On the axis every point of the edge is as near: take any. Near it, rounding turns the
             # side out of the perpendicular: make it so again.
             axis = Vec(ax, ay, az)
-            side = _perpendicular(axis) if n <= TINY else Vec(x / n, y / n, z / n)
+            side = perpendicular(axis) if n <= TINY else Vec(x / n, y / n, z / n)
             side = unit(_blend(side, 1.0, axis, -dot(side, axis)), preferred)
             u = unit(_blend(axis, ac, side, sine), preferred)
         else:
@@ -177,16 +177,16 @@ def free_ray(preferred: Vec, cones: tuple[Cone, ...]) -> Ray:
             lz = az * alpha + bz * beta
             # Nearly parallel axes magnify rounding: make the candidates unit vectors again.
             n = sqrt(square + lx * lx + ly * ly + lz * lz)
-            if abs(n - 1.0) > 1e-12:
+            if abs(n - 1.0) > 1e-14:
                 n = max(n, TINY)
                 x, y, z = x / n, y / n, z / n
                 lx, ly, lz = lx / n, ly / n, lz / n
             if _clear(lx + x, ly + y, lz + z, edges):
                 best = level + rise
-                ray = Vec(lx + x, ly + y, lz + z)
+                ray = unit(Vec(lx + x, ly + y, lz + z), preferred)
             elif level - rise > best and _clear(lx - x, ly - y, lz - z, edges):
                 best = level - rise
-                ray = Vec(lx - x, ly - y, lz - z)
+                ray = unit(Vec(lx - x, ly - y, lz - z), preferred)
     return Ray(best >= -1.5, ray, best)
 
 
@@ -284,7 +284,7 @@ def _blend(a: Vec, k: float, b: Vec, m: float) -> Vec:
     return Vec(a.x * k + b.x * m, a.y * k + b.y * m, a.z * k + b.z * m)
 
 
-def _perpendicular(a: Vec) -> Vec:
+def perpendicular(a: Vec) -> Vec:
     """Some unit vector perpendicular to a; level where it can be."""
     flat = a.x * a.x + a.y * a.y
     if flat <= TINY:

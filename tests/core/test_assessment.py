@@ -6,7 +6,7 @@ from math import asin, atan2, cos, pi, sin
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 
 from onboard.core.assessment import assess, gaps, half_angle, largest_free_cap
 from onboard.core.cones import blocked_cones, is_free
@@ -35,6 +35,7 @@ def test_gaps_are_the_free_headings(team):
 
 @settings(max_examples=300, deadline=None)
 @given(pursuers())
+@example((Vehicle(Vec(5.0, 0.0, 0.0), ZERO, 0.0), Vehicle(Vec(-1.0, 1.2e-16, 0.0), ZERO, 0.0)))  # opposite
 def test_no_sample_lies_in_a_larger_free_cap(team):
     cones = blocked_cones(EVADER, team, 4.0)
     cap = largest_free_cap(cones)
