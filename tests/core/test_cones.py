@@ -48,7 +48,9 @@ def best_sample(samples, free, preferred):
 
 @settings(max_examples=1000, deadline=None)
 @given(pursuers(), headings())
-@example((Vehicle(NORTH, ZERO, 0.0), Vehicle(Vec(0.9999694825770953, 0.007812420527382833, 0.0), ZERO, 0.0)), NORTH)
+@example(
+    (Vehicle(NORTH, ZERO, 0.0), Vehicle(Vec(0.9999694825770953, 0.007812420527382833, 0.0), ZERO, 0.0)), NORTH
+)
 def test_free_ray_in_space_is_never_worse_than_sampling_and_never_blocked(team, preferred):
     cones = blocked_cones(EVADER, team, 4.0)
     ray = free_ray(preferred, cones)
