@@ -14,10 +14,16 @@ import pytest
 
 from onboard.core.referee import Verdict
 from onboard.core.states import Limits
-from onboard.runtime.scenario import Scenario
+from onboard.runtime.resources import configs
+from onboard.runtime.scenario import Scenario, load
 from sim_bridge.campaign.figures import draw_stages
-from sim_bridge.campaign.games import Played, filtered, mcnemar, play_seed, reversals, spatial, wilson
+from sim_bridge.campaign.flown_games import drawn
+from sim_bridge.campaign.games import Played, draw, filtered, mcnemar, play_seed, reversals, spatial, wilson
 from sim_bridge.campaign.spatial import Band, banded
+
+pytestmark = pytest.mark.timeout(
+    600
+)  # the first test compiles the game; on a busy machine that takes a while
 
 
 @pytest.fixture(scope="module")
@@ -135,3 +141,23 @@ def test_intervals_and_the_paired_test() -> None:
     assert (low, high) == (pytest.approx(0.0051, abs=2e-4), pytest.approx(0.0432, abs=2e-4))
     assert mcnemar(31, 0) < 1e-8
     assert mcnemar(0, 0) == 1.0
+
+
+def test_a_seed_s_draw_can_be_flown_whole(tmp_path: Path) -> None:
+    """Written out as a scenario file it says the same: places, wind, and who flies straight."""
+    source = configs() / "scenarios" / "spatial" / "six.toml"
+    path = tmp_path / "drawn.toml"
+    path.write_text(drawn(source, 7, True), encoding="utf-8")
+    found, base = load(path), load(source)
+    d = draw(base, 7)
+    for spec, flown in zip(found.vehicles, d.players, strict=True):
+        assert spec.start() == pytest.approx(flown.plane.position, abs=1e-3)
+    assert found.evader.strategy == "straight"
+    assert found.seed == 7
+    assert found.parameters == base.parameters
+    assert found.flight.fence == base.flight.fence
+    assert (found.pursuers[0].position == base.pursuers[0].position) is False
+    from sim_bridge.wind.field import wind_vector
+
+    wind = found.flight.wind
+    assert wind_vector(wind.speed, wind.from_deg) == pytest.approx(d.climate.reference, abs=1e-4)

@@ -14,6 +14,8 @@ from sim_bridge.campaign.tracking import Row, compare, fly_seed, table
 ROUTE = load_route(configs() / "routes" / "twenty_km.toml")
 WIND = WindSpec(speed=5.0, gust_sigma=3.0)
 
+pytestmark = pytest.mark.timeout(600)  # the first test compiles the flight
+
 
 @pytest.fixture(scope="module")
 def rows() -> dict[str, Row]:
