@@ -67,6 +67,11 @@ def alerts(station: Station) -> set[str]:
     return {alert.name for alert in station.picture().alerts}
 
 
+def said(station: Station) -> set[tuple[str, int]]:
+    """Kinds of the log's lines, and of whom."""
+    return {(line.kind, line.id) for line in station.picture().log}
+
+
 async def test_killed_stopped_and_back_again():
     async with field(2, 3, 4) as (station, processes, endpoint):
         processes[2].kill()
@@ -80,7 +85,7 @@ async def test_killed_stopped_and_back_again():
         processes[2] = await agent(2, endpoint)
         await until(lambda: present(station) == [2, 3, 4], STARTED_S)
         await until(lambda: not {"lost:2", "lost:3"} & alerts(station), BACK_S * SLACK)
-        assert any(line.kind == "restarted" and line.id == 2 for line in station.picture().log)
+        await until(lambda: ("restarted", 2) in said(station), BACK_S * SLACK)
 
 
 async def test_two_agents_of_one_id_are_found_out():
