@@ -12,23 +12,27 @@ from __future__ import annotations
 import argparse
 import gc
 import json
+import os
 import sys
 from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 
-import numpy as np
-import psutil
+for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(_name, "1")
 
-from onboard.pilot.predicting import Predicting
-from onboard.runtime.loop import run_virtual, virtual_clock
-from onboard.runtime.scenario import Flight, ImpairmentSpec, Kind, Parameters, Scenario, VehicleSpec
-from onboard.wire import swarm
-from onboard.wire.swarm import Command, CommandKind, Phase
-from onboard.wire.topics import COMMAND, key
-from sim_bridge.rehearsal import Rehearsal
-from tests.soak.faults import NAMES, OF_ALL, OF_ONE, Rng, Undo
-from tests.support.flights import flies
+import numpy as np  # noqa: E402  (threads are set before NumPy is imported)
+import psutil  # noqa: E402
+
+from onboard.pilot.predicting import Predicting  # noqa: E402
+from onboard.runtime.loop import run_virtual, virtual_clock  # noqa: E402
+from onboard.runtime.scenario import Flight, ImpairmentSpec, Kind, Parameters, Scenario, VehicleSpec  # noqa: E402
+from onboard.wire import swarm  # noqa: E402
+from onboard.wire.swarm import Command, CommandKind, Phase  # noqa: E402
+from onboard.wire.topics import COMMAND, key  # noqa: E402
+from sim_bridge.rehearsal import Rehearsal  # noqa: E402
+from tests.soak.faults import NAMES, OF_ALL, OF_ONE, Rng, Undo  # noqa: E402
+from tests.support.flights import flies  # noqa: E402
 
 GAME_S = 600.0
 LOOK_S = 0.1
