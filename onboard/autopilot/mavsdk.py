@@ -29,6 +29,7 @@ LINE = Struct("<cd4d")  # what, when [s, monotonic], north, east, down [m/s], ya
 SETPOINT, ENTER, HOLD, RETURN, LAND, RELEASE = b"S", b"E", b"H", b"R", b"L", b"X"
 ORDERS = {Way.HOLD: HOLD, Way.RETURN: RETURN, Way.LAND: LAND}
 SILENCE = 0.2  # [s] without a setpoint after which the child stops offboard and exits
+ARM = 400  # MAV_CMD_COMPONENT_ARM_DISARM
 RELAUNCH = 1.0  # [s] at least between two starts of the child
 
 
@@ -159,7 +160,7 @@ class MavsdkAdapter:
         messages, notes = self._control.step(now, telemetry)
         notes = ended + notes
         asking = any(message.command == 176 for message in messages)
-        messages = [message for message in messages if message.command != 176]
+        messages = [message for message in messages if message.command == ARM]  # the rest is the child's
         courier = self._present(now)
         if courier is None:
             return Step(tuple(messages), tuple(notes))
