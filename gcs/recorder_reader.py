@@ -35,6 +35,7 @@ IN_DATA = {
     Opcode.HEADER, Opcode.METADATA, Opcode.CHUNK, Opcode.MESSAGE_INDEX,
     Opcode.SCHEMA, Opcode.CHANNEL, Opcode.MESSAGE, Opcode.ATTACHMENT,
 }  # fmt: skip
+CHUNK_FIXED = 40  # bytes of a chunk's record beside the name of its compression and its data
 BROKEN = (McapError, ValueError, error, zstandard.ZstdError, MemoryError)
 
 
@@ -230,6 +231,8 @@ def _open(path: Path) -> mmap.mmap:
 def _unpacked(content: bytes) -> bytes:
     """A chunk's records. Raises on damage, which the checksum shows."""
     chunk = Chunk.read(ReadDataStream(BytesIO(content)))
+    if CHUNK_FIXED + len(chunk.compression.encode()) + len(chunk.data) != len(content):
+        raise ValueError("the chunk's length is not that of its contents")
     stream, length = get_chunk_data_stream(chunk, validate_crc=True)
     return stream.read(length)
 

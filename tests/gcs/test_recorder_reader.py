@@ -84,6 +84,22 @@ def test_a_flipped_byte_costs_its_own_chunk_alone_and_never_raises(
         assert len(kept) > len(FLOWN) / 2, "one flipped bit costs one chunk at most"
 
 
+def test_a_chunk_whose_length_has_grown_does_not_swallow_its_successors(
+    tmp_path: Path, whole: bytes
+) -> None:
+    """Its own contents still check: only the length tells."""
+    at = 8
+    while whole[at] != 6:  # the first chunk
+        at += 9 + int.from_bytes(whole[at + 1 : at + 9], "little")
+    bad = bytearray(whole)
+    bad[at + 2] ^= 1 << 6  # 16 kB more
+    path = tmp_path / "flight.mcap"
+    path.write_bytes(bad)
+    kept, _, refusal = read(path)
+    assert not refusal
+    assert len(kept) > 0.8 * len(FLOWN)
+
+
 def test_a_damaged_chunk_leaves_the_others(tmp_path: Path, whole: bytes) -> None:
     path = tmp_path / "flight.mcap"
     path.write_bytes(whole)
