@@ -144,9 +144,9 @@ def verdict_line(summary: Summary) -> str:
 def story(flown: Flown) -> str:
     """What to tell when it is over."""
     lines = [verdict_line(flown.summary), f"run folder: {flown.folder}"]
-    pictures = sorted(flown.folder.glob("*.png"))
+    pictures = sorted((flown.folder / "figures").glob("*.png"))
     if pictures:
-        lines.append(f"figures:    {', '.join(p.name for p in pictures[:6])}")
+        lines.append(f"figures:    {pictures[0].parent}: {', '.join(p.stem for p in pictures)}")
     if flown.report is not None:
         lines.append(f"report:     {flown.report}  (open it in a browser)")
     return "\n".join(lines)
