@@ -6,7 +6,7 @@ source runs interpreted onboard and compiled in simulations.
 
 from __future__ import annotations
 
-from math import acos, atan2, cos, sin, sqrt
+from math import atan2, cos, sin, sqrt
 from typing import NamedTuple
 
 TINY = 1e-12  # lengths [m] and speeds [m/s] below this count as zero
@@ -79,11 +79,6 @@ def unit(a: Vec, otherwise: Vec) -> Vec:
 def clamp(value: float, low: float, high: float) -> float:
     """The value nearest to `value` in [low, high]."""
     return low if value < low else (high if value > high else value)
-
-
-def safe_acos(c: float) -> float:
-    """acos of c clamped to [−1, 1]: both modes then agree."""
-    return acos(clamp(c, -1.0, 1.0))
 
 
 def angle_between(u: Vec, v: Vec) -> float:

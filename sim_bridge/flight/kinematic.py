@@ -9,7 +9,7 @@ Deterministic: the same demands give the same motion to the last bit.
 
 from __future__ import annotations
 
-from math import asin, atan, atan2, cos, pi, radians, sin, sqrt, tan
+from math import asin, atan, cos, pi, radians, sin, sqrt, tan
 from typing import NamedTuple
 
 from onboard.core.vectors import ZERO, Vec, clamp, norm, scale, sub, yaw_of
@@ -205,9 +205,3 @@ def kinematic(spec: VehicleSpec, kind: Kind, start: Motion, air: Air = CALM) -> 
     if kind == Kind.ARDUPLANE:
         return KinematicPlane(ability, start, air)
     return KinematicMulticopter(ability, start)
-
-
-def course_of(motion: Motion) -> float:
-    """Course over ground [rad]; the heading where it stands."""
-    v = motion.velocity
-    return motion.yaw if v.x * v.x + v.y * v.y < 1e-6 else atan2(v.y, v.x)

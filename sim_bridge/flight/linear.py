@@ -5,7 +5,6 @@ python-control and scipy are imported here, at the first call (1.8 s), and never
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -24,11 +23,6 @@ def control() -> Any:
 def state_space(a: Array, b: Array, c: Array, d: Array, dt: float = 0.0) -> Any:
     """A python-control state-space system; `dt` 0 means continuous."""
     return control().ss(a, b, c, d, dt) if dt > 0.0 else control().ss(a, b, c, d)
-
-
-def transfer_function(numerator: Sequence[float], denominator: Sequence[float]) -> Any:
-    """A python-control transfer function, highest power of s first."""
-    return control().tf(list(numerator), list(denominator))
 
 
 def hold(system: Any, dt: float) -> tuple[Array, Array, Array, Array]:

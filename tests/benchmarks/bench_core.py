@@ -116,8 +116,8 @@ def test_evader_beside_numpy(
     assert found.ratio >= 1.0
 
 
-@pytest.mark.parametrize(("bearing", "floor"), [(0.3, 1.2), (1.2, 4.0), (2.5, 0.6)])
-def test_pursuer_beside_numpy(bearing: float, floor: float, benchmark: BenchmarkFixture) -> None:
+@pytest.mark.parametrize("bearing", [0.3, 1.2, 2.5])
+def test_pursuer_beside_numpy(bearing: float, benchmark: BenchmarkFixture) -> None:
     place = Vec(60.0 * cos(bearing), 60.0 * sin(bearing), 5.0)
     own, quarry = Vehicle(place, ZERO, 4.0), Vehicle(ZERO, scale(NORTH, 5.0), 5.0)
     e, heading, p = np.zeros(3), np.array(NORTH), np.array(place)
@@ -143,7 +143,7 @@ def test_pursuer_beside_numpy(bearing: float, floor: float, benchmark: Benchmark
           f"its direction alone in the leanest NumPy {least:.2f} µs")  # fmt: skip
     benchmark.extra_info.update(numpy_us=found.theirs * 1e6, ratio=found.ratio, lean_us=spare.theirs * 1e6)
     benchmark(ours)
-    assert found.ratio >= floor
+    assert found.ratio >= 5.0  # promised; intercept and parallel flight miss it (decisions.md)
 
 
 def starts(games: int, pursuers: int) -> Starts:
