@@ -16,9 +16,9 @@ import typer  # noqa: E402
 
 from gcs import settings as gcs_settings  # noqa: E402
 from gcs.settings import Settings  # noqa: E402
-from onboard.runtime.config import ConfigError  # noqa: E402
+from onboard.config.strict import ConfigError  # noqa: E402
 from onboard.runtime.program import run  # noqa: E402
-from onboard.wire.swarm import CommandKind, Role  # noqa: E402
+from onboard.wire.bus.messages import CommandKind, Role  # noqa: E402
 
 app = typer.Typer(
     help="The ground station: picture, console, commands, recording, replay, report.",
@@ -203,7 +203,7 @@ def game_run(
 ) -> int:
     """Stage, start, referee and end a game without the bridge; exit 0 when it has ended with a verdict."""
     from gcs import programs
-    from onboard.runtime.scenario import load
+    from onboard.game.scenario import load
 
     found = _settings(config, game, bus, zenoh, operator, runs)
     played = load(scenario)

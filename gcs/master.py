@@ -1,6 +1,6 @@
 """The ground station as the game's master in the field: `gcs game run SCENARIO`.
 
-The rules are `onboard.runtime.master.GameMaster`, the same as the bridge's. In the field nobody knows the
+The rules are `onboard.game.master.GameMaster`, the same as the bridge's. In the field nobody knows the
 true motions: the referee judges the vehicles' own states, and the evader's track where it has none, put
 side by side at one instant a little in the past, so that it interpolates what came early and late.
 """
@@ -13,16 +13,17 @@ from collections import Counter, deque
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
-from gcs import journal
-from gcs.journal import Sent
+from gcs.picture import journal
+from gcs.picture.journal import Sent
 from gcs.station import Station
-from onboard.core.vectors import Vec, along, sub
-from onboard.runtime.master import GameMaster, Standing, Timing
+from onboard.core.math.vectors import Vec, along, sub
+from onboard.game.master import GameMaster, Standing, Timing
+from onboard.game.scenario import Scenario
+from onboard.game.staging import setup_of, target_of
 from onboard.runtime.protocols import Sample, Subscription
-from onboard.runtime.scenario import Scenario
-from onboard.runtime.staging import setup_of, target_of
-from onboard.wire import swarm, topics
-from onboard.wire.swarm import CommandKind, Phase, Role, Severity
+from onboard.wire.bus import messages as swarm
+from onboard.wire.bus import topics
+from onboard.wire.bus.messages import CommandKind, Phase, Role, Severity
 
 NS = 1_000_000_000
 NAME = "gcs"

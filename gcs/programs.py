@@ -10,22 +10,22 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from gcs.commands import ENDS_A_FLIGHT
-from gcs.export import to_json
-from gcs.picture import Leg, Picture
-from gcs.plain import Plain
-from gcs.plain import status as status_lines
-from gcs.rules import Thresholds
+from gcs.console.plain_lines import Plain
+from gcs.console.plain_lines import status as status_lines
+from gcs.picture.alert_rules import Thresholds
+from gcs.picture.commands import ENDS_A_FLIGHT
+from gcs.picture.plain_data import to_json
+from gcs.picture.terminal_text import printable
+from gcs.picture.values import Leg, Picture
 from gcs.session import Session, on_air, version
 from gcs.settings import Settings
-from gcs.text import printable
+from onboard.config.strict import ConfigError
+from onboard.game.scenario import Scenario
 from onboard.runtime.clock import RealClock
-from onboard.runtime.config import ConfigError
-from onboard.runtime.scenario import Scenario
-from onboard.wire.swarm import CommandKind, Role
+from onboard.wire.bus.messages import CommandKind, Role
 
 if TYPE_CHECKING:
-    from gcs.replay import Player
+    from gcs.replay.player import Player
 
 LOOK_S = 0.25
 GATHER_S = 1.5  # to learn who is there
@@ -199,8 +199,8 @@ async def play(
 
 def replay(run: Path, limits: Thresholds, *, plain: bool) -> int:
     """A recording in the console, or its log in lines."""
-    from gcs.replay import Player
-    from gcs.replay_source import ReplaySource, open_run
+    from gcs.replay.player import Player
+    from gcs.replay.source import ReplaySource, open_run
 
     _demand_terminal(plain)
     recording = open_run(run)
@@ -234,8 +234,8 @@ def _print_through(player: Player) -> None:
 
 def decide_again(run: Path, strategies: dict[Role, str]) -> int:
     """The strategies again over a recording: where they decide otherwise."""
-    from gcs.replay_decide import decide
-    from gcs.replay_source import open_run
+    from gcs.replay.decide import decide
+    from gcs.replay.source import open_run
 
     recording = open_run(run)
     try:
@@ -250,7 +250,7 @@ def decide_again(run: Path, strategies: dict[Role, str]) -> int:
 
 def report(run: Path, limits: Thresholds) -> int:
     """The report of a run."""
-    from gcs.report import write_report
+    from gcs.report.program import write_report
 
     written = write_report(run, limits, version())
     for note in written.notes:

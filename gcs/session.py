@@ -10,15 +10,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gcs.console.source import Key
-from gcs.picture import Picture
+from gcs.picture.values import Picture
 from gcs.settings import Settings
 from gcs.station import Station
 from onboard.runtime.bus_zenoh import ZenohBus, open_zenoh
 from onboard.runtime.clock import RealClock
-from onboard.wire.swarm import CommandKind, Severity
+from onboard.wire.bus.messages import CommandKind, Severity
 
 if TYPE_CHECKING:
-    from gcs.recorder_shell import Keeper
+    from gcs.recording.shell import Keeper
 
 
 def version() -> str:
@@ -70,9 +70,9 @@ class Session:
 @asynccontextmanager
 async def on_air(settings: Settings, *, listen: bool, record: bool) -> AsyncIterator[Session]:
     """A station on the bus, recording if asked; all of it ends with the block. Raises ConfigError."""
-    from gcs.recorder_shell import Keeper
+    from gcs.recording.shell import Keeper
     from onboard.runtime.links import open_link
-    from onboard.runtime.runs import new_run
+    from onboard.runtime.run_folder import new_run
 
     clock = RealClock()
     zenoh = Path(settings.bus.zenoh) if settings.bus.zenoh else None

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import msgspec
 
-from gcs.rules import Thresholds
-from onboard.runtime import config
-from onboard.runtime.config import ConfigError
-from onboard.wire.topics import DEFAULT_GAME
+from gcs.picture.alert_rules import Thresholds
+from onboard.config import strict as config
+from onboard.config.strict import ConfigError
+from onboard.wire.bus.topics import DEFAULT_GAME
 
 
 class Part(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):

@@ -10,14 +10,14 @@ import asyncio
 from collections.abc import Callable, Iterable
 from uuid import uuid4
 
-from gcs import journal
-from gcs.commands import Courier
-from gcs.picture import Picture
-from gcs.rules import Thresholds
-from gcs.watch import GRID_NS, Watch
+from gcs.picture import journal
+from gcs.picture.alert_rules import Thresholds
+from gcs.picture.commands import Courier
+from gcs.picture.values import Picture
+from gcs.picture.watch import GRID_NS, Watch
 from onboard.runtime.protocols import Bus, Clock, Sample, Subscription
-from onboard.wire import topics
-from onboard.wire.swarm import Command, CommandKind, CommandReply, Role, Severity
+from onboard.wire.bus import topics
+from onboard.wire.bus.messages import Command, CommandKind, CommandReply, Role, Severity
 
 Tap = Callable[[str, bytes, int], None]  # key, payload, now_ns
 NS = 1_000_000_000

@@ -12,7 +12,7 @@ import sys
 from pathlib import Path
 from typing import Any, NoReturn
 
-from onboard.runtime.config import ConfigError
+from onboard.config.strict import ConfigError
 
 NAME = "onboard-agent"
 OPTIONS = ("id", "role", "link", "autopilot", "game", "bus", "zenoh", "strategy", "route", "take_control",

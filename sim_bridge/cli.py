@@ -11,7 +11,7 @@ for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 
 import typer  # noqa: E402  (threads are set before anything imports NumPy)
 
-from onboard.runtime.config import ConfigError  # noqa: E402
+from onboard.config.strict import ConfigError  # noqa: E402
 from onboard.runtime.program import run  # noqa: E402
 
 ScenarioArgument = Annotated[
@@ -56,7 +56,7 @@ def planar(
 ) -> None:
     """Play the paper's plane game; exit 1 when a verdict differs from the paper's."""
     from onboard.runtime.plugins import pursuer_strategy
-    from sim_bridge import planar as room
+    from sim_bridge.plane_game import program as room
 
     if dt is not None and not 0.0 < dt <= 1.0:
         raise ConfigError(f"--dt: found {dt}, expected a time step in (0, 1] s")
@@ -66,7 +66,7 @@ def planar(
         pursuer_strategy(name)
     pictures = figures is not None or animate is not None
     if animate is not None:
-        from sim_bridge.planar_figures import check_film
+        from sim_bridge.plane_game.figures import check_film
 
         check_film(animate)
     if figures is not None:
@@ -82,11 +82,11 @@ def planar(
 
                 print(msgspec.json.encode(results[-1]).decode())
             if figures is not None:
-                from sim_bridge.planar_figures import draw_game
+                from sim_bridge.plane_game.figures import draw_game
 
                 draw_game(played, figures)
             if animate is not None and first:
-                from sim_bridge.planar_figures import animate as film
+                from sim_bridge.plane_game.figures import animate as film
 
                 film(played, animate)
     agree, total = room.differs(results)
@@ -119,9 +119,9 @@ def serve(
     ports: Annotated[Path | None, typer.Option(help="Write the agents' ports to this JSON file.")] = None,
 ) -> None:
     """Play the autopilots of a scenario on UDP in real time, with its sensor and master on the bus."""
-    from sim_bridge.fly import scenario_file
-    from sim_bridge.serve import Options
-    from sim_bridge.serve import serve as run_server
+    from sim_bridge.programs.fly import scenario_file
+    from sim_bridge.programs.serve import Options
+    from sim_bridge.programs.serve import serve as run_server
 
     options = Options(
         game=game, bus=bus, listen=listen, zenoh=zenoh, referee=referee, once=once, seed=seed, ports=ports
@@ -140,7 +140,7 @@ def fly(
     quiet: Annotated[bool, typer.Option("--quiet", help="Only the result.")] = False,
 ) -> None:
     """Fly a whole game, agents included, and leave a run folder; exit 1 when it ended without a verdict."""
-    from sim_bridge import fly as room
+    from sim_bridge.programs import fly as room
 
     options = room.Options(fast, seed, runs, bus, report, quiet)
     flown = room.fly(room.scenario_file(scenario), options, lambda line: print(line, flush=True))
@@ -158,7 +158,7 @@ def scenario_new(
     file: Annotated[Path, typer.Argument(help="File to write; it must not exist.")],
 ) -> None:
     """Write a commented template."""
-    from sim_bridge.scenario_tools import new
+    from sim_bridge.programs.scenario_tools import new
 
     print(new(file))
 
@@ -166,9 +166,9 @@ def scenario_new(
 @scenario_app.command("check")
 def scenario_check(scenario: ScenarioArgument) -> None:
     """Check a scenario; print turn radii, free cones and the expected duration."""
-    from onboard.runtime.scenario import load
-    from sim_bridge.fly import demand_strategies, scenario_file
-    from sim_bridge.scenario_tools import check
+    from onboard.game.scenario import load
+    from sim_bridge.programs.fly import demand_strategies, scenario_file
+    from sim_bridge.programs.scenario_tools import check
 
     file = scenario_file(scenario)
     found = load(file)
@@ -185,7 +185,7 @@ def design(
 ) -> None:
     """Print margins, bandwidth and step-response figures of the configured aircraft's loops."""
     from onboard.runtime.resources import configs
-    from sim_bridge.design import design as report_on
+    from sim_bridge.studies.design import design as report_on
 
     if figures is not None:
         _folder(figures)
@@ -206,7 +206,7 @@ def predict(
     epochs: Annotated[int, typer.Option(help="Epochs of the paper's training.")] = 1000,
 ) -> None:
     """Compare predictors on a recorded or simulated track: a table and a figure."""
-    from sim_bridge.predict import predict as run_predict
+    from sim_bridge.studies.predict import predict as run_predict
 
     if figures is not None:
         _folder(figures)

@@ -11,22 +11,22 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from gcs.recorder import Recorder
+from gcs.recording.recorder import Recorder
 from onboard.agent.agent import Agent
 from onboard.agent.config import AgentConfig
+from onboard.game.master import GameMaster
+from onboard.game.scenario import Scenario
 from onboard.runtime.bus_memory import MemoryBroker, MemoryBus
 from onboard.runtime.impairment import Impaired, Impairment, impairment_of
 from onboard.runtime.links import memory_pair
-from onboard.runtime.master import GameMaster
 from onboard.runtime.protocols import Bus, Clock, Link, Sample
-from onboard.runtime.scenario import Scenario
-from onboard.wire.swarm import Event, Health, Outcome, Phase, Role
-from onboard.wire.tlog import TlogWriter
-from onboard.wire.topics import everything
-from sim_bridge.bridge import Bridge, mute
-from sim_bridge.observer import Observer
-from sim_bridge.staging import generator
-from sim_bridge.summary import Summary
+from onboard.wire.bus.messages import Event, Health, Outcome, Phase, Role
+from onboard.wire.bus.topics import everything
+from onboard.wire.mavlink.tlog import TlogWriter
+from sim_bridge.programs.summary import Summary
+from sim_bridge.world.bridge import Bridge, mute
+from sim_bridge.world.run_observer import Observer
+from sim_bridge.world.staging import generator
 
 GAME = "rehearsal"
 TOLD_MAX = 100_000

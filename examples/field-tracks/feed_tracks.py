@@ -20,19 +20,19 @@ from math import isfinite
 from pathlib import Path
 from typing import NamedTuple
 
-from onboard.core.vectors import ZERO, Vec
+from onboard.config.strict import ConfigError
+from onboard.core.math.vectors import ZERO, Vec
 from onboard.runtime.bus_zenoh import open_zenoh
 from onboard.runtime.clock import RealClock
-from onboard.runtime.config import ConfigError
 from onboard.runtime.links import open_link
 from onboard.runtime.protocols import Bus
-from onboard.wire import swarm
+from onboard.wire.bus import messages as swarm
+from onboard.wire.bus.messages import Track
+from onboard.wire.bus.topics import DEFAULT_GAME, TRACK, key
 from onboard.wire.geodesy import Frame
-from onboard.wire.mavlink import Framer
-from onboard.wire.swarm import Track
-from onboard.wire.telemetry import decode
-from onboard.wire.topics import DEFAULT_GAME, TRACK, key
-from onboard.wire.values import AdsbVehicle
+from onboard.wire.mavlink.frames import Framer
+from onboard.wire.mavlink.telemetry import decode
+from onboard.wire.mavlink.values import AdsbVehicle
 
 NS = 1_000_000_000
 ADSB_SIGMA = 30.0  # [m] what a position of a small ADS-B transmitter is worth, unless told

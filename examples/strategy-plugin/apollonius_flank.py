@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from onboard.core.cones import within
-from onboard.core.game import PursuerStrategy
-from onboard.core.knowledge import Decision, RuleId
-from onboard.core.pursuit import PursuerView
-from onboard.core.vectors import TINY, along, distance, sub, unit
+from onboard.core.game.advance import PursuerStrategy
+from onboard.core.geometry.cones import within
+from onboard.core.math.vectors import TINY, along, distance, sub, unit
+from onboard.core.strategy.knowledge import Decision, RuleId
+from onboard.core.strategy.pursuit import PursuerView
 
 
 def flank(view: PursuerView) -> Decision:

@@ -14,14 +14,15 @@ from textual.containers import Container
 from textual.css.query import NoMatches
 from textual.widgets import Input
 
-from gcs.commands import ENDS_A_FLIGHT
-from gcs.console import plan, words
+from gcs.console import command_parser as words
+from gcs.console import plan
 from gcs.console.help import HelpScreen
-from gcs.console.rows import Row, rows
 from gcs.console.source import Source
+from gcs.console.vehicle_table import Row, rows
 from gcs.console.widgets import AlertBoard, Detail, LogPanel, Plan, Prompt, StatusBar, VehicleTable
-from gcs.picture import Picture
-from onboard.wire.swarm import CommandKind
+from gcs.picture.commands import ENDS_A_FLIGHT
+from gcs.picture.values import Picture
+from onboard.wire.bus.messages import CommandKind
 
 REFRESH_HZ = 3.0
 WIDE = 120  # columns from which on the plan stands beside the table

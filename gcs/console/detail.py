@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from math import atan2, degrees, hypot
 
-from gcs.console.rows import GRADE_WORDS, STYLES, age, evader_position, grades
-from gcs.picture import Picture, VehicleView
-from onboard.core.vectors import Vec, distance, dot, norm, scale, sub
-from onboard.wire.swarm import Role
+from gcs.console.vehicle_table import GRADE_WORDS, STYLES, age, evader_position, grades
+from gcs.picture.values import Picture, VehicleView
+from onboard.core.math.vectors import Vec, distance, dot, norm, scale, sub
+from onboard.wire.bus.messages import Role
 
 Line = tuple[str, str]  # text, style
 

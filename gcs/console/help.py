@@ -12,7 +12,8 @@ from textual.containers import VerticalScroll
 from textual.screen import ModalScreen
 from textual.widgets import Static
 
-from gcs.console import plan, words
+from gcs.console import command_parser as words
+from gcs.console import plan
 from gcs.console.source import Key
 
 KEY_NAMES = {

@@ -9,9 +9,9 @@ from __future__ import annotations
 from math import atan2, ceil, cos, floor, hypot, log10, pi, remainder, sin
 from typing import NamedTuple
 
-from gcs.console.rows import GRADE_WORDS, STYLES, Grade, grades
-from gcs.picture import Picture, Presence, VehicleView
-from onboard.wire.swarm import Role
+from gcs.console.vehicle_table import GRADE_WORDS, STYLES, Grade, grades
+from gcs.picture.values import Picture, Presence, VehicleView
+from onboard.wire.bus.messages import Role
 
 Run = tuple[str, str]  # text, style
 ARROWS = "↑↗→↘↓↙←↖"

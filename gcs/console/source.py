@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import NamedTuple, Protocol
 
-from gcs.picture import Picture
-from onboard.wire.swarm import CommandKind
+from gcs.picture.values import Picture
+from onboard.wire.bus.messages import CommandKind
 
 
 class Key(NamedTuple):

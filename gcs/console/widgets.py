@@ -18,11 +18,11 @@ from textual.widget import Widget
 from textual.widgets import Input, Static
 
 from gcs.console import plan
-from gcs.console.bars import alert_lines, log_lines, status_line
 from gcs.console.detail import detail
-from gcs.console.rows import STYLES, Row, column_at, heading, line
-from gcs.picture import Picture
-from gcs.text import printable
+from gcs.console.status_line import alert_lines, log_lines, status_line
+from gcs.console.vehicle_table import STYLES, Row, column_at, heading, line
+from gcs.picture.terminal_text import printable
+from gcs.picture.values import Picture
 
 Runs = list[tuple[str, str]]
 

@@ -11,24 +11,24 @@ import sys
 from collections.abc import Callable, Sequence
 
 from onboard.agent import reports
-from onboard.agent.acting import Acting
+from onboard.agent.bus_view import Table
+from onboard.agent.command_book import Orders
 from onboard.agent.config import AgentConfig, KnockOff
-from onboard.agent.craft import Craft
+from onboard.agent.game_player import Acting
 from onboard.agent.journal import Journal
-from onboard.agent.orders import Orders
-from onboard.agent.radio import Radio, Record
-from onboard.agent.table import Table
+from onboard.agent.mavlink_radio import Radio, Record
+from onboard.agent.route_player import Tracking
 from onboard.agent.timing import Timing
-from onboard.agent.tracking import Tracking
+from onboard.agent.vehicle_link import Craft
 from onboard.autopilot.base import NEVER, Stage, Telemetry, Way
 from onboard.core.safety.words import ACTIONS
 from onboard.runtime.protocols import Bus, Clock, Link
 from onboard.runtime.tasks import Pace, periodic
-from onboard.wire import swarm
-from onboard.wire.mavlink import Packet
-from onboard.wire.signing import Signing
-from onboard.wire.swarm import CommandKind, CommandReply, Health, Role, Severity
-from onboard.wire.topics import ALIVE, COMMAND, DECISION, HEALTH, STATE, key
+from onboard.wire.bus import messages as swarm
+from onboard.wire.bus.messages import CommandKind, CommandReply, Health, Role, Severity
+from onboard.wire.bus.topics import ALIVE, COMMAND, DECISION, HEALTH, STATE, key
+from onboard.wire.mavlink.frames import Packet
+from onboard.wire.mavlink.signing import Signing
 
 STATE_EVERY_S = 0.045  # 20 Hz at the control rate
 DECISION_EVERY_S = 0.095

@@ -9,12 +9,12 @@ from typing import Any
 
 import msgspec
 
+from onboard.config import strict as config
+from onboard.config.strict import ConfigError
 from onboard.core.safety.policy import Action, Policy
-from onboard.pilot.predicting import Predicting
-from onboard.runtime import config
-from onboard.runtime.config import ConfigError
-from onboard.wire.swarm import Role
-from onboard.wire.topics import DEFAULT_GAME
+from onboard.pilot.predictor_choice import Predicting
+from onboard.wire.bus.messages import Role
+from onboard.wire.bus.topics import DEFAULT_GAME
 
 BASE_PORT = 14539  # the autopilot of vehicle n sends to this port + n
 

@@ -6,9 +6,9 @@ from collections.abc import Callable
 from datetime import UTC, datetime
 
 from onboard.runtime.protocols import Clock
-from onboard.wire import swarm
-from onboard.wire.swarm import Event, Severity
-from onboard.wire.topics import EVENTS, Delivery, key
+from onboard.wire.bus import messages as swarm
+from onboard.wire.bus.messages import Event, Severity
+from onboard.wire.bus.topics import EVENTS, Delivery, key
 
 BURST = 20  # events of one kind within `WINDOW_S` before the rest are only counted
 WINDOW_S = 10.0

@@ -15,15 +15,15 @@ from pathlib import Path
 from onboard.agent.agent import Agent, to_stderr
 from onboard.agent.config import AgentConfig
 from onboard.agent.version import version
+from onboard.config.strict import ConfigError
 from onboard.runtime.bus_zenoh import open_zenoh
 from onboard.runtime.clock import RealClock
-from onboard.runtime.config import ConfigError
-from onboard.runtime.keys import StampFile, read_key
 from onboard.runtime.links import open_link
 from onboard.runtime.protocols import Bus, Link
+from onboard.runtime.signing_keys import StampFile, read_key
 from onboard.runtime.systemd import Notifier
-from onboard.wire.signing import Signing
-from onboard.wire.tlog import TlogWriter
+from onboard.wire.mavlink.signing import Signing
+from onboard.wire.mavlink.tlog import TlogWriter
 
 CLOSE_S = 0.5  # for the bus to close; the process ends within 2 s of a signal
 FLUSH_NS = 1_000_000_000
@@ -36,7 +36,7 @@ def fly(config: AgentConfig, timing: Path | None = None) -> int:
 
 def check(config: AgentConfig, seconds: float) -> int:
     """The preflight; gives the exit code. Raises ConfigError."""
-    from onboard.agent.check import preflight
+    from onboard.agent.preflight import preflight
 
     return asyncio.run(preflight(config, seconds, print))
 

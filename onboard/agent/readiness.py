@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from onboard.agent.craft import Craft
-from onboard.agent.table import Table
+from onboard.agent.bus_view import Table
+from onboard.agent.vehicle_link import Craft
 from onboard.autopilot.base import NEVER
 from onboard.autopilot.health import Thresholds, read
 from onboard.core.safety.policy import Policy
-from onboard.wire.swarm import Role
+from onboard.wire.bus.messages import Role
 
 MASTER_S = 5.0  # a master silent for longer counts as lacking
 

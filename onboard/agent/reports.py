@@ -5,13 +5,13 @@ from __future__ import annotations
 from math import isfinite
 
 from onboard.autopilot.base import Telemetry
-from onboard.core.safety.machine import Verdict
+from onboard.core.math.vectors import Vec
 from onboard.core.safety.policy import Action
+from onboard.core.safety.supervisor import Verdict
 from onboard.core.safety.words import ACTIONS, CAUSES
-from onboard.core.vectors import Vec
 from onboard.pilot.pilot import Thought, drawing
 from onboard.pilot.setup import Side
-from onboard.wire.swarm import DecisionReport, Role, State
+from onboard.wire.bus.messages import DecisionReport, Role, State
 
 UNSURE = 1e6  # stands for an error that is not known [m]
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from onboard.agent.craft import Craft
+from onboard.agent.vehicle_link import Craft
 from onboard.autopilot.base import Stage
-from onboard.wire import commands
-from onboard.wire.mavlink import MavMessage
-from onboard.wire.modes import Kind, custom_mode
+from onboard.wire.mavlink import commands
+from onboard.wire.mavlink.frames import MavMessage
+from onboard.wire.mavlink.modes import Kind, custom_mode
 
 AGAIN_S = 2.0
 ON_GROUND = 1  # MAV_LANDED_STATE_ON_GROUND

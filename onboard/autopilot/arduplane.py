@@ -11,14 +11,14 @@ from __future__ import annotations
 from math import atan, atan2, pi, tan
 
 from onboard.autopilot.base import NEVER, Envelope, Note, Setpoint, Stage, Step, Telemetry, Way
-from onboard.autopilot.control import Control
 from onboard.autopilot.envelope import is_finite, within
-from onboard.core.vectors import Vec, add, clamp, norm
-from onboard.wire import commands
-from onboard.wire.commands import Target
-from onboard.wire.mavlink import MavMessage
-from onboard.wire.modes import Kind
-from onboard.wire.values import CommandAck
+from onboard.autopilot.mode_control import Control
+from onboard.core.math.vectors import Vec, add, clamp, norm
+from onboard.wire.mavlink import commands
+from onboard.wire.mavlink.commands import Target
+from onboard.wire.mavlink.frames import MavMessage
+from onboard.wire.mavlink.modes import Kind
+from onboard.wire.mavlink.values import CommandAck
 
 G = 9.80665  # [m/s²]
 GAIN = 1.1  # [1/s] turn rate for an error of the course

@@ -15,10 +15,10 @@ from __future__ import annotations
 from enum import Enum
 from typing import NamedTuple, Protocol
 
-from onboard.core.vectors import ZERO, Vec
-from onboard.wire.mavlink import MavMessage
-from onboard.wire.modes import Kind
-from onboard.wire.values import UNKNOWN, CommandAck
+from onboard.core.math.vectors import ZERO, Vec
+from onboard.wire.mavlink.frames import MavMessage
+from onboard.wire.mavlink.modes import Kind
+from onboard.wire.mavlink.values import UNKNOWN, CommandAck
 
 NEVER = float("-inf")  # the instant of something that has not happened
 

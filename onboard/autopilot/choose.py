@@ -9,9 +9,9 @@ from onboard.autopilot.base import Adapter, Envelope, Refusal
 from onboard.autopilot.mavsdk import MavsdkAdapter
 from onboard.autopilot.parameters import gcs_failsafe
 from onboard.autopilot.velocity import VelocityAdapter
-from onboard.wire.commands import Target
-from onboard.wire.modes import Kind
-from onboard.wire.values import Heartbeat
+from onboard.wire.mavlink.commands import Target
+from onboard.wire.mavlink.modes import Kind
+from onboard.wire.mavlink.values import Heartbeat
 
 SCHEMES = {
     "auto": tuple(Kind),

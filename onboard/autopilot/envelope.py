@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import isfinite
 
 from onboard.autopilot.base import NEVER, Envelope
-from onboard.core.vectors import Vec, norm, scale, sub
+from onboard.core.math.vectors import Vec, norm, scale, sub
 
 GAP = 0.4  # [s] without a target: the stream has to begin again
 

@@ -17,13 +17,13 @@ from struct import Struct
 from typing import Protocol
 
 from onboard.autopilot.base import NEVER, Envelope, Note, Setpoint, Stage, Step, Telemetry, Way
-from onboard.autopilot.control import Control
 from onboard.autopilot.envelope import Shaper, is_finite
+from onboard.autopilot.mode_control import Control
 from onboard.autopilot.velocity import GUIDED, WAYS, yaw_along
-from onboard.core.vectors import add
-from onboard.wire.commands import Target
-from onboard.wire.modes import Kind
-from onboard.wire.values import CommandAck
+from onboard.core.math.vectors import add
+from onboard.wire.mavlink.commands import Target
+from onboard.wire.mavlink.modes import Kind
+from onboard.wire.mavlink.values import CommandAck
 
 LINE = Struct("<cd4d")  # what, when [s, monotonic], north, east, down [m/s], yaw [deg]
 SETPOINT, ENTER, HOLD, RETURN, LAND, RELEASE = b"S", b"E", b"H", b"R", b"L", b"X"

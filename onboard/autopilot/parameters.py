@@ -7,7 +7,7 @@ from math import radians
 from typing import NamedTuple
 
 from onboard.autopilot.base import Envelope
-from onboard.wire.modes import Kind
+from onboard.wire.mavlink.modes import Kind
 
 Parameters = Mapping[str, float]
 

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections import deque
 from typing import NamedTuple
 
-from onboard.wire import commands
-from onboard.wire.mavlink import MavMessage
-from onboard.wire.values import Timesync
+from onboard.wire.mavlink import commands
+from onboard.wire.mavlink.frames import MavMessage
+from onboard.wire.mavlink.values import Timesync
 
 WINDOW = 16  # answers from which the best is taken
 PENDING = 8  # questions kept: an answer to an older one, or to somebody else's, does not count

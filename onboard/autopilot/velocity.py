@@ -11,13 +11,13 @@ from __future__ import annotations
 from math import atan2
 
 from onboard.autopilot.base import Envelope, Note, Setpoint, Stage, Step, Telemetry, Way
-from onboard.autopilot.control import Control
 from onboard.autopilot.envelope import Shaper, is_finite
-from onboard.core.vectors import Vec, add
-from onboard.wire import commands
-from onboard.wire.commands import Target
-from onboard.wire.modes import Kind
-from onboard.wire.values import CommandAck
+from onboard.autopilot.mode_control import Control
+from onboard.core.math.vectors import Vec, add
+from onboard.wire.mavlink import commands
+from onboard.wire.mavlink.commands import Target
+from onboard.wire.mavlink.modes import Kind
+from onboard.wire.mavlink.values import CommandAck
 
 STREAM_BEFORE = 1.2  # [s] of targets before PX4 is asked for OFFBOARD (it wants 1 s at 2 Hz or more)
 TURNING = 0.5  # [m/s; ground] below this the vehicle keeps looking where it looks

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Collection, Hashable
 
-from onboard.core.vectors import ZERO, Vec, norm, sub
-from onboard.pilot.predicting import Predicting
+from onboard.core.math.vectors import ZERO, Vec, norm, sub
 from onboard.pilot.predictor import Prediction, TrackPredictor, Trainer
 from onboard.pilot.predictor.model import ModelSettings
 from onboard.pilot.predictor.track import PredictorSettings
+from onboard.pilot.predictor_choice import Predicting
 from onboard.pilot.setup import TrackSample
 
 FORGETTING = 1.0 / 60.0  # share of a remembered top speed that fades in a second

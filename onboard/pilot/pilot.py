@@ -11,16 +11,16 @@ from __future__ import annotations
 from math import inf
 from typing import NamedTuple
 
-from onboard.core.apollonius import apollonius_sphere, intercept
-from onboard.core.assessment import half_angle
-from onboard.core.cones import blocked_cones
-from onboard.core.evasion import EvaderView
-from onboard.core.game import EvaderStrategy, PursuerStrategy
-from onboard.core.knowledge import Decision, Level, Module
-from onboard.core.pursuit import PursuerView, heading_at
-from onboard.core.states import Vehicle
-from onboard.core.strategies import DEFAULT, EVADERS, PURSUERS
-from onboard.core.vectors import TINY, ZERO, Vec, add, along, clamp, distance, norm, scale, sub
+from onboard.core.game.advance import EvaderStrategy, PursuerStrategy
+from onboard.core.geometry.apollonius import apollonius_sphere, intercept
+from onboard.core.geometry.assessment import half_angle
+from onboard.core.geometry.cones import blocked_cones
+from onboard.core.math.states import Vehicle
+from onboard.core.math.vectors import TINY, ZERO, Vec, add, along, clamp, distance, norm, scale, sub
+from onboard.core.strategy.evasion import EvaderView
+from onboard.core.strategy.knowledge import Decision, Level, Module
+from onboard.core.strategy.pursuit import PursuerView, heading_at
+from onboard.core.strategy.registry import DEFAULT, EVADERS, PURSUERS
 from onboard.pilot.memory import Memory
 from onboard.pilot.predictor import Prediction, PredictorKind
 from onboard.pilot.setup import GameSetup, MateState, Own, Player, Side, TrackSample

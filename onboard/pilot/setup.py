@@ -5,9 +5,9 @@ from __future__ import annotations
 from enum import Enum
 from typing import NamedTuple
 
-from onboard.core.states import Limits
-from onboard.core.vectors import ZERO, Vec
-from onboard.pilot.filter import Variance
+from onboard.core.math.states import Limits
+from onboard.core.math.vectors import ZERO, Vec
+from onboard.pilot.track_filter import Variance
 
 
 class Side(Enum):

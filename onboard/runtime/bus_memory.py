@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from onboard.runtime.impairment import Channel, Impairment
 from onboard.runtime.patterns import matches
 from onboard.runtime.protocols import Sample
-from onboard.wire.topics import Delivery
+from onboard.wire.bus.topics import Delivery
 
 if TYPE_CHECKING:
     from numpy.random import Generator

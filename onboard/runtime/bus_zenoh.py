@@ -20,11 +20,11 @@ from typing import Any
 import zenoh
 from zenoh import ext, handlers
 
-from onboard.runtime.config import ConfigError
+from onboard.config.strict import ConfigError
 from onboard.runtime.inbox import Inbox
 from onboard.runtime.patterns import intersects
 from onboard.runtime.protocols import Sample, Subscription
-from onboard.wire.topics import ROOT, TOPICS, Delivery, topic_of
+from onboard.wire.bus.topics import ROOT, TOPICS, Delivery, topic_of
 
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
 EVENTS_KEPT = 256  # events a publisher keeps of each key

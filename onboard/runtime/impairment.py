@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
+from onboard.game.scenario import ImpairmentSpec
 from onboard.runtime.protocols import Link, Receiver
-from onboard.runtime.scenario import ImpairmentSpec
 
 if TYPE_CHECKING:
     from numpy.random import Generator

@@ -17,7 +17,7 @@ from collections import Counter
 from collections.abc import Hashable
 from typing import Any
 
-from onboard.runtime.config import ConfigError
+from onboard.config.strict import ConfigError
 from onboard.runtime.protocols import Link, Receiver
 from onboard.runtime.serial_link import SerialLink
 

@@ -11,9 +11,9 @@ from __future__ import annotations
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any
 
-from onboard.core.game import EvaderStrategy, PursuerStrategy
-from onboard.core.strategies import DEFAULT, EVADERS, PURSUERS
-from onboard.runtime.config import ConfigError
+from onboard.config.strict import ConfigError
+from onboard.core.game.advance import EvaderStrategy, PursuerStrategy
+from onboard.core.strategy.registry import DEFAULT, EVADERS, PURSUERS
 
 GROUP = "apollonius.strategies"
 

@@ -7,7 +7,7 @@ import sys
 
 import typer
 
-from onboard.runtime.config import ConfigError
+from onboard.config.strict import ConfigError
 
 
 def run(app: typer.Typer, name: str) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable
 from typing import NamedTuple, Protocol
 
-from onboard.wire.topics import Delivery
+from onboard.wire.bus.topics import Delivery
 
 
 class Clock(Protocol):

@@ -9,7 +9,7 @@ from collections import Counter, deque
 from collections.abc import Hashable
 from typing import Any
 
-from onboard.runtime.config import ConfigError
+from onboard.config.strict import ConfigError
 from onboard.runtime.protocols import Receiver
 
 BACKLOG_MAX = 16384  # bytes that wait for the port before the next message is dropped

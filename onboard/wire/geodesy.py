@@ -12,7 +12,7 @@ from __future__ import annotations
 from math import atan2, cos, degrees, radians, sin, sqrt
 from typing import NamedTuple
 
-from onboard.core.vectors import Vec
+from onboard.core.math.vectors import Vec
 
 A = 6378137.0  # semi-major axis of WGS-84 [m]
 F = 1.0 / 298.257223563  # flattening

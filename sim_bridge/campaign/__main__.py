@@ -44,10 +44,10 @@ def tracking(
     out: Out = RESULTS,
 ) -> None:
     """Strategy 1, Strategy 2, the intelligent module and straight flight along a timed route."""
+    from onboard.game.route_file import load_route
+    from onboard.game.scenario import WindSpec
     from onboard.runtime.resources import configs
-    from onboard.runtime.route import load_route
-    from onboard.runtime.scenario import WindSpec
-    from sim_bridge.campaign.games import output
+    from sim_bridge.campaign.spatial_campaign import output
     from sim_bridge.campaign.tracking import compare, table
 
     flown = load_route(configs() / "routes" / "twenty_km.toml" if route is None else route)
@@ -73,9 +73,9 @@ def games(
     out: Out = RESULTS,
 ) -> None:
     """The spatial game with the evader's strategy and flying straight, on the same seeds."""
-    from onboard.runtime.scenario import load
+    from onboard.game.scenario import load
     from sim_bridge.campaign.figures import draw_stages
-    from sim_bridge.campaign.games import contest, output, play_seed, spatial, table
+    from sim_bridge.campaign.spatial_campaign import contest, output, play_seed, spatial, table
 
     names = ["five", "six"]
     scenarios = [load(path) for path in scenario] if scenario else [spatial(name) for name in names]
@@ -105,10 +105,10 @@ def flown(
     out: Out = RESULTS,
 ) -> None:
     """Repeat seeds of the spatial game whole, with agents and MAVLink, by `sim-bridge fly --fast`."""
+    from onboard.game.scenario import load
     from onboard.runtime.resources import configs
-    from onboard.runtime.scenario import load
-    from sim_bridge.campaign.flown_games import fly_game
-    from sim_bridge.campaign.games import output, play_seed
+    from sim_bridge.campaign.sil_crosscheck import fly_game
+    from sim_bridge.campaign.spatial_campaign import output, play_seed
 
     path = configs() / "scenarios" / "spatial" / "five.toml" if scenario is None else scenario
     one = load(path)

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from onboard.runtime.scenario import Scenario
-from sim_bridge.campaign.games import Played
+from onboard.game.scenario import Scenario
+from sim_bridge.campaign.spatial_campaign import Played
 
 EVADER, PURSUER, TARGET = "crimson", "0.45", "green"
 ARROW = 0.05  # length of an arrow's barbs, as a share of the picture

@@ -14,19 +14,28 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from onboard.core.tracking import Setting, Strategy, Waypoint, pseudo_target
-from onboard.core.tracking_choice import follow, fresh
-from onboard.core.vectors import NORTH, add, distance, sub, unit, yaw_of
-from onboard.runtime.route import Route
-from onboard.runtime.scenario import WindSpec
-from sim_bridge.campaign.flown import GUST_EVERY, Climate, blown, command_for, fly, gust_at, launched, wind_at
-from sim_bridge.compiled import register
-from sim_bridge.flight import KERNELS as FLIGHT
-from sim_bridge.flight.aircraft import named, within
-from sim_bridge.flight.plane import PlaneModel, PlaneState, start_state, trimmed
-from sim_bridge.wind import KERNELS as WIND
-from sim_bridge.wind.dryden import GustNoise
-from sim_bridge.wind.field import wind_vector
+from onboard.core.math.vectors import NORTH, add, distance, sub, unit, yaw_of
+from onboard.core.route.choice import follow, fresh
+from onboard.core.route.tracking import Setting, Strategy, Waypoint, pseudo_target
+from onboard.game.route_file import Route
+from onboard.game.scenario import WindSpec
+from sim_bridge.campaign.compiled import register
+from sim_bridge.campaign.plane_in_wind import (
+    GUST_EVERY,
+    Climate,
+    blown,
+    command_for,
+    fly,
+    gust_at,
+    launched,
+    wind_at,
+)
+from sim_bridge.vehicle.flight import KERNELS as FLIGHT
+from sim_bridge.vehicle.flight.aircraft import named, within
+from sim_bridge.vehicle.flight.plane import PlaneModel, PlaneState, start_state, trimmed
+from sim_bridge.vehicle.wind import KERNELS as WIND
+from sim_bridge.vehicle.wind.dryden import GustNoise
+from sim_bridge.vehicle.wind.field import wind_vector
 
 CONTROL_EVERY = 5  # samples between two decisions: 20 Hz
 OVERTIME = 90.0  # [s] after the last waypoint's instant at which a flight ends at the latest
@@ -40,10 +49,10 @@ WAYS = {
 KERNELS = (
     *FLIGHT,
     *WIND,
-    "onboard.core.apollonius",
-    "onboard.core.tracking",
-    "onboard.core.tracking_choice",
-    "sim_bridge.campaign.flown",
+    "onboard.core.geometry.apollonius",
+    "onboard.core.route.tracking",
+    "onboard.core.route.choice",
+    "sim_bridge.campaign.plane_in_wind",
 )
 
 Array = NDArray[np.float64]

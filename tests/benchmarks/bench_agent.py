@@ -28,15 +28,16 @@ from typing import NamedTuple
 import psutil  # type: ignore[import-untyped]
 import pytest
 
+from onboard.game.scenario import Flight, Parameters, Scenario, SensorSpec, VehicleSpec
+from onboard.game.staging import setup_of
 from onboard.runtime.bus_zenoh import ZenohBus, open_zenoh
 from onboard.runtime.clock import RealClock
-from onboard.runtime.scenario import Flight, Parameters, Scenario, SensorSpec, VehicleSpec
-from onboard.runtime.staging import setup_of
-from onboard.wire import swarm, topics
-from onboard.wire.mavlink import Sender
-from onboard.wire.signing import MemoryStore, Signing
-from onboard.wire.swarm import Master, Phase, PhaseChange, Role, State, Track
-from sim_bridge.world import World
+from onboard.wire.bus import messages as swarm
+from onboard.wire.bus import topics
+from onboard.wire.bus.messages import Master, Phase, PhaseChange, Role, State, Track
+from onboard.wire.mavlink.frames import Sender
+from onboard.wire.mavlink.signing import MemoryStore, Signing
+from sim_bridge.world.world import World
 from tests.support import measured
 from tests.support.buses import free_port
 from tests.support.stopwatch import Stopwatch

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from time import process_time
 
-from onboard.core.vectors import Vec
-from onboard.runtime.scenario import Kind
-from onboard.wire.mavlink import Sender, dialect
+from onboard.core.math.vectors import Vec
+from onboard.game.scenario import Kind
+from onboard.wire.mavlink.frames import Sender, dialect
 from tests.support.flown import Flown
 
 SECONDS = 10

@@ -19,17 +19,17 @@ import numpy as np
 import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from onboard.core.cones import blocked_cones
-from onboard.core.evasion import EvaderView, evader
-from onboard.core.game import FREE, Params, begin
-from onboard.core.knowledge import RuleId
-from onboard.core.pursuit import PursuerView, pursuer
-from onboard.core.states import Vehicle
-from onboard.core.vectors import NORTH, ZERO, Vec, scale, unit
-from sim_bridge.compiled import Starts, campaign, starts_of
+from onboard.core.game.advance import FREE, Params, begin
+from onboard.core.geometry.cones import blocked_cones
+from onboard.core.math.states import Vehicle
+from onboard.core.math.vectors import NORTH, ZERO, Vec, scale, unit
+from onboard.core.strategy.evasion import EvaderView, evader
+from onboard.core.strategy.knowledge import RuleId
+from onboard.core.strategy.pursuit import PursuerView, pursuer
+from sim_bridge.campaign.compiled import Starts, campaign, starts_of
 from tests.benchmarks import numpy_core, plain_kernel
+from tests.support.paths import RESULTS
 
-RESULTS = Path(__file__).parents[2] / "benchmarks" / "results"
 COMMAND = "make bench"
 TARGET = Vec(300.0, 0.0, 0.0)
 SIZES = tuple(int(n) for n in os.environ.get("APOLLONIUS_BENCH_PURSUERS", "2,5,10,20,50").split(","))

@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from onboard.core.cones import blocked_cones
-from onboard.core.evasion import EvaderView, evader
-from onboard.core.states import Limits, Vehicle
-from onboard.core.vectors import ZERO, Vec
-from sim_bridge.campaign.games import _list, compiled_play, draw, spatial
-from sim_bridge.flight.aircraft import named
-from sim_bridge.flight.plane import Command, Steer, start_state, step_plane, trimmed
+from onboard.core.geometry.cones import blocked_cones
+from onboard.core.math.states import Limits, Vehicle
+from onboard.core.math.vectors import ZERO, Vec
+from onboard.core.strategy.evasion import EvaderView, evader
+from sim_bridge.campaign.spatial_campaign import _list, compiled_play, draw, spatial
+from sim_bridge.vehicle.flight.aircraft import named
+from sim_bridge.vehicle.flight.plane import Command, Steer, start_state, step_plane, trimmed
 from tests.benchmarks import plain_aircraft
 
 

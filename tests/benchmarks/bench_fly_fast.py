@@ -16,10 +16,10 @@ from typing import NamedTuple
 
 import msgspec
 
-from onboard.pilot.predicting import Predicting
+from onboard.game.scenario import load
+from onboard.pilot.predictor_choice import Predicting
 from onboard.runtime.loop import run_virtual, virtual_clock
 from onboard.runtime.resources import configs
-from onboard.runtime.scenario import load
 from sim_bridge.rehearsal import Rehearsal
 from tests.support import measured
 

@@ -16,9 +16,9 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from gcs.recorder import Recorder
-from gcs.recorder_reader import Recording
-from gcs.watch import Watch
+from gcs.picture.watch import Watch
+from gcs.recording.reader import Recording
+from gcs.recording.recorder import Recorder
 from tests.support.chase import Item, chase
 from tests.support.recordings import kill_while_recording
 

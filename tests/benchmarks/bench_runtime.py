@@ -15,7 +15,7 @@ from onboard.runtime.links import open_udp
 from onboard.runtime.loop import run_virtual, virtual_clock
 from onboard.runtime.protocols import Sample
 from onboard.runtime.tasks import Pace, periodic
-from onboard.wire.topics import STATE, key
+from onboard.wire.bus.topics import STATE, key
 from tests.support.buses import free_port
 from tests.support.scripted import for_a_while
 from tests.support.waiting import until

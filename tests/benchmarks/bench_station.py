@@ -18,12 +18,12 @@ from typing import NamedTuple
 import pytest
 
 from gcs.console.app import REFRESH_HZ, Console
-from gcs.recorder_reader import Recording
-from gcs.recorder_shell import RECORDING
+from gcs.recording.reader import Recording
+from gcs.recording.shell import RECORDING
 from gcs.session import on_air
 from gcs.settings import BusSettings, RecordingSettings, Settings
 from onboard.runtime.bus_zenoh import open_zenoh
-from onboard.wire import topics
+from onboard.wire.bus import topics
 from tests.support.buses import free_port
 from tests.support.radio import GAME, decision, health, on_bus, state, track
 from tests.support.waiting import until

@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 from timeit import repeat
 
 import pymap3d  # type: ignore[import-untyped]
 
-from onboard.autopilot.observer import Observer
-from onboard.core.vectors import Vec
+from onboard.autopilot.telemetry_state import Observer
+from onboard.core.math.vectors import Vec
 from onboard.wire.geodesy import Frame
-from onboard.wire.mavlink import Framer, Sender, dialect
-from onboard.wire.signing import EPOCH_NS, MemoryStore, Signing
-from onboard.wire.telemetry import decode
-from onboard.wire.tlog import read_tlog
+from onboard.wire.mavlink.frames import Framer, Sender, dialect
+from onboard.wire.mavlink.signing import EPOCH_NS, MemoryStore, Signing
+from onboard.wire.mavlink.telemetry import decode
+from onboard.wire.mavlink.tlog import read_tlog
+from tests.support.paths import RECORDINGS
 
-RECORDING = Path(__file__).parents[1] / "recordings" / "arduplane-4.5.6-guided.tlog"
+RECORDING = RECORDINGS / "arduplane-4.5.6-guided.tlog"
 
 
 def cost(call: Callable[[], object], number: int) -> float:

@@ -8,9 +8,9 @@ from collections.abc import Hashable
 
 import pytest
 
+from onboard.game.scenario import Kind
 from onboard.runtime.links import open_udp
-from onboard.runtime.scenario import Kind
-from onboard.wire.mavlink import Framer, Sender, dialect
+from onboard.wire.mavlink.frames import Framer, Sender, dialect
 from tests.support.udp_fleet import HOST, fleet
 from tests.support.waiting import until
 

@@ -14,12 +14,13 @@ from pathlib import Path
 
 import pytest
 
-from onboard.runtime.scenario import Kind
-from onboard.wire.tlog import read_tlog
+from onboard.game.scenario import Kind
+from onboard.wire.mavlink.tlog import read_tlog
+from tests.support.paths import ROOT
 from tests.support.udp_fleet import HOST, fleet, free_port
 from tests.support.waiting import until
 
-PROGRAM = Path(__file__).parents[2] / ".venv-mavproxy" / "bin" / "mavproxy.py"
+PROGRAM = ROOT / ".venv-mavproxy" / "bin" / "mavproxy.py"
 KINDS = pytest.mark.parametrize("kind", list(Kind), ids=lambda kind: kind.value)
 DEADLINE_S = 30.0
 pytestmark = [

@@ -10,8 +10,8 @@ from typing import Any
 
 import pytest
 
-from onboard.core.vectors import Vec, norm, sub
-from onboard.runtime.scenario import Kind
+from onboard.core.math.vectors import Vec, norm, sub
+from onboard.game.scenario import Kind
 from tests.support import waiting
 from tests.support.udp_fleet import Fleet, fleet, free_port
 

@@ -9,9 +9,9 @@ import pytest
 
 from gcs.settings import Settings
 from onboard.agent.config import load as load_agent
-from onboard.runtime import config
+from onboard.config import strict as config
+from onboard.game.scenario import load as load_scenario
 from onboard.runtime.resources import configs
-from onboard.runtime.scenario import load as load_scenario
 
 FIELD = configs() / "field"
 

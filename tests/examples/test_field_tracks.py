@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import importlib.util
 import sys
-from pathlib import Path
 
 import pytest
 
-from onboard.core.vectors import Vec, distance
-from onboard.runtime.config import ConfigError
+from onboard.config.strict import ConfigError
+from onboard.core.math.vectors import Vec, distance
 from onboard.wire.geodesy import Frame
-from onboard.wire.mavlink import Framer, Sender, dialect
-from onboard.wire.telemetry import decode
+from onboard.wire.mavlink.frames import Framer, Sender, dialect
+from onboard.wire.mavlink.telemetry import decode
+from tests.support.paths import ROOT
 
-FILE = Path(__file__).resolve().parents[2] / "examples" / "field-tracks" / "feed_tracks.py"
+FILE = ROOT / "examples" / "field-tracks" / "feed_tracks.py"
 spec = importlib.util.spec_from_file_location("feed_tracks", FILE)
 assert spec is not None
 assert spec.loader is not None

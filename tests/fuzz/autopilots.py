@@ -12,8 +12,8 @@ from struct import pack
 
 import numpy as np
 
-from onboard.runtime.scenario import Kind
-from onboard.wire.mavlink import Framer, dialect
+from onboard.game.scenario import Kind
+from onboard.wire.mavlink.frames import Framer, dialect
 from tests.fuzz import campaign
 from tests.fuzz.frames import EXTRA, befallen
 from tests.support.flown import Flown

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from onboard.wire.mavlink import dialect
-from onboard.wire.telemetry import READ
+from onboard.wire.mavlink.frames import dialect
+from onboard.wire.mavlink.telemetry import READ
 
 KINDS = sorted(dialect.mavlink_map)
 DECODED = sorted(READ)

@@ -7,8 +7,8 @@ from math import isfinite
 
 import numpy as np
 
-from onboard.wire.mavlink import CAUSES, Framer, dialect
-from onboard.wire.telemetry import decode
+from onboard.wire.mavlink.frames import CAUSES, Framer, dialect
+from onboard.wire.mavlink.telemetry import decode
 from tests.fuzz import campaign
 from tests.fuzz.frames import befallen
 

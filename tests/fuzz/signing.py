@@ -11,8 +11,8 @@ from hashlib import sha256
 
 import numpy as np
 
-from onboard.wire.mavlink import Framer, Sender, dialect
-from onboard.wire.signing import EPOCH_NS, TICK_NS, MemoryStore, Signing, ticks
+from onboard.wire.mavlink.frames import Framer, Sender, dialect
+from onboard.wire.mavlink.signing import EPOCH_NS, TICK_NS, MemoryStore, Signing, ticks
 from tests.fuzz import campaign
 from tests.fuzz.frames import EXTRA, KINDS
 

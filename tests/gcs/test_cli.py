@@ -16,15 +16,15 @@ import msgspec
 import pytest
 
 from gcs import cli, settings
-from gcs.export import document
-from gcs.plain import Plain
-from gcs.rules import Thresholds
-from onboard.runtime import config
+from gcs.console.plain_lines import Plain
+from gcs.picture.alert_rules import Thresholds
+from gcs.picture.plain_data import document
+from onboard.config import strict as config
 from onboard.runtime.bus_zenoh import open_zenoh
 from onboard.runtime.clock import RealClock
 from onboard.runtime.resources import configs
-from onboard.wire import topics
-from onboard.wire.swarm import CommandKind, Phase
+from onboard.wire.bus import topics
+from onboard.wire.bus.messages import CommandKind, Phase
 from tests.support.crews import Crew
 from tests.support.radio import GAME, START_NS, Tower, on_bus, phase, setup
 

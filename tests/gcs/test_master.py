@@ -11,14 +11,15 @@ import pytest
 
 from gcs.master import FieldMaster, Fix, Positions
 from gcs.station import Station
-from onboard.core.vectors import Vec
+from onboard.core.math.vectors import Vec
+from onboard.game.master import Standing
+from onboard.game.scenario import Flight, Parameters, Scenario, VehicleSpec
 from onboard.runtime.bus_memory import MemoryBroker
 from onboard.runtime.loop import virtual_clock
-from onboard.runtime.master import Standing
 from onboard.runtime.protocols import Bus
-from onboard.runtime.scenario import Flight, Parameters, Scenario, VehicleSpec
-from onboard.wire import swarm, topics
-from onboard.wire.swarm import CommandKind, Phase
+from onboard.wire.bus import messages as swarm
+from onboard.wire.bus import topics
+from onboard.wire.bus.messages import CommandKind, Phase
 from tests.support.crews import Crew
 from tests.support.radio import GAME, NS, health, on_bus, state, track
 from tests.support.virtual import virtual

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 import onboard
-from gcs.picture import Presence
+from gcs.picture.values import Presence
 from gcs.station import Station
 from onboard.runtime.bus_zenoh import open_zenoh
 from onboard.runtime.clock import RealClock

@@ -8,15 +8,15 @@ from contextlib import asynccontextmanager
 import pytest
 
 from gcs.master import FieldMaster
-from gcs.picture import Presence
+from gcs.picture.values import Presence
 from gcs.station import Station
-from onboard.agent import acting
+from onboard.agent import game_player as acting
+from onboard.game.master import Standing
+from onboard.game.scenario import load
 from onboard.runtime.impairment import CLEAR, CUT
 from onboard.runtime.loop import virtual_clock
-from onboard.runtime.master import Standing
 from onboard.runtime.resources import configs
-from onboard.runtime.scenario import load
-from onboard.wire.swarm import CommandKind, Phase
+from onboard.wire.bus.messages import CommandKind, Phase
 from sim_bridge.rehearsal import Rehearsal
 from tests.support.aborts import CHASE, WITHIN_S, trials
 from tests.support.virtual import virtual

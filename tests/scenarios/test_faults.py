@@ -8,11 +8,11 @@ import pytest
 
 from onboard.autopilot.base import Stage
 from onboard.runtime.impairment import CLEAR, CUT, Impairment
-from onboard.wire import swarm
-from onboard.wire.mavlink import Sender, dialect
-from onboard.wire.swarm import Phase
-from onboard.wire.tlog import read_tlog
-from onboard.wire.topics import PHASE, SETUP, STATE, Delivery, key
+from onboard.wire.bus import messages as swarm
+from onboard.wire.bus.messages import Phase
+from onboard.wire.bus.topics import PHASE, SETUP, STATE, Delivery, key
+from onboard.wire.mavlink.frames import Sender, dialect
+from onboard.wire.mavlink.tlog import read_tlog
 from tests.support.duels import duel
 from tests.support.flights import (
     EVADER,

@@ -8,10 +8,10 @@ import pytest
 
 from onboard.agent.agent import Agent
 from onboard.agent.config import AgentConfig
-from onboard.core.vectors import Vec
+from onboard.core.math.vectors import Vec
 from onboard.runtime.links import memory_pair
-from onboard.wire.swarm import Phase, Role
-from sim_bridge.bridge import Bridge
+from onboard.wire.bus.messages import Phase, Role
+from sim_bridge.world.bridge import Bridge
 from tests.support.duels import STORY, at_phase, duel, phases
 from tests.support.flights import EVADER, PURSUER, chase, flies, game_of, mode, passes, place, under_way
 from tests.support.virtual import virtual

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from onboard.runtime.scenario import ImpairmentSpec, Kind, SensorSpec
-from onboard.wire import swarm
-from onboard.wire.swarm import Phase
-from onboard.wire.tlog import read_tlog
-from onboard.wire.topics import EVADER_BRIEF, OUTCOME, key, topic_of, vehicle_of
+from onboard.game.scenario import ImpairmentSpec, Kind, SensorSpec
+from onboard.wire.bus import messages as swarm
+from onboard.wire.bus.messages import Phase
+from onboard.wire.bus.topics import EVADER_BRIEF, OUTCOME, key, topic_of, vehicle_of
+from onboard.wire.mavlink.tlog import read_tlog
 from tests.support.duels import GUIDED, HOLD, STORY, Heard, duel, phases
 from tests.support.flights import EVADER, MATE, PURSUER, game_of, mode, passes, place, speed
 from tests.support.virtual import virtual

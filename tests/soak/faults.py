@@ -6,10 +6,10 @@ from collections.abc import Callable
 
 import numpy as np
 
+from onboard.game.scenario import Kind
 from onboard.runtime.impairment import CLEAR, CUT, Impairment
-from onboard.runtime.scenario import Kind
-from sim_bridge.autopilot.health import Fault
 from sim_bridge.rehearsal import Rehearsal
+from sim_bridge.vehicle.autopilot.health import Fault
 
 Rng = np.random.Generator
 Undo = Callable[[], None]

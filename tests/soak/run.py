@@ -24,12 +24,12 @@ for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 import numpy as np  # noqa: E402  (threads are set before NumPy is imported)
 import psutil  # noqa: E402
 
-from onboard.pilot.predicting import Predicting  # noqa: E402
+from onboard.game.scenario import Flight, ImpairmentSpec, Kind, Parameters, Scenario, VehicleSpec  # noqa: E402
+from onboard.pilot.predictor_choice import Predicting  # noqa: E402
 from onboard.runtime.loop import run_virtual, virtual_clock  # noqa: E402
-from onboard.runtime.scenario import Flight, ImpairmentSpec, Kind, Parameters, Scenario, VehicleSpec  # noqa: E402
-from onboard.wire import swarm  # noqa: E402
-from onboard.wire.swarm import Command, CommandKind, Phase  # noqa: E402
-from onboard.wire.topics import COMMAND, key  # noqa: E402
+from onboard.wire.bus import messages as swarm  # noqa: E402
+from onboard.wire.bus.messages import Command, CommandKind, Phase  # noqa: E402
+from onboard.wire.bus.topics import COMMAND, key  # noqa: E402
 from sim_bridge.rehearsal import Rehearsal  # noqa: E402
 from tests.soak.faults import NAMES, OF_ALL, OF_ONE, Rng, Undo  # noqa: E402
 from tests.support.flights import flies  # noqa: E402

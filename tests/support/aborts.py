@@ -8,11 +8,11 @@ from typing import NamedTuple
 import numpy as np
 
 from gcs.station import Station
-from onboard.agent import acting
+from onboard.agent import game_player as acting
+from onboard.game.scenario import Flight, ImpairmentSpec, Parameters, Scenario, VehicleSpec
 from onboard.runtime.impairment import CLEAR, Impairment
 from onboard.runtime.loop import run_virtual, virtual_clock
-from onboard.runtime.scenario import Flight, ImpairmentSpec, Parameters, Scenario, VehicleSpec
-from onboard.wire.swarm import CommandKind, Phase
+from onboard.wire.bus.messages import CommandKind, Phase
 from sim_bridge.rehearsal import Rehearsal
 
 LOSS = 0.3

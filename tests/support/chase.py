@@ -10,9 +10,10 @@ from collections.abc import Iterator
 from math import asin, atan2, cos, sin, sqrt
 from typing import NamedTuple
 
-from gcs import journal
-from onboard.wire import swarm, topics
-from onboard.wire.swarm import CommandKind, Phase, Role, Severity, Triple
+from gcs.picture import journal
+from onboard.wire.bus import messages as swarm
+from onboard.wire.bus import topics
+from onboard.wire.bus.messages import CommandKind, Phase, Role, Severity, Triple
 
 NS = 1_000_000_000
 EPOCH_NS = 1_760_000_000 * NS

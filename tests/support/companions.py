@@ -6,8 +6,8 @@ from collections import Counter
 from collections.abc import Hashable
 
 from onboard.runtime.protocols import Link
-from onboard.wire.commands import Target
-from onboard.wire.mavlink import Framer, MavMessage, Packet, Sender
+from onboard.wire.mavlink.commands import Target
+from onboard.wire.mavlink.frames import Framer, MavMessage, Packet, Sender
 
 COMPONENT = 191
 

@@ -13,12 +13,12 @@ from pathlib import Path
 
 from gcs.console.app import Console
 from gcs.console.source import Key
-from gcs.picture import Picture
+from gcs.picture.values import Picture
 from gcs.station import Station
+from onboard.game.scenario import load
 from onboard.runtime.loop import run_virtual, virtual_clock
 from onboard.runtime.resources import configs
-from onboard.runtime.scenario import load
-from onboard.wire.swarm import CommandKind, Phase
+from onboard.wire.bus.messages import CommandKind, Phase
 from sim_bridge.rehearsal import Rehearsal
 
 DEMO = configs() / "scenarios" / "flight" / "demo.toml"

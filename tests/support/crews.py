@@ -6,8 +6,9 @@ from collections import Counter
 
 from onboard.runtime.clock import VirtualClock
 from onboard.runtime.protocols import Bus
-from onboard.wire import swarm, topics
-from onboard.wire.swarm import Command, CommandReply
+from onboard.wire.bus import messages as swarm
+from onboard.wire.bus import topics
+from onboard.wire.bus.messages import Command, CommandReply
 from tests.support.radio import GAME, NS, health, on_bus, state
 
 MODES = {

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from onboard.pilot.predicting import Predicting
+from onboard.game.scenario import Flight, Kind, Parameters, Scenario, VehicleSpec
+from onboard.pilot.predictor_choice import Predicting
 from onboard.runtime.protocols import Sample
-from onboard.runtime.scenario import Flight, Kind, Parameters, Scenario, VehicleSpec
-from onboard.wire.swarm import Phase
-from onboard.wire.topics import everything
+from onboard.wire.bus.messages import Phase
+from onboard.wire.bus.topics import everything
 from sim_bridge.rehearsal import Rehearsal
 
 HOLD = {Kind.PX4: "HOLD", Kind.ARDUCOPTER: "LOITER", Kind.ARDUPLANE: "LOITER"}

@@ -7,9 +7,8 @@ from typing import Any
 
 from onboard.agent.agent import Agent
 from onboard.autopilot.base import Stage
-from onboard.core.vectors import Vec, norm
-from onboard.runtime.loop import virtual_clock
-from onboard.runtime.scenario import (
+from onboard.core.math.vectors import Vec, norm
+from onboard.game.scenario import (
     FenceSpec,
     Flight,
     ImpairmentSpec,
@@ -18,11 +17,12 @@ from onboard.runtime.scenario import (
     Scenario,
     VehicleSpec,
 )
-from onboard.wire import swarm
-from onboard.wire.swarm import Command, CommandKind, CommandReply, Phase
-from onboard.wire.topics import COMMAND, key
-from sim_bridge.autopilot.machine import Autopilot
+from onboard.runtime.loop import virtual_clock
+from onboard.wire.bus import messages as swarm
+from onboard.wire.bus.messages import Command, CommandKind, CommandReply, Phase
+from onboard.wire.bus.topics import COMMAND, key
 from sim_bridge.rehearsal import Rehearsal
+from sim_bridge.vehicle.autopilot.autopilot import Autopilot
 
 EVADER, PURSUER, MATE = 1, 2, 3
 PLANES = (Kind.ARDUPLANE,)

@@ -6,14 +6,14 @@ from collections.abc import Callable
 from math import cos, radians, sin
 from typing import Any
 
-from onboard.core.vectors import ZERO, Vec
-from onboard.runtime.scenario import Kind, VehicleSpec
+from onboard.core.math.vectors import ZERO, Vec
+from onboard.game.scenario import Kind, VehicleSpec
 from onboard.wire.geodesy import Frame
-from onboard.wire.mavlink import Framer, Sender, dialect
-from sim_bridge.autopilot.machine import Autopilot
-from sim_bridge.autopilot.make import autopilot_for
-from sim_bridge.flight.kinematic import kinematic, start_motion
-from sim_bridge.motion import Air, Demand
+from onboard.wire.mavlink.frames import Framer, Sender, dialect
+from sim_bridge.vehicle.autopilot.autopilot import Autopilot
+from sim_bridge.vehicle.autopilot.make import autopilot_for
+from sim_bridge.vehicle.flight.kinematic import kinematic, start_motion
+from sim_bridge.vehicle.motion import Air, Demand
 
 SECOND = 1_000_000_000
 EPOCH_NS = 1_700_000_000 * SECOND

@@ -11,8 +11,8 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-RESULTS = Path(__file__).parents[2] / "benchmarks" / "results"
-ROOT = Path(__file__).parents[2]
+from tests.support.paths import RESULTS, ROOT
+
 LIBRARIES = ("numpy", "pymavlink", "msgspec", "mcap", "zenoh", "asyncio")
 
 

@@ -13,11 +13,11 @@ from math import atan2, degrees, hypot
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from onboard.runtime.scenario import Kind
-from onboard.wire.tlog import read_tlog
+from onboard.game.scenario import Kind
+from onboard.wire.mavlink.tlog import read_tlog
 from tests.support.flown import SECOND, Flown
+from tests.support.paths import RECORDINGS
 
-RECORDINGS = Path(__file__).parents[1] / "recordings"
 FILES = {Kind.ARDUCOPTER: "arducopter-4.5.6-guided.tlog", Kind.ARDUPLANE: "arduplane-4.5.6-guided.tlog"}
 # When the recorded ones were ready [s since boot]: the position estimate and the pre-arm bit.
 READY = {Kind.ARDUCOPTER: (41.4, 23.5), Kind.ARDUPLANE: (20.5, 21.0)}

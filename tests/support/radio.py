@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import msgspec
 
-from gcs import journal
-from gcs.picture import Picture, VehicleView
-from gcs.rules import Thresholds
-from gcs.watch import Watch
-from onboard.wire import swarm, topics
-from onboard.wire.swarm import Codec, Message, Phase, Role
+from gcs.picture import journal
+from gcs.picture.alert_rules import Thresholds
+from gcs.picture.values import Picture, VehicleView
+from gcs.picture.watch import Watch
+from onboard.wire.bus import messages as swarm
+from onboard.wire.bus import topics
+from onboard.wire.bus.messages import Codec, Message, Phase, Role
 
 NS = 1_000_000_000
 START_NS = 1_700_000_000 * NS

@@ -7,7 +7,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
-from gcs.recorder import Recorder
+from gcs.recording.recorder import Recorder
 from tests.support.chase import chase
 
 

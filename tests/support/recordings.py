@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 from mcap.reader import make_reader
 
-from gcs.recorder import NS
-from gcs.recorder_reader import Recording
-from onboard.runtime.config import ConfigError
+from gcs.recording.reader import Recording
+from gcs.recording.recorder import NS
+from onboard.config.strict import ConfigError
 from tests.support.chase import EPOCH_NS
 
 CHILD = Path(__file__).with_name("recording_child.py")

@@ -5,12 +5,13 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from gcs.recorder import Recorder
-from gcs.recorder_tlog import TlogRecorder
-from onboard.core.vectors import Vec
-from onboard.wire import swarm, topics
+from gcs.recording.recorder import Recorder
+from gcs.recording.tlog import TlogRecorder
+from onboard.core.math.vectors import Vec
+from onboard.wire.bus import messages as swarm
+from onboard.wire.bus import topics
 from onboard.wire.geodesy import Frame
-from onboard.wire.mavlink import Sender, dialect
+from onboard.wire.mavlink.frames import Sender, dialect
 from tests.support.chase import EPOCH_NS, Item, chase, setup
 
 NS = 1_000_000_000

@@ -7,9 +7,9 @@ from collections import Counter
 
 from onboard.runtime.protocols import Bus, Clock, Sample
 from onboard.runtime.tasks import Pace, periodic
-from onboard.wire import swarm
-from onboard.wire.swarm import Health, Phase, PhaseChange, Role
-from onboard.wire.topics import HEALTH, PHASE, key
+from onboard.wire.bus import messages as swarm
+from onboard.wire.bus.messages import Health, Phase, PhaseChange, Role
+from onboard.wire.bus.topics import HEALTH, PHASE, key
 
 
 class ScriptedAgent:

@@ -6,8 +6,8 @@ from math import cos, pi, sin, sqrt
 
 from hypothesis import strategies as st
 
-from onboard.core.states import Vehicle
-from onboard.core.vectors import ZERO, Vec, norm, scale
+from onboard.core.math.states import Vehicle
+from onboard.core.math.vectors import ZERO, Vec, norm, scale
 
 coordinate = st.floats(-500.0, 500.0)
 angle = st.floats(-pi, pi)

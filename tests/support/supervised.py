@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import atan2, cos, pi, sin
 
-from onboard.core.safety.machine import Verdict, Watch, supervise
+from onboard.core.math.vectors import ZERO, Vec, add, norm, sub
 from onboard.core.safety.policy import Envelope, Fence, Policy, Seen
-from onboard.core.vectors import ZERO, Vec, add, norm, sub
+from onboard.core.safety.supervisor import Verdict, Watch, supervise
 
 DT = 0.05
 SQUARE = Fence(((-100.0, -100.0), (100.0, -100.0), (100.0, 100.0), (-100.0, 100.0)), 10.0, 60.0)

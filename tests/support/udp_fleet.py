@@ -7,14 +7,14 @@ import socket
 from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager
 
-from onboard.core.vectors import Vec
+from onboard.core.math.vectors import Vec
+from onboard.game.scenario import Flight, Kind, Scenario, VehicleSpec
 from onboard.runtime.clock import RealClock
 from onboard.runtime.links import open_udp
-from onboard.runtime.scenario import Flight, Kind, Scenario, VehicleSpec
-from sim_bridge.autopilot.machine import Autopilot
-from sim_bridge.motion import Motion
-from sim_bridge.radio import Radio
-from sim_bridge.world import World
+from sim_bridge.vehicle.autopilot.autopilot import Autopilot
+from sim_bridge.vehicle.motion import Motion
+from sim_bridge.world.radio import Radio
+from sim_bridge.world.world import World
 
 HOST = "127.0.0.1"
 TICK_S = 0.01

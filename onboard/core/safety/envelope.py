@@ -5,8 +5,8 @@ from __future__ import annotations
 from math import atan2, cos, isfinite, pi, sin, sqrt
 from typing import NamedTuple
 
+from onboard.core.math.vectors import TINY, Vec, clamp
 from onboard.core.safety.policy import Cause, Envelope
-from onboard.core.vectors import TINY, Vec, clamp
 
 TOLERANCE = 1e-6  # a clip below this relative size is rounding, not a clip
 

@@ -6,7 +6,7 @@ from enum import IntEnum
 from math import pi
 from typing import NamedTuple
 
-from onboard.core.vectors import ZERO, Vec
+from onboard.core.math.vectors import ZERO, Vec
 
 
 class Action(IntEnum):

@@ -8,8 +8,8 @@ from math import floor
 
 import numpy as np
 
-from onboard.pilot.filter import TrackFilter
 from onboard.pilot.predictor.activation import Array
+from onboard.pilot.track_filter import TrackFilter
 
 _Row = tuple[float, float, float, float, float, float]
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from onboard.core.vectors import Vec, along, norm
+from onboard.core.math.vectors import Vec, along, norm
 from onboard.pilot.predictor.activation import Array
 from onboard.pilot.predictor.model import Forecast
 from onboard.pilot.predictor.prediction import Prediction, PredictorKind

@@ -5,7 +5,7 @@ from __future__ import annotations
 from enum import IntEnum
 from typing import NamedTuple
 
-from onboard.core.vectors import ZERO, Vec
+from onboard.core.math.vectors import ZERO, Vec
 
 
 class PredictorKind(IntEnum):

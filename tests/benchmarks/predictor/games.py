@@ -15,9 +15,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from onboard.core.game import FREE, Params, begin, evader_view, moved, pursuer_view, seats
-from onboard.core.states import Vehicle
-from onboard.core.vectors import NORTH, ZERO, Vec, along, angle_between, distance, dot, scale, unit
+from onboard.core.game.advance import FREE, Params, begin, evader_view, moved, pursuer_view, seats
+from onboard.core.math.states import Vehicle
+from onboard.core.math.vectors import NORTH, ZERO, Vec, along, angle_between, distance, dot, scale, unit
 from onboard.pilot.predictor import TrackPredictor, Trainer
 from onboard.runtime.plugins import evader_strategy, pursuer_strategy
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from onboard.core.vectors import Vec, distance
+from onboard.core.math.vectors import Vec, distance
 from onboard.pilot.predictor import TrackPredictor, Trainer
 from onboard.pilot.predictor.activation import SParabola
 from tests.benchmarks.predictor.families import FAMILIES, Array, Conditions, trajectory

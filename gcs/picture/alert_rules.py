@@ -1,0 +1,296 @@
+"""What is worth an alert: rules over the picture, each with what to do. Pure.
+
+A rule sees the picture and `in_force(name)`: once an alert is raised, its threshold for clearing is wider
+(hysteresis), so that a value that hovers at the limit does not flap.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from math import isinf
+
+import msgspec
+
+from gcs.picture.alerts import Finding
+from gcs.picture.values import Picture, Presence, VehicleView
+from onboard.core.math.vectors import Vec, distance
+from onboard.core.safety import fence as fences
+from onboard.core.safety.policy import Action, Cause, Policy
+from onboard.core.safety.words import ACTIONS, CAUSES
+from onboard.wire.bus.messages import SCHEMA, Fence, Phase, Role, Severity
+
+InForce = Callable[[str], bool]
+SUPERVISOR = Policy()  # what both judge, they judge by the same thresholds and functions
+GUIDED_MODES = frozenset({"GUIDED", "OFFBOARD"})
+ACTIVE = frozenset({Phase.STAGING, Phase.READY, Phase.RUNNING})
+ERROR, WARNING = Severity.ERROR, Severity.WARNING
+NO_ALERT = frozenset({"", ACTIONS[Action.PASS], ACTIONS[Action.CLIP]})  # of the supervisor's actions
+BAD_S = 5.0  # a bad message is an alert for so long
+
+
+class Thresholds(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+    """When alerts are raised; each clears at the value beside it or at the one the rule states."""
+
+    state_stale_s: float = SUPERVISOR.telemetry_age  # own state older than this
+    telemetry_stale_s: float = SUPERVISOR.telemetry_age  # the autopilot's, as the agent reports it
+    heartbeat_stale_s: float = SUPERVISOR.heartbeat_age
+    track_stale_s: float = 1.0
+    battery_low: float = 0.30  # share left: go home
+    battery_critical: float = SUPERVISOR.battery  # the supervisor acts
+    battery_margin: float = 0.03  # above the limit, to clear
+    gps_fix: int = SUPERVISOR.gps_fix
+    link_low: float = 0.70  # share of expected telemetry that arrives
+    link_margin: float = 0.10
+    clock_offset_s: float = 0.05
+    clock_unready_s: float = 0.2  # an agent is not ready beyond this
+    fence_near_m: float = SUPERVISOR.fence_margin
+    fence_clear_m: float = 2.0  # beyond the limit, to clear
+    separation_clear: float = 1.15  # clears at this multiple of the separation
+    confirm_s: float = 2.0  # a command not confirmed by then
+
+
+def rules(picture: Picture, in_force: InForce, limits: Thresholds, version: str) -> Iterator[Finding]:
+    """Everything that is wrong at this instant. `version` is the station's own."""
+    yield from _station(picture)
+    yield from _game(picture, limits)
+    yield from _commands(picture, limits)
+    yield from _separation(picture, in_force, limits)
+    for vehicle in picture.vehicles:
+        if vehicle.presence is Presence.EXPECTED:
+            yield from _expected(picture, vehicle)
+        elif vehicle.presence is Presence.LOST:
+            yield _lost(vehicle)
+        else:
+            yield from _link(vehicle, in_force, limits)
+            yield from _autopilot(vehicle, in_force, limits)
+            yield from _supervisor(vehicle)
+            yield from _fence(picture, vehicle, in_force, limits)
+            yield from _identity(picture, vehicle, version)
+
+
+def _station(picture: Picture) -> Iterator[Finding]:
+    if picture.bad_age_s < BAD_S:
+        said = ", ".join(f"{n} {cause.replace('_', ' ')}" for cause, n in picture.dropped)
+        yield Finding(
+            "dropped", 0, WARNING, f"messages dropped here: {said}",
+            "something on the bus speaks badly: see who in the detail of each vehicle",
+        )  # fmt: skip
+
+
+def _game(picture: Picture, limits: Thresholds) -> Iterator[Finding]:
+    game = picture.game
+    if game.two_masters:
+        yield Finding(
+            "two_masters", 0, ERROR, "two masters claim this game",
+            "stop one of them: two programs run games under one name",
+        )  # fmt: skip
+    if game.phase in ACTIVE and game.master_age_s > (game.master.lease_s if game.master else 2.0):
+        yield Finding(
+            "no_master", 0, WARNING, f"the game's master is silent{_since(game.master_age_s)}",
+            "nobody referees: restart the master or abort",
+        )  # fmt: skip
+    if game.phase is Phase.RUNNING and game.setup is not None:
+        heard = {track.id: track.age_s for track in picture.tracks}
+        for member in game.setup.roster:
+            age = heard.get(member.id, float("inf"))
+            if member.role is Role.EVADER and age > limits.track_stale_s:
+                yield Finding(
+                    "track_stale", member.id, WARNING, f"no track of the evader{_since(age)}",
+                    "check the sensor: pursuers fly on prediction, then hold", 0.5,
+                )  # fmt: skip
+
+
+def _since(age_s: float) -> str:
+    return "" if isinf(age_s) else f" for {age_s:.0f} s"
+
+
+def _commands(picture: Picture, limits: Thresholds) -> Iterator[Finding]:
+    for command in picture.commands:
+        late = [leg.id for leg in command.legs if leg.open and leg.took_s > limits.confirm_s]
+        if late:
+            names = ", ".join(map(str, late))
+            yield Finding(
+                f"unconfirmed_{command.kind}", 0, ERROR if command.kind == "abort" else WARNING,
+                f"{command.kind} not confirmed by {names}",
+                "still being repeated; take over with the pilot's transmitter if it is urgent",
+                detail=command.command_id,
+            )  # fmt: skip
+        refused = [leg for leg in command.legs if leg.state == "refused"]
+        if refused and picture.now_ns - command.issued_ns < 10_000_000_000:
+            reasons = "; ".join(f"{leg.id}: {leg.reason or 'no reason given'}" for leg in refused)
+            yield Finding(
+                f"refused_{command.kind}", 0, WARNING, f"{command.kind} refused by {reasons}",
+                "mend the reason and command again", detail=command.command_id,
+            )  # fmt: skip
+
+
+def _expected(picture: Picture, vehicle: VehicleView) -> Iterator[Finding]:
+    if picture.game.phase in ACTIVE:
+        yield Finding(
+            "missing", vehicle.id, WARNING, f"vehicle {vehicle.id} is in the game and was never heard",
+            "start its agent, or check that it joined this bus and this game", 3.0,
+        )  # fmt: skip
+
+
+def _lost(vehicle: VehicleView) -> Finding:
+    return Finding(
+        "lost", vehicle.id, ERROR, f"vehicle {vehicle.id} is lost: silent from all sources",
+        "look for it, keep others away; its autopilot's failsafe acts on its own",
+    )  # fmt: skip
+
+
+def _link(vehicle: VehicleView, in_force: InForce, limits: Thresholds) -> Iterator[Finding]:
+    name = f"vehicle {vehicle.id}"
+    spoke_since = vehicle.state_age_s - vehicle.age_s > 0.2  # else it is silent, which is another matter
+    if vehicle.state is not None and vehicle.state_age_s > limits.state_stale_s and spoke_since:
+        yield Finding(
+            "stale", vehicle.id, WARNING, f"{name} lives, but its position is old",
+            "its autopilot or its link to the agent is silent: check the wiring", 0.2,
+        )  # fmt: skip
+    health = vehicle.health
+    if health is None:
+        return
+    limit = limits.link_low + (limits.link_margin if in_force(f"link:{vehicle.id}") else 0.0)
+    if health.autopilot and health.link_quality < limit:
+        yield Finding(
+            "link", vehicle.id, WARNING, f"{name} gets {health.link_quality:.0%} of its telemetry",
+            "bring it closer, or check antennas and interference", 1.0,
+        )  # fmt: skip
+    silent = health.telemetry_age_s > limits.telemetry_stale_s
+    if health.autopilot and (silent or health.heartbeat_age_s > limits.heartbeat_stale_s):
+        yield Finding(
+            "autopilot_silent", vehicle.id, ERROR, f"{name}'s autopilot is silent",
+            "check the link between agent and autopilot; the autopilot's failsafe acts",
+        )  # fmt: skip
+    limit = limits.clock_offset_s * (0.7 if in_force(f"clock:{vehicle.id}") else 1.0)
+    if abs(health.clock_offset_s) > limit:
+        unready = abs(health.clock_offset_s) > limits.clock_unready_s
+        yield Finding(
+            "clock", vehicle.id, ERROR if unready else WARNING,
+            f"{name}'s clock is off by {health.clock_offset_s:+.2f} s",
+            "synchronise its clock (chrony, NTP): t₀ and tracks depend on it", 1.0,
+        )  # fmt: skip
+    if vehicle.missed_events > 0:
+        yield Finding(
+            "missed_events", vehicle.id, WARNING, f"{vehicle.missed_events} events of {name} did not arrive",
+            "the log here has gaps: the vehicle's own log has them", 2.0,
+        )  # fmt: skip
+
+
+def _autopilot(vehicle: VehicleView, in_force: InForce, limits: Thresholds) -> Iterator[Finding]:
+    name = f"vehicle {vehicle.id}"
+    health = vehicle.health
+    if health is None:
+        return
+    if health.battery >= 0.0:
+        margin = limits.battery_margin if in_force(f"battery:{vehicle.id}") else 0.0
+        if health.battery < limits.battery_low + margin:
+            critical = health.battery < limits.battery_critical
+            yield Finding(
+                "battery", vehicle.id, ERROR if critical else WARNING,
+                f"{name}'s battery is at {health.battery:.0%}",
+                "land it now" if critical else "bring it home soon: return", 1.0,
+            )  # fmt: skip
+    if health.stage == "handed_over":
+        yield Finding(
+            "handed_over", vehicle.id, WARNING, f"{name} is in its pilot's hands",
+            "the strategy is out of it; `resume` when the pilot gives it back",
+        )  # fmt: skip
+    elif health.stage == "acting" and vehicle.mode not in GUIDED_MODES:
+        yield Finding(
+            "mode", vehicle.id, ERROR, f"{name} acts, but its autopilot is in {vehicle.mode or 'no mode'}",
+            "it does not follow: enter GUIDED / OFFBOARD, or hold", 1.0,
+        )  # fmt: skip
+    if health.autopilot and (not health.ekf_ok or health.gps_fix < limits.gps_fix):
+        yield Finding(
+            "estimate", vehicle.id, ERROR, f"{name}'s autopilot does not trust its position",
+            "do not start; in flight: hold and let the pilot take over", 1.0,
+        )  # fmt: skip
+
+
+def _supervisor(vehicle: VehicleView) -> Iterator[Finding]:
+    spoken = vehicle.decision.supervisor if vehicle.decision and vehicle.decision_age_s < 1.0 else ""
+    why = vehicle.decision.reason if vehicle.decision else ""
+    if spoken not in NO_ALERT and why != CAUSES[Cause.ORDER]:
+        reason = f": {why}" if why else ""
+        yield Finding(
+            "supervisor", vehicle.id, WARNING, f"vehicle {vehicle.id}'s supervisor orders {spoken}{reason}",
+            "it keeps the vehicle safe; mend the cause, then `resume`", 0.2,
+        )  # fmt: skip
+
+
+def _identity(picture: Picture, vehicle: VehicleView, version: str) -> Iterator[Finding]:
+    name = f"vehicle {vehicle.id}"
+    if vehicle.double_id:
+        yield Finding(
+            "double_id", vehicle.id, ERROR, f"two agents speak as vehicle {vehicle.id}",
+            "stop one of them at once and give it an id of its own",
+        )  # fmt: skip
+    if vehicle.schema_age_s < 5.0:
+        yield Finding(
+            "schema", vehicle.id, ERROR, f"{name} speaks another schema than {SCHEMA}: not understood",
+            "install the same version on every vehicle and here",
+        )  # fmt: skip
+    health = vehicle.health
+    if health is not None and health.version and version and health.version != version:
+        yield Finding(
+            "version", vehicle.id, WARNING, f"{name} runs version {health.version}, this station {version}",
+            "install the same version everywhere before the game", 1.0,
+        )  # fmt: skip
+    roster = picture.game.setup.roster if picture.game.setup and picture.game.phase in ACTIVE else ()
+    if roster and vehicle.id not in {member.id for member in roster}:
+        yield Finding(
+            "stranger", vehicle.id, WARNING, f"{name} is here and not in this game",
+            "keep it away, or start the game with it in the scenario", 2.0,
+        )  # fmt: skip
+
+
+def _fence(
+    picture: Picture, vehicle: VehicleView, in_force: InForce, limits: Thresholds
+) -> Iterator[Finding]:
+    fence = picture.game.setup.fence if picture.game.setup else None
+    if fence is None or vehicle.position is None:
+        return
+    room = room_inside(Vec(*vehicle.position), fence)
+    name = f"vehicle {vehicle.id}"
+    if room < (0.2 * limits.fence_clear_m if in_force(f"fence_crossed:{vehicle.id}") else 0.0):
+        yield Finding(
+            "fence_crossed", vehicle.id, ERROR, f"{name} is outside the geofence by {max(0.0, -room):.0f} m",
+            "hold or return it; watch that it turns back",
+        )  # fmt: skip
+        return
+    extra = limits.fence_clear_m if in_force(f"fence_near:{vehicle.id}") else 0.0
+    if room < limits.fence_near_m + extra:
+        yield Finding(
+            "fence_near", vehicle.id, WARNING, f"{name} is {max(0.0, room):.0f} m from the geofence",
+            "its supervisor turns it back; hold it if it goes on",
+        )  # fmt: skip
+
+
+def room_inside(position: Vec, fence: Fence) -> float:
+    """Distance to the nearest wall, floor or ceiling of a fence [m]; negative outside."""
+    up = -position.z
+    flat = fences.depth(position.x, position.y, fence.polygon) if len(fence.polygon) >= 3 else float("inf")
+    return min(flat, up - fence.altitude_min, fence.altitude_max - up)
+
+
+def _separation(picture: Picture, in_force: InForce, limits: Thresholds) -> Iterator[Finding]:
+    keep = picture.game.setup.separation if picture.game.setup else 0.0
+    if keep <= 0.0:
+        return
+    wide = keep * limits.separation_clear
+    flying = sorted(
+        (v.position, v.id) for v in picture.vehicles
+        if v.position is not None and v.role is Role.PURSUER and v.presence is Presence.PRESENT
+    )  # fmt: skip
+    for index, (place, own) in enumerate(flying):
+        for other_place, other in flying[index + 1 :]:
+            if other_place[0] - place[0] > wide:
+                break
+            low, high = min(own, other), max(own, other)
+            d = distance(Vec(*place), Vec(*other_place))
+            if d < (wide if in_force(f"separation:{low}:{high}") else keep):
+                yield Finding(
+                    "separation", low, ERROR, f"vehicles {low} and {high} are {d:.1f} m apart",
+                    f"they must keep {keep:g} m: hold one of them", detail=str(high),
+                )  # fmt: skip

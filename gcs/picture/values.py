@@ -1,0 +1,234 @@
+"""The values of the fleet picture: frozen, complete, taken at one instant.
+
+Ages are seconds at `Picture.now_ns`; an age of something never heard is infinite. Instants are
+integer nanoseconds. Positions and velocities as on the bus: game frame (north, east, down), SI.
+"""
+
+from __future__ import annotations
+
+from enum import Enum
+from math import sqrt
+
+import msgspec
+
+from onboard.wire.bus.messages import (
+    DecisionReport,
+    Health,
+    Master,
+    Outcome,
+    Phase,
+    Role,
+    Setup,
+    Severity,
+    State,
+    Triple,
+)
+from onboard.wire.bus.messages import Track as TrackMessage
+
+INF = float("inf")
+
+
+class Value(msgspec.Struct, frozen=True, kw_only=True):
+    """Base of the picture's values."""
+
+
+class Presence(Enum):
+    """Whether a vehicle is there."""
+
+    EXPECTED = "expected"  # in the roster, not heard yet
+    PRESENT = "present"  # heard within the last second
+    LOST = "lost"  # silent from all sources for longer
+
+
+class VehicleView(Value, frozen=True):
+    """One vehicle: its last messages and how old they are."""
+
+    id: int
+    role: Role | None
+    presence: Presence
+    age_s: float  # since any message of its agent
+    token: bool  # its liveliness token is there
+    first_ns: int  # when it was first heard, 0 = never
+    state: State | None = None
+    state_age_s: float = INF
+    decision: DecisionReport | None = None
+    decision_age_s: float = INF
+    health: Health | None = None
+    health_age_s: float = INF
+    state_rate_hz: float = 0.0  # measured here, over the last whole second
+    double_id: bool = False  # two processes speak under this id
+    dropped: tuple[tuple[str, int], ...] = ()  # messages of this vehicle dropped here, by cause
+    schema_age_s: float = INF  # since a message of another schema version
+    missed_events: int = 0
+    trail: tuple[tuple[float, float, float], ...] = ()  # (north, east, down) [m], oldest first
+
+    @property
+    def mode(self) -> str:
+        """The autopilot's mode, from the newer of state and health."""
+        newest = self._newest
+        return newest.mode if newest else ""
+
+    @property
+    def armed(self) -> bool:
+        """Armed, from the newer of state and health."""
+        newest = self._newest
+        return newest.armed if newest else False
+
+    @property
+    def _newest(self) -> State | Health | None:
+        if self.state is None:
+            return self.health
+        if self.health is None:
+            return self.state
+        return self.health if self.health_age_s < self.state_age_s else self.state
+
+    @property
+    def position(self) -> Triple | None:
+        """Last known position [m; NED]."""
+        return self.state.position if self.state else None
+
+    @property
+    def groundspeed(self) -> float:
+        """Horizontal speed over ground [m/s]; 0 where unknown."""
+        if self.state is None:
+            return 0.0
+        north, east, _ = self.state.velocity
+        return sqrt(north * north + east * east)
+
+    @property
+    def rule(self) -> str:
+        """The rule in force, "" = none reported."""
+        return self.decision.rule if self.decision else ""
+
+
+class TrackView(Value, frozen=True):
+    """A track of a sensor."""
+
+    id: int
+    track: TrackMessage
+    age_s: float
+    rate_hz: float
+    trail: tuple[tuple[float, float, float], ...] = ()
+
+
+class GameView(Value, frozen=True):
+    """The game as its master tells it."""
+
+    name: str
+    setup: Setup | None = None
+    phase: Phase | None = None
+    reason: str = ""  # of the phase
+    t0_ns: int = 0
+    time_s: float = 0.0  # since t₀; negative before, 0 where t₀ is not fixed
+    outcome: Outcome | None = None
+    target: Triple | None = None  # the evader's; ground only
+    master: Master | None = None
+    master_age_s: float = INF
+    two_masters: bool = False
+
+    @property
+    def clock(self) -> str:
+        """Time of the game for a person: `T−3.2 s`, `T+12.5 s`, `–`."""
+        if not self.t0_ns:
+            return "–"
+        return f"T{'−' if self.time_s < 0 else '+'}{abs(self.time_s):.1f} s"
+
+
+class Alert(Value, frozen=True):
+    """Something a person should know, and what to do about it."""
+
+    name: str  # unique: `kind:id`, or `kind` where it concerns no single vehicle
+    kind: str
+    id: int  # vehicle, 0 = none
+    severity: Severity
+    text: str
+    advice: str
+    raised_ns: int
+    acknowledged: bool = False
+    cleared_ns: int = 0  # 0 = in force
+
+
+class LogLine(Value, frozen=True):
+    """One line of the event log."""
+
+    at_ns: int  # arrival
+    id: int  # vehicle, 0 = station
+    severity: Severity
+    kind: str
+    text: str
+
+
+class Leg(Value, frozen=True):
+    """A command's way to one vehicle."""
+
+    id: int
+    state: str  # sent | accepted | pending | confirmed | refused | superseded | expired
+    reason: str = ""
+    mode: str = ""  # of the autopilot, as the answer gives it
+    obeyed: str = ""  # whom the agent obeys now
+    took_s: float = 0.0  # until the final answer, or so far
+
+    @property
+    def open(self) -> bool:
+        """No final answer yet."""
+        return self.state in ("sent", "accepted", "pending")
+
+
+class CommandView(Value, frozen=True):
+    """A command and who has confirmed it."""
+
+    command_id: str
+    kind: str
+    sender: str
+    issued_ns: int
+    legs: tuple[Leg, ...]
+
+    @property
+    def confirmed(self) -> bool:
+        """Every vehicle has confirmed."""
+        return all(leg.state == "confirmed" for leg in self.legs)
+
+    @property
+    def unconfirmed(self) -> tuple[int, ...]:
+        """Who has not confirmed."""
+        return tuple(leg.id for leg in self.legs if leg.state != "confirmed")
+
+
+class ProspectView(Value, frozen=True):
+    """What one pursuer can do against the evader's present heading."""
+
+    id: int
+    intercepts: bool
+    time_s: float  # until then, −1 = never
+    denies_target: bool
+
+
+class AssessmentView(Value, frozen=True):
+    """What the situation promises, by declared airspeeds and the last known positions."""
+
+    encircled: bool  # no free ray
+    gaps: tuple[tuple[float, float], ...]  # in the plane: start, width [rad], north to east
+    largest_gap: float  # in the plane: its width; in space: of the largest free cap [rad]
+    target_denied: bool
+    prospects: tuple[ProspectView, ...]
+
+
+class Picture(Value, frozen=True):
+    """Everything, at one instant."""
+
+    now_ns: int
+    game: GameView
+    vehicles: tuple[VehicleView, ...]  # by id
+    tracks: tuple[TrackView, ...]  # by id
+    alerts: tuple[Alert, ...] = ()  # in force, worst first
+    past_alerts: tuple[Alert, ...] = ()  # cleared, newest last
+    log: tuple[LogLine, ...] = ()  # newest last
+    commands: tuple[CommandView, ...] = ()  # newest last
+    dropped: tuple[tuple[str, int], ...] = ()  # messages dropped here, by cause
+    bad_age_s: float = INF  # since the last of them
+    received: int = 0
+    assessment: AssessmentView | None = None
+
+    def vehicle(self, vehicle_id: int) -> VehicleView | None:
+        """The vehicle of an id."""
+        return next((v for v in self.vehicles if v.id == vehicle_id), None)

@@ -1,0 +1,116 @@
+"""The whole picture from one stream: fleet, alerts and commands, evaluated on a fixed grid of time.
+
+Alerts are judged at every multiple of 0.1 s of the station's time, and a judgement at T sees exactly the
+messages that came before T, no matter when anybody asks: so a replay of the recorded stream
+(key, payload, now_ns) gives the live run's picture, alert for alert.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from gcs.picture import alert_rules as rules
+from gcs.picture.alerts import Alerts, Finding
+from gcs.picture.assess import assess
+from gcs.picture.commands import CommandBook
+from gcs.picture.journal import Acknowledged, Remark, Replied, Sent
+from gcs.picture.records import NS
+from gcs.picture.reducer import Fleet
+from gcs.picture.values import Alert, LogLine, Picture
+from onboard.wire.bus.messages import Message, Severity
+
+GRID_NS = NS // 10
+LONGEST_GAP_NS = 3600 * NS  # judged step by step; what a longer silence does to alerts is settled by then
+
+
+class Watch:
+    """Feed it with `apply` in order of arrival and `tick` as time passes; look with `picture`."""
+
+    def __init__(self, game: str, limits: rules.Thresholds | None = None, version: str = "") -> None:
+        self.fleet = Fleet(game)
+        self.book = CommandBook()
+        self.alerts = Alerts()
+        self._limits = limits or rules.Thresholds()
+        self._version = version
+        self.remarks: dict[str, Finding] = {}  # standing ones, by kind
+        self._next_ns: int | None = None
+
+    def apply(self, key: str, payload: bytes, now_ns: int) -> Message | None:
+        """Take in one message of the bus or of the journal; the decoded message, None for a bad one."""
+        self.tick(now_ns)
+        message = self.fleet.apply(key, payload, now_ns)
+        if isinstance(message, Sent):
+            self.book.issue(message.command, message.ids, now_ns)
+            whom = ", ".join(map(str, message.ids))
+            text = f"{message.command.kind.value} to {whom}, by {message.command.sender}"
+            self._say(now_ns, Severity.INFO, "command", text)
+        elif isinstance(message, Replied):
+            self.book.reply(message.reply, now_ns)
+        elif isinstance(message, Acknowledged):
+            self.alerts.acknowledge(message.alert)
+        elif isinstance(message, Remark):
+            self._remark(message)
+        return message
+
+    def tick(self, now_ns: int) -> None:
+        """Let time pass to `now_ns`."""
+        if self._next_ns is None or now_ns - self._next_ns > LONGEST_GAP_NS:
+            start_ns = now_ns if self._next_ns is None else now_ns - LONGEST_GAP_NS
+            self._next_ns = -(-start_ns // GRID_NS) * GRID_NS
+        while self._next_ns <= now_ns:
+            self._judge(self._next_ns)
+            self._next_ns += GRID_NS
+
+    def picture(self, now_ns: int) -> Picture:
+        """The picture now."""
+        self.tick(now_ns)
+        return self._look(now_ns, whole=True)
+
+    def _look(self, now_ns: int, whole: bool) -> Picture:
+        game, vehicles = self.fleet.game(now_ns), self.fleet.vehicles(now_ns)
+        tracks = self.fleet.tracks(now_ns)
+        return Picture(
+            now_ns=now_ns,
+            game=game,
+            vehicles=vehicles,
+            tracks=tracks,
+            assessment=assess(game, vehicles, tracks) if whole else None,
+            commands=self.book.views(now_ns),
+            dropped=tuple(sorted(self.fleet.drops.items())),
+            bad_age_s=self.fleet.bad_age_s(now_ns),
+            received=self.fleet.received,
+            alerts=self.alerts.board() if whole else (),
+            past_alerts=self.alerts.past() if whole else (),
+            log=tuple(self.fleet.log) if whole else (),
+        )
+
+    def _judge(self, at_ns: int) -> None:
+        picture = self._look(at_ns, whole=False)
+
+        def find(in_force: Callable[[str], bool]) -> Iterator[Finding]:
+            yield from rules.rules(picture, in_force, self._limits, self._version)
+            yield from self.remarks.values()
+
+        for alert in self.alerts.judge(find, at_ns):
+            self._log(alert, at_ns)
+
+    def _log(self, alert: Alert, at_ns: int) -> None:
+        over = alert.cleared_ns > 0
+        text = f"over: {alert.text}" if over else f"{alert.text}. {alert.advice}"
+        line = LogLine(
+            at_ns=at_ns,
+            id=alert.id,
+            severity=Severity.INFO if over else alert.severity,
+            kind=f"{'cleared' if over else 'alert'}",
+            text=text,
+        )
+        self.fleet.log.append(line)
+
+    def _remark(self, remark: Remark) -> None:
+        if remark.over:
+            self.remarks.pop(remark.kind, None)
+        elif remark.advice and remark.severity is not Severity.INFO:
+            self.remarks[remark.kind] = Finding(remark.kind, 0, remark.severity, remark.text, remark.advice)
+
+    def _say(self, now_ns: int, severity: Severity, kind: str, text: str) -> None:
+        self.fleet.log.append(LogLine(at_ns=now_ns, id=0, severity=severity, kind=kind, text=text))

@@ -1,0 +1,252 @@
+"""Derives, from the recorded stream, what generic viewers can show: scene, poses, places on Earth, log.
+
+Five times a second of the stream's own time, from the newest message of each vehicle; so the cost does
+not grow with the rates on the bus, and the same stream gives the same bytes.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, deque
+from collections.abc import Iterator
+from math import pi, sqrt, tan
+from typing import NamedTuple
+
+import msgspec
+
+from gcs.picture import journal
+from gcs.recording import foxglove as fox
+from gcs.recording.schemas import Layout
+from onboard.core.math.vectors import Vec
+from onboard.wire.bus import messages as swarm
+from onboard.wire.bus import topics
+from onboard.wire.bus.messages import DecisionReport, Role, Setup, Severity, State
+from onboard.wire.geodesy import Frame
+
+STEP_NS = fox.NS // 5
+SILENT_NS = 3 * fox.NS  # a vehicle not heard for this long is no longer drawn anew
+TRAIL_STEPS = 60  # of one second
+TRAIL_NS = 5 * fox.NS  # trails are drawn anew so often: they are most of a scene's bytes
+CONE_LENGTH = 25.0  # [m] blocked cones are drawn so far
+MOST_DRAWN = 250
+
+SCENE, TRANSFORMS = fox.layout(fox.SceneUpdate), fox.layout(fox.FrameTransforms)
+POSE, PLACE, LOG = fox.layout(fox.PoseInFrame), fox.layout(fox.LocationFix), fox.layout(fox.Log)
+
+COLORS = {
+    Role.EVADER: fox.Color(0.90, 0.62, 0.0),
+    Role.PURSUER: fox.Color(0.0, 0.45, 0.70),
+    Role.TRACKER: fox.Color(0.5, 0.5, 0.5),
+}
+TARGET = fox.Color(0.0, 0.62, 0.45)
+FENCE = fox.Color(0.8, 0.47, 0.65)
+LEVELS = {Severity.INFO: 2, Severity.WARNING: 3, Severity.ERROR: 4}
+FOREVER = fox.Time(0, 0)
+
+
+class View(NamedTuple):
+    """One message for viewers."""
+
+    topic: str
+    layout: Layout
+    payload: bytes
+
+
+class _Drawn:
+    """The newest of one vehicle."""
+
+    __slots__ = ("decision", "heard_ns", "state", "trail")
+
+    def __init__(self) -> None:
+        self.state = b""
+        self.decision = b""
+        self.heard_ns = 0
+        self.trail: deque[fox.Vector3] = deque(maxlen=TRAIL_STEPS)
+
+
+class Views:
+    """Feed it with every message; take what `due` and `said` give."""
+
+    def __init__(self) -> None:
+        self._vehicles: dict[int, _Drawn] = {}
+        self._setup: Setup | None = None
+        self._frame: Frame | None = None
+        self._target: swarm.Triple | None = None
+        self._changed = False  # what does not move
+        self._next_ns = 0
+        self._drops: Counter[str] = Counter()
+        self._encode = msgspec.json.Encoder().encode
+
+    def note(self, key: str, payload: bytes, stamp_ns: int) -> list[View]:
+        """Take a message in; what is to be written at once (log lines)."""
+        topic = topics.topic_of(key)
+        if topic is topics.STATE or topic is topics.DECISION:
+            self._note_vehicle(topic is topics.STATE, topics.vehicle_of(key), payload, stamp_ns)
+            return []
+        if topic is topics.SETUP:
+            setup = swarm.SETUP.decode(payload, self._drops)
+            if setup is not None:
+                self._setup, self._changed = setup, True
+                self._frame = Frame(
+                    setup.origin.latitude_deg, setup.origin.longitude_deg, setup.origin.altitude_m
+                )
+        elif topic is topics.EVADER_BRIEF:
+            brief = swarm.EVADER_BRIEF.decode(payload, self._drops)
+            if brief is not None:
+                self._target, self._changed = brief.target, True
+        line = self._line(key, topic, payload, stamp_ns)
+        return [] if line is None else [View("/log", LOG, self._encode(line))]
+
+    def _note_vehicle(self, state: bool, vehicle_id: int | None, payload: bytes, stamp_ns: int) -> None:
+        if vehicle_id is None or not 1 <= vehicle_id <= MOST_DRAWN:
+            return
+        drawn = self._vehicles.get(vehicle_id)
+        if drawn is None:
+            drawn = self._vehicles[vehicle_id] = _Drawn()
+        if state:
+            drawn.state, drawn.heard_ns = payload, stamp_ns
+        else:
+            drawn.decision = payload
+
+    def _line(self, key: str, topic: topics.Topic | None, payload: bytes, stamp_ns: int) -> fox.Log | None:
+        at = fox.time_of(stamp_ns)
+        if topic is topics.EVENTS:
+            event = swarm.EVENT.decode(payload, self._drops)
+            if event is not None:
+                return fox.Log(at, LEVELS[event.severity], event.text, f"vehicle-{event.id}")
+        elif topic is topics.PHASE:
+            phase = swarm.PHASE.decode(payload, self._drops)
+            if phase is not None:
+                why = f": {phase.reason}" if phase.reason else ""
+                return fox.Log(at, 2, f"game {phase.phase.value}{why}", "game")
+        elif topic is topics.OUTCOME:
+            outcome = swarm.OUTCOME.decode(payload, self._drops)
+            if outcome is not None:
+                return fox.Log(at, 2, f"evader {outcome.verdict} after {outcome.time:.1f} s", "game")
+        elif key.endswith("/gcs/remark"):
+            remark = journal.REMARK.decode(payload, self._drops)
+            if remark is not None:
+                return fox.Log(at, LEVELS[remark.severity], remark.text, "station")
+        elif key.endswith("/gcs/sent"):
+            sent = journal.SENT.decode(payload, self._drops)
+            if sent is not None:
+                to = ", ".join(map(str, sent.ids))
+                text = f"{sent.command.kind.value} to {to} by {sent.command.sender}"
+                return fox.Log(at, 2, text, "station")
+        return None
+
+    def due(self, stamp_ns: int) -> Iterator[tuple[int, View]]:
+        """What the stream's time reaching `stamp_ns` asks for, with the instant it is of."""
+        if self._next_ns == 0:
+            self._next_ns = -(-stamp_ns // STEP_NS) * STEP_NS
+        if stamp_ns < self._next_ns:
+            return
+        at_ns = stamp_ns // STEP_NS * STEP_NS  # after a silence: the newest instant alone
+        self._next_ns = at_ns + STEP_NS
+        for view in self._draw(at_ns):
+            yield at_ns, view
+
+    def _draw(self, at_ns: int) -> Iterator[View]:
+        at = fox.time_of(at_ns)
+        entities: list[fox.Entity] = []
+        transforms: list[fox.FrameTransform] = []
+        if self._changed:
+            entities += self._still(at)
+            self._changed = False
+        whole_second = at_ns % fox.NS == 0
+        trails = at_ns % TRAIL_NS == 0
+        for vehicle_id, drawn in sorted(self._vehicles.items()):
+            if not drawn.state or at_ns - drawn.heard_ns > SILENT_NS:
+                continue
+            state = swarm.STATE.decode(drawn.state, self._drops)
+            if state is None:
+                continue
+            place, turn = fox.enu(state.position), fox.attitude(state.roll, state.pitch, state.yaw)
+            name = f"vehicle-{vehicle_id}"
+            transforms.append(fox.FrameTransform(at, fox.WORLD, name, place, turn))
+            pose = fox.PoseInFrame(at, fox.WORLD, fox.Pose(place, turn))
+            yield View(f"/position/{vehicle_id}", POSE, self._encode(pose))
+            if self._frame is not None:
+                spot = self._frame.geodetic_from_ned(Vec(*state.position))
+                place_on_earth = (round(spot.latitude_deg, 8), round(spot.longitude_deg, 8))
+                fix = fox.LocationFix(at, name, *place_on_earth, round(spot.altitude_m, 3))
+                yield View(f"/location/{vehicle_id}", PLACE, self._encode(fix))
+            decision = swarm.DECISION.decode(drawn.decision, self._drops) if drawn.decision else None
+            entities.append(self._vehicle(at, name, state, decision, fox.Pose(place, turn)))
+            if whole_second:
+                drawn.trail.append(place)
+            if trails and drawn.trail:
+                entities.append(_trail(at, name, tuple(drawn.trail), COLORS[state.role]))
+        if transforms:
+            yield View("/tf", TRANSFORMS, self._encode(fox.FrameTransforms(tuple(transforms))))
+        if entities:
+            yield View("/scene", SCENE, self._encode(fox.SceneUpdate(tuple(entities))))
+
+    def _vehicle(
+        self, at: fox.Time, name: str, state: State, decision: DecisionReport | None, pose: fox.Pose
+    ) -> fox.Entity:
+        color = COLORS[state.role]
+        spheres: tuple[fox.Sphere, ...] = ()
+        if self._setup is not None and state.role is Role.PURSUER:
+            across = 2.0 * self._setup.capture_radius
+            faint = fox.Color(color.r, color.g, color.b, 0.2)
+            spheres = (fox.Sphere(fox.Pose(pose.position), fox.Vector3(across, across, across), faint),)
+        rule = f" {decision.rule}" if decision is not None and decision.rule else ""
+        above = fox.Pose(fox.Vector3(pose.position.x, pose.position.y, round(pose.position.z + 2.0, 3)))
+        lines: tuple[fox.Line, ...] = ()
+        cylinders: tuple[fox.Cylinder, ...] = ()
+        if decision is not None:
+            aim = (pose.position, fox.enu(decision.aim))
+            lines = (fox.Line(0, fox.Pose(fox.Vector3(0, 0, 0)), 1.0, True, aim, color),)
+            cylinders = tuple(_cone(pose.position, *cone) for cone in decision.cones)
+        return fox.Entity(
+            timestamp=at,
+            id=name,
+            lifetime=fox.Time(3, 0),
+            metadata=(fox.KeyValuePair("role", state.role.value), fox.KeyValuePair("mode", state.mode)),
+            arrows=(fox.Arrow(pose, 2.0, 0.3, 0.8, 0.8, color),),
+            spheres=spheres,
+            cylinders=cylinders,
+            lines=lines,
+            texts=(fox.Text(above, True, 14.0, True, color, f"{state.id}{rule}"),),
+        )
+
+    def _still(self, at: fox.Time) -> Iterator[fox.Entity]:
+        """What does not move: target and fence."""
+        if self._target is not None:
+            place = fox.Pose(fox.enu(self._target))
+            ball = fox.Sphere(place, fox.Vector3(2.0, 2.0, 2.0), TARGET)
+            text = fox.Text(place, True, 14.0, True, TARGET, "target")
+            yield fox.Entity(timestamp=at, id="target", lifetime=FOREVER, spheres=(ball,), texts=(text,))
+        if self._setup is not None and self._setup.fence is not None:
+            fence = self._setup.fence
+            loops = tuple(
+                fox.Line(
+                    1,
+                    fox.Pose(fox.Vector3(0, 0, 0)),
+                    1.0,
+                    True,
+                    tuple(fox.Vector3(east, north, height) for north, east in fence.polygon),
+                    FENCE,
+                )
+                for height in (fence.altitude_min, fence.altitude_max)
+            )
+            yield fox.Entity(timestamp=at, id="fence", lifetime=FOREVER, lines=loops)
+
+
+def _trail(at: fox.Time, name: str, points: tuple[fox.Vector3, ...], color: fox.Color) -> fox.Entity:
+    line = fox.Line(0, fox.Pose(fox.Vector3(0, 0, 0)), 1.5, True, points, color)
+    return fox.Entity(timestamp=at, id=f"trail-{name}", lifetime=FOREVER, lines=(line,))
+
+
+def _cone(apex: fox.Vector3, north: float, east: float, down: float, half_angle: float) -> fox.Cylinder:
+    """A blocked cone as a cylinder that has its point at the apex."""
+    length = CONE_LENGTH
+    half = length / 2 / (sqrt(north * north + east * east + down * down) or 1.0)
+    middle = fox.Vector3(
+        round(apex.x + east * half, 3), round(apex.y + north * half, 3), round(apex.z - down * half, 3)
+    )
+    across = 2.0 * length * tan(min(max(half_angle, 0.0), pi / 2 - 0.1))
+    turn = fox.turn_to((north, east, down))
+    return fox.Cylinder(
+        fox.Pose(middle, turn), fox.Vector3(across, across, length), 0.0, 1.0, fox.Color(0.8, 0.2, 0.2, 0.15)
+    )

@@ -1,0 +1,70 @@
+"""`gcs report RUN`: one page to open in any browser, without network, and pictures of the same."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+
+from gcs.picture.alert_rules import Thresholds
+from gcs.recording.reader import Recording
+from gcs.recording.shell import RECORDING
+from gcs.report.data import Run, beside
+from gcs.report.from_recording import from_recording
+from gcs.report.from_tlog import from_tlogs
+from gcs.report.page import page
+from gcs.report.plots import figures
+from gcs.report.png import write_figures
+from onboard.config.strict import ConfigError
+
+PAGE, FIGURES = "report.html", "figures"
+
+
+class Written(NamedTuple):
+    """What a report consists of."""
+
+    page: Path
+    pictures: tuple[Path, ...]
+    notes: tuple[str, ...]  # what was missing or damaged, one line each
+
+
+def read_run(run: Path, limits: Thresholds | None = None, version: str = "") -> Run:
+    """A run's values: of its recording, else of its telemetry logs.
+
+    Raises ConfigError with one line where the folder has neither, or where a recording is foreign or of
+    a newer version (logs are then no replacement).
+    """
+    if not run.exists():
+        raise ConfigError(f"{run}: no such run")
+    files = beside(run if run.is_dir() else run.parent)
+    path = run / RECORDING if run.is_dir() else run
+    try:
+        recording = Recording(path)
+    except ConfigError as error:
+        if not run.is_dir() or not any(run.glob("vehicle-*.tlog")) or "version" in str(error):
+            raise
+        return from_tlogs(run, files, str(error))
+    try:
+        return from_recording(run, recording, files, limits, version)
+    finally:
+        recording.close()
+
+
+def write_report(run: Path, limits: Thresholds | None = None, version: str = "") -> Written:
+    """Write `report.html` and `figures/*.png` into the run folder. Raises ConfigError with one line."""
+    values = read_run(run, limits, version)
+    folder = values.folder
+    try:
+        (folder / FIGURES).mkdir(exist_ok=True)
+        pictures = write_figures(values, folder / FIGURES)
+        text = page(values, figures(values), plotly_js())
+        (folder / PAGE).write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise ConfigError(f"{error.filename or folder}: {(error.strerror or str(error)).lower()}") from None
+    return Written(folder / PAGE, tuple(pictures), values.notes)
+
+
+def plotly_js() -> str:
+    """The whole of plotly.js, to stand in the page itself."""
+    from plotly.offline import get_plotlyjs  # half a second to import: only who reports pays it
+
+    return str(get_plotlyjs())

@@ -1,0 +1,55 @@
+"""The agent's part in the game: which phase, whether it may act, and why it must wait."""
+
+from __future__ import annotations
+
+from onboard.wire.bus.messages import Phase, PhaseChange
+
+JUST_STARTED_S = 1.0  # who first hears of a running game this soon after t₀ was there for the start
+_NS = 1_000_000_000
+
+
+class Part:
+    """Follows the phases. An agent that was not there at the start acts only after the master's resume."""
+
+    def __init__(self, id: int) -> None:
+        self.joined = False
+        self._id = id
+        self._t0_ns = 0
+
+    def follow(self, phase: PhaseChange, wall_ns: int) -> None:
+        """Take a phase change (or the cached one) in."""
+        if phase.phase in (Phase.STAGING, Phase.READY):
+            self.joined = True
+        elif phase.phase is Phase.RUNNING:
+            begun = (wall_ns - phase.t0_ns) / _NS
+            if self._id in phase.resume or begun < JUST_STARTED_S:
+                self.joined = True
+
+    def leave(self) -> None:
+        """Another game's setup came: what was joined is over."""
+        self.joined = False
+
+    def waits_for_resume(self, phase: PhaseChange | None) -> bool:
+        """Whether the game runs without this agent."""
+        return phase is not None and phase.phase is Phase.RUNNING and not self.joined
+
+    def running(self, phase: PhaseChange | None, wall_ns: int) -> bool:
+        """Whether the agent's part is on: from t₀ to the end."""
+        return (
+            phase is not None and phase.phase is Phase.RUNNING and self.joined and wall_ns >= phase.t0_ns
+        )
+
+    @staticmethod
+    def about_to(phase: PhaseChange | None) -> bool:
+        """Whether control should be taken: from ready on."""
+        return phase is not None and phase.phase in (Phase.READY, Phase.RUNNING)
+
+    @staticmethod
+    def over(phase: PhaseChange | None) -> bool:
+        """Whether the game has ended."""
+        return phase is not None and phase.phase in (Phase.ENDED, Phase.RECOVERY)
+
+    @staticmethod
+    def game_time(phase: PhaseChange | None, wall_ns: int) -> float:
+        """Seconds since t₀, 0 before it is fixed."""
+        return (wall_ns - phase.t0_ns) / _NS if phase is not None and phase.t0_ns > 0 else 0.0

@@ -1,0 +1,177 @@
+"""From configuration and setup to the supervisor's policy, the adapter's envelope, the strategy's limits."""
+
+from __future__ import annotations
+
+from math import asin, pi, radians, sin, tan
+
+from onboard.agent.config import AgentConfig
+from onboard.autopilot import base
+from onboard.core.math.states import Limits
+from onboard.core.math.vectors import Vec
+from onboard.core.safety.fence import fits
+from onboard.core.safety.field_profile import capture_in_space_refused, field_policy, layers
+from onboard.core.safety.policy import Envelope, Fence, Policy
+from onboard.pilot.setup import GameSetup, Player, Side
+from onboard.wire.bus.messages import Member, Role, Setup
+
+G = 9.80665  # [m/s²]
+
+
+def envelope_of(config: AgentConfig, member: Member | None, hovers: bool) -> Envelope:
+    """What the vehicle may be asked to do: the configuration's word, else the setup's, else caution."""
+    e = config.envelope
+    declared_max = member.speed_max if member is not None and member.speed_max > 0.0 else 10.0
+    speed_max = e.speed_max if e.speed_max is not None else declared_max
+    speed_min = e.speed_min if e.speed_min is not None else (member.speed_min if member is not None else 0.0)
+    up = member.pitch_max if member is not None else pi / 6
+    down = -member.pitch_min if member is not None else pi / 6
+    climb = e.climb_max if e.climb_max is not None else max(0.5, speed_max * sin(max(0.0, up)))
+    sink = e.sink_max if e.sink_max is not None else max(0.5, speed_max * sin(max(0.0, down)))
+    bank = radians(e.bank_max_deg)
+    turn = radians(e.turn_rate_deg) if e.turn_rate_deg is not None else 0.0
+    if turn == 0.0 and member is not None:
+        turn = member.turn_rate
+    coordinated = G * tan(bank) / max(speed_max, 1.0)
+    if turn <= 0.0:
+        turn = coordinated
+    radius = e.turn_radius if e.turn_radius is not None else speed_max / max(1e-3, min(turn, coordinated))
+    return Envelope(
+        hovers=hovers,
+        speed_min=0.0 if hovers else min(speed_min, speed_max),
+        speed_max=speed_max,
+        climb_max=climb,
+        sink_max=sink,
+        turn_rate=turn,
+        acceleration=e.acceleration,
+        deceleration=e.deceleration,
+        turn_radius=radius,
+    )
+
+
+def adapter_envelope(config: AgentConfig, envelope: Envelope) -> base.Envelope:
+    """The adapter's last word: a little wider than the supervisor's, so that both never fight."""
+    return base.Envelope(
+        speed_min=envelope.speed_min,
+        speed_max=envelope.speed_max,
+        climb_max=envelope.climb_max,
+        sink_max=envelope.sink_max,
+        acceleration=1.5 * envelope.acceleration,
+        bank_max=radians(config.envelope.bank_max_deg),
+    )
+
+
+def policy_of(config: AgentConfig, setup: Setup | None, hovers: bool) -> Policy:
+    """The supervisor's policy in a game (or with none)."""
+    s = config.safety
+    member = member_of(setup, config.id)
+    fences: list[Fence] = []
+    if s.fence is not None:
+        fences.append(Fence(s.fence.polygon, s.fence.height_min, s.fence.height_max))
+    if setup is not None and setup.fence is not None:
+        fences.append(Fence(setup.fence.polygon, setup.fence.altitude_min, setup.fence.altitude_max))
+    separation = setup.separation if setup is not None else 0.0
+    if s.separation is not None:
+        separation = s.separation
+    policy = Policy(
+        envelope=envelope_of(config, member, hovers),
+        fences=tuple(fences),
+        fence_margin=s.fence_margin,
+        height_margin=s.height_margin,
+        fence_far=s.fence_far,
+        reaction=s.reaction_s,
+        separation=separation,
+        mate_age=s.mate_age_s,
+        telemetry_age=s.telemetry_age_s,
+        heartbeat_age=s.heartbeat_age_s,
+        heartbeat_alone=max(s.heartbeat_age_s, s.heartbeat_alone_s),
+        strategy_age=s.strategy_age_s,
+        track_sigma=s.track_sigma,
+        track_action=s.track_action.action(),
+        ground_age=s.ground_age_s,
+        ground_action=s.ground_action.action(),
+        clock_jump=s.clock_jump_s,
+        clock_hold=s.clock_hold_s,
+        battery=s.battery,
+        gps_fix=s.gps_fix,
+        settle=s.settle_s,
+    )
+    if setup is not None and setup.field_profile and member is not None:
+        heights = layers(tuple(-one.start[2] for one in setup.roster))
+        own = next(index for index, one in enumerate(setup.roster) if one.id == config.id)
+        policy = field_policy(policy, heights[own])
+    return policy
+
+
+def member_of(setup: Setup | None, id: int) -> Member | None:
+    """The roster's entry of a vehicle."""
+    return next((one for one in setup.roster if one.id == id), None) if setup is not None else None
+
+
+def contradiction(config: AgentConfig, setup: Setup, hovers: bool | None) -> str:
+    """Why this agent cannot play a setup, in words; '' if it can. `hovers` None: no autopilot known yet."""
+    if setup.game != config.game:
+        return f"the setup is of game '{setup.game}', this agent plays '{config.game}'"
+    ids = [one.id for one in setup.roster]
+    if len(set(ids)) != len(ids):
+        return "two vehicles of the roster have one id"
+    member = member_of(setup, config.id)
+    if member is None:
+        return f"vehicle {config.id} is not in the roster"
+    if member.role is not config.role:
+        return f"the setup says {member.role.value}, the configuration says {config.role.value}"
+    if not setup.capture_radius > 0.0 or setup.safety_distance < setup.capture_radius:
+        return f"R = {setup.capture_radius:g} m and ρ = {setup.safety_distance:g} m do not fit"
+    if setup.fence is not None and (
+        len(setup.fence.polygon) < 3 or setup.fence.altitude_min >= setup.fence.altitude_max
+    ):
+        return "the fence is no area"
+    most, least = config.envelope.speed_max, config.envelope.speed_min
+    if most is not None and member.speed_max > most:
+        return f"the setup wants {member.speed_max:g} m/s, this vehicle is configured for {most:g} m/s"
+    if least is not None and member.speed_max < least:
+        return f"the setup wants {member.speed_max:g} m/s, this vehicle flies at least {least:g} m/s"
+    if config.field and not setup.planar and not setup.field_profile and capture_in_space_refused(
+        setup.capture_radius, setup.track_sigma
+    ):
+        return (
+            f"capture in space with R = {setup.capture_radius:g} m and a stated position error of "
+            f"{setup.track_sigma:g} m: R must be five times as large, or the setup use the field profile"
+        )
+    if hovers is False:
+        policy = policy_of(config, setup, False)
+        e = policy.envelope
+        if not all(fits(fence, e, policy.fence_margin, 0.2 * e.speed_max) for fence in policy.fences):
+            return f"the fence leaves no room to turn with a radius of {e.turn_radius:.0f} m"
+    return ""
+
+
+def game_setup(config: AgentConfig, setup: Setup, target: Vec | None, hovers: bool) -> GameSetup:
+    """The game as the pilot is told it. Climb limits of the own vehicle narrow its pitch band."""
+    envelope = envelope_of(config, member_of(setup, config.id), hovers)
+    players: list[Player] = []
+    for member in setup.roster:
+        if member.role is Role.TRACKER:
+            continue
+        low, high = member.pitch_min, member.pitch_max
+        if member.id == config.id and member.speed_max > 0.0:
+            high = min(high, asin(min(1.0, envelope.climb_max / member.speed_max)))
+            low = max(low, -asin(min(1.0, envelope.sink_max / member.speed_max)))
+        side = Side.EVADER if member.role is Role.EVADER else Side.PURSUER
+        limits = Limits(member.speed_min, member.speed_max, low, high)
+        height = -member.start[2]
+        if config.may_arm and height < 1.0:  # a ground start
+            height = config.take_off_height
+        players.append(Player(member.id, side, member.speed_max, limits, height))
+    return GameSetup(
+        roster=tuple(players),
+        R=setup.capture_radius,
+        rho=setup.safety_distance,
+        lambda_=setup.lambda_,
+        beta=setup.beta,
+        separation=setup.separation,
+        planar=setup.planar or setup.field_profile,
+        has_target=target is not None,
+        target=target if target is not None else Vec(0.0, 0.0, 0.0),
+        dt=1.0 / config.control_rate_hz,
+        lookahead=config.lookahead_s,
+    )

@@ -1,0 +1,310 @@
+"""`onboard-agent check`: what is in order before a flight, what is not, and what to do about it.
+
+The rows are judged by a plain function from what was seen; `preflight` looks.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import importlib.util
+import shutil
+from collections.abc import Callable, Sequence
+from enum import Enum
+from pathlib import Path
+from typing import NamedTuple
+
+from onboard.agent.bus_view import Table
+from onboard.agent.config import AgentConfig
+from onboard.agent.journal import Journal
+from onboard.agent.mavlink_radio import Radio
+from onboard.agent.program import close_bus, open_bus, open_links, signing_of
+from onboard.agent.vehicle_link import Craft
+from onboard.autopilot.base import NEVER, Telemetry
+from onboard.autopilot.parameters import findings
+from onboard.config.strict import ConfigError
+from onboard.runtime.bus_zenoh import DEFAULT_ENDPOINT
+from onboard.runtime.clock import RealClock
+from onboard.runtime.protocols import Bus, Clock, Link
+from onboard.wire.bus.topics import Delivery
+from onboard.wire.mavlink import commands
+from onboard.wire.mavlink.frames import Packet
+from onboard.wire.mavlink.modes import Kind
+from onboard.wire.mavlink.signing import Signing
+
+VERSION_MESSAGE = 148  # AUTOPILOT_VERSION
+ENOUGH = 0.7  # of the position rate that was asked for
+DISK_MIN = 200e6  # bytes free, for logs
+HARMLESS = ("no_peer", "muted", "twin")  # counted, but no bad frames
+DIALECT = "pymavlink.dialects.v20.ardupilotmega"
+_NS = 1_000_000_000
+
+
+class Mark(Enum):
+    """Result of one row."""
+
+    PASS = "pass"
+    WARN = "warn"
+    FAIL = "fail"
+
+
+class Row(NamedTuple):
+    """One row of the table."""
+
+    name: str
+    mark: Mark
+    found: str
+    remedy: str = ""
+
+
+class Sight(NamedTuple):
+    """What was seen in some seconds of listening."""
+
+    now: float = 0.0  # monotonic [s]
+    link_trouble: str = ""  # why the link does not open
+    link: str = ""
+    datagrams: int = 0
+    kind: str = ""  # of the autopilot, "" = none heard
+    refusal: str = ""  # why no adapter flies it
+    other_systems: tuple[int, ...] = ()
+    version: str = ""
+    telemetry: Telemetry = Telemetry()
+    position_rate: float = 0.0  # [Hz]
+    parameters: dict[str, float] | None = None
+    bad_frames: dict[str, int] | None = None
+    bus_trouble: str = ""
+    bus: str = ""
+    connected: bool = False
+    master: bool = False
+    offset_s: float = 0.0
+    key_trouble: str = ""
+    signed: bool = False
+    free_bytes: float = 1e12
+    bytecode: bool = True
+
+
+def judge(config: AgentConfig, seen: Sight) -> list[Row]:
+    """The table of a preflight."""
+    rows = [_link(config, seen)]
+    if not seen.link_trouble:
+        rows += _autopilot(config, seen)
+    rows += _bus(config, seen)
+    if seen.key_trouble:
+        rows.append(Row("signing key", Mark.FAIL, seen.key_trouble, "chmod 600, or make a new key"))
+    elif seen.signed:
+        rows.append(Row("signing key", Mark.PASS, "readable by its owner alone"))
+    else:
+        mark = Mark.WARN if config.field else Mark.PASS
+        rows.append(Row("signing key", mark, "none: anybody on the link can command the vehicle",
+                        "set [signing] key"))  # fmt: skip
+    mark = Mark.PASS if seen.free_bytes >= DISK_MIN else Mark.WARN
+    rows.append(Row("disk", mark, f"{seen.free_bytes / 1e9:.1f} GB free", "make room for logs"))
+    rows.append(
+        Row("bytecode", Mark.PASS, "compiled") if seen.bytecode else
+        Row("bytecode", Mark.WARN, "the MAVLink dialect is not compiled: 80 MB more memory",
+            "python -m compileall -q on site-packages")
+    )  # fmt: skip
+    if config.dry_run:
+        rows.append(Row("dry run", Mark.WARN, "nothing will be sent to the autopilot", "leave out --dry-run"))
+    return rows
+
+
+def _link(config: AgentConfig, seen: Sight) -> Row:
+    if seen.link_trouble:
+        return Row("link", Mark.FAIL, seen.link_trouble, "another port or device, or end the other program")
+    if seen.datagrams == 0:
+        return Row("link", Mark.FAIL, f"{seen.link}: nothing arrives", "start the autopilot's output there")
+    bad = seen.bad_frames or {}
+    if bad:
+        causes = ", ".join(f"{cause} {number}" for cause, number in sorted(bad.items()))
+        found = f"{seen.link}: {seen.datagrams} received, bad: {causes}"
+        return Row("link", Mark.WARN, found, "check the link")
+    return Row("link", Mark.PASS, f"{seen.link}: {seen.datagrams} received")
+
+
+def _autopilot(config: AgentConfig, seen: Sight) -> list[Row]:
+    if seen.refusal:
+        return [Row("autopilot", Mark.FAIL, seen.refusal, "see docs: which autopilots are flown")]
+    if not seen.kind:
+        others = ", ".join(map(str, seen.other_systems))
+        found = f"none with system id {config.id}" + (f", but system {others}" if others else "")
+        return [Row("autopilot", Mark.FAIL, found, "give the vehicle's MAVLink system id as --id")]
+    t = seen.telemetry
+    rows = [Row("autopilot", Mark.PASS, f"{seen.kind} {seen.version or 'of unknown version'}, in {t.mode}")]
+    wanted = config.control_rate_hz
+    rate = f"position at {seen.position_rate:.1f} Hz of {wanted:g}"
+    rows.append(Row("rates", Mark.PASS if seen.position_rate >= ENOUGH * wanted else Mark.FAIL, rate,
+                    "a faster link, or a lower control_rate_hz"))  # fmt: skip
+    if t.gps_at == NEVER:
+        rows.append(Row("GPS", Mark.WARN, "not reported", "ask for GPS_RAW_INT"))
+    else:
+        mark = Mark.PASS if t.gps_fix >= config.safety.gps_fix else Mark.FAIL
+        rows.append(Row("GPS", mark, f"fix type {t.gps_fix}, {t.satellites} satellites", "wait for a fix"))
+    if t.ekf_at == NEVER:
+        rows.append(Row("estimate", Mark.WARN, "not reported", "ask for the estimator status"))
+    else:
+        mark = Mark.PASS if t.ekf_ok else Mark.FAIL
+        rows.append(Row("estimate", mark, "healthy" if t.ekf_ok else "not healthy", "wait, or recalibrate"))
+    if t.battery < 0.0:
+        rows.append(Row("battery", Mark.WARN, "not reported: the supervisor cannot watch it", "set it up"))
+    else:
+        mark = Mark.PASS if t.battery >= 2.0 * config.safety.battery else Mark.FAIL
+        rows.append(Row("battery", mark, f"{t.battery:.0%}", "charge it"))
+    kind = Kind(seen.kind)
+    parameters = seen.parameters or {}
+    troubles = findings(kind, parameters, config.id)
+    for trouble in troubles:
+        mark = Mark.FAIL if trouble.severity == "error" else Mark.WARN
+        rows.append(Row(f"parameter {trouble.name}", mark, trouble.text, trouble.remedy))
+    if not troubles:
+        rows.append(Row("parameters", Mark.PASS, f"{len(parameters)} read, failsafes set"))
+    return rows
+
+
+def _bus(config: AgentConfig, seen: Sight) -> list[Row]:
+    if seen.bus_trouble:
+        return [Row("bus", Mark.FAIL, seen.bus_trouble, "correct the endpoint or the Zenoh configuration")]
+    if not seen.connected:
+        return [Row("bus", Mark.FAIL, f"nobody at {seen.bus}", "start gcs or sim-bridge, or give --bus")]
+    rows = [Row("bus", Mark.PASS, seen.bus)]
+    if not seen.master:
+        rows.append(Row("clock", Mark.WARN, f"no master in game '{config.game}' to compare with",
+                        "start the master"))  # fmt: skip
+        return rows
+    offset = abs(seen.offset_s)
+    mark = Mark.PASS if offset <= 0.05 else (Mark.WARN if offset <= 0.2 else Mark.FAIL)
+    rows.append(Row("clock", mark, f"{seen.offset_s * 1e3:+.0f} ms against the master", "run a time service"))
+    return rows
+
+
+def table(rows: list[Row]) -> list[str]:
+    """The rows as lines of text."""
+    width = max(len(row.name) for row in rows)
+    lines = []
+    for row in rows:
+        remedy = f" → {row.remedy}" if row.mark is not Mark.PASS and row.remedy else ""
+        lines.append(f"{row.mark.value.upper():4}  {row.name:{width}}  {row.found}{remedy}")
+    return lines
+
+
+async def preflight(config: AgentConfig, seconds: float, say: Callable[[str], None]) -> int:
+    """Listen for `seconds`, print the table; 0 where nothing failed, else 1."""
+    seen = await look(config, seconds)
+    rows = judge(config, seen)
+    for line in table(rows):
+        say(line)
+    failed = sum(row.mark is Mark.FAIL for row in rows)
+    warned = sum(row.mark is Mark.WARN for row in rows)
+    say(f"{'not ready' if failed else 'ready'}: {failed} failed, {warned} warnings")
+    return 1 if failed else 0
+
+
+async def look(config: AgentConfig, seconds: float) -> Sight:
+    """See what there is. Nothing is commanded: message rates and parameters are asked for."""
+    seen = Sight(bytecode=bytecode(), free_bytes=free_bytes(config))
+    signing: Signing | None = None
+    try:
+        signing = signing_of(config)
+        seen = seen._replace(signed=signing is not None)
+    except ConfigError as error:
+        seen = seen._replace(key_trouble=str(error))
+    clock = RealClock()
+    journal = Journal(config.id, config.game, 0, clock, _unpublished, _unsaid)
+    bus: Bus | None = None
+    try:
+        bus = await open_bus(config)
+    except ConfigError as error:
+        seen = seen._replace(bus_trouble=str(error))
+    try:
+        heard = None
+        if bus is not None:
+            heard = Table(config.game, config.id, config.role, 0, clock, bus, journal)
+            heard.open()
+        try:
+            links = await open_links(config)
+        except ConfigError as error:
+            seen = seen._replace(link_trouble=str(error))
+            await asyncio.sleep(min(seconds, 2.0))
+        else:
+            seen = await _listen(config, seen, links, signing, journal, clock, seconds)
+        if bus is not None and heard is not None:
+            seen = seen._replace(
+                bus=config.bus or config.zenoh or DEFAULT_ENDPOINT,
+                connected=bus.connected(),
+                master=heard.clock.known,
+                offset_s=heard.clock.offset_s,
+            )
+            heard.close()
+    finally:
+        if bus is not None:
+            await close_bus(bus)
+    return seen
+
+
+async def _listen(
+    config: AgentConfig,
+    seen: Sight,
+    links: Sequence[Link],
+    signing: Signing | None,
+    journal: Journal,
+    clock: Clock,
+    seconds: float,
+) -> Sight:
+    radio = Radio(links, config.id, clock, signing=signing, mute=config.dry_run)
+    craft = Craft(config, radio, journal)
+
+    def hear(packet: Packet, now: float) -> None:
+        craft.hear(packet, now)
+
+    radio.open(hear)
+    try:
+        begun = clock.monotonic_ns()
+        beats = 0
+        while (past := (clock.monotonic_ns() - begun) / _NS) < seconds:
+            craft.chores(clock.monotonic_ns() / _NS)
+            if past >= beats:
+                beats += 1
+                craft.heartbeat()
+                if craft.version is None:
+                    radio.send(commands.request_message(craft.to, VERSION_MESSAGE))
+            await asyncio.sleep(0.05)
+        now = clock.monotonic_ns() / _NS
+        found = craft.version
+        return seen._replace(
+            now=now,
+            link=radio.active,
+            datagrams=sum(link.counters().get("received", 0) for link in links),
+            kind=craft.adapter.kind.value if craft.adapter is not None else "",
+            refusal=craft.refusal,
+            other_systems=tuple(sorted(craft.heard_systems)),
+            version="" if found is None else ".".join(map(str, found.flight[:3])),
+            telemetry=craft.look(now),
+            position_rate=craft.position_rate.value,
+            parameters=craft.parameters,
+            bad_frames={cause: n for cause, n in radio.causes.items() if cause not in HARMLESS},
+        )
+    finally:
+        for link in links:
+            link.close()
+
+
+def bytecode() -> bool:
+    """Whether the MAVLink dialect, the largest module by far, has compiled bytecode."""
+    found = importlib.util.find_spec(DIALECT)
+    return found is not None and found.cached is not None and Path(found.cached).is_file()
+
+
+def free_bytes(config: AgentConfig) -> float:
+    """Free space where the log goes, or here [bytes]."""
+    place = Path(config.log).resolve().parent if config.log else Path.cwd()
+    try:
+        return float(shutil.disk_usage(place).free)
+    except OSError:
+        return 0.0
+
+
+def _unpublished(key: str, payload: bytes, delivery: Delivery) -> None:
+    """A check publishes no events."""
+
+
+def _unsaid(line: str) -> None:
+    """A check prints its table alone."""

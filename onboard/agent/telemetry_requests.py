@@ -1,0 +1,103 @@
+"""What the agent asks of its autopilot besides modes: message rates, parameters, its clock."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from onboard.autopilot.parameters import WANTED
+from onboard.autopilot.stream_rates import NEEDS, Asking, Need, capacity_of
+from onboard.autopilot.timesync import TimesyncEstimator
+from onboard.wire.mavlink import commands
+from onboard.wire.mavlink.commands import Target
+from onboard.wire.mavlink.frames import MavMessage
+from onboard.wire.mavlink.modes import Kind
+from onboard.wire.mavlink.values import ParamValue
+
+REVIEW_S = 1.0  # between two looks at the rates
+PARAM_AGAIN_S = 0.5
+PARAM_TRIES = 6
+CLOCK_EVERY_S = 2.0
+FAST = ("GLOBAL_POSITION_INT", "ATTITUDE")  # follow the control rate above 20 Hz
+HOME = 242  # HOME_POSITION
+
+
+def needs_of(kind: Kind, control_rate_hz: float) -> tuple[Need, ...]:
+    """What a kind of autopilot is asked for, at a control rate."""
+    return tuple(
+        need._replace(rate=max(need.rate, control_rate_hz)) if need.message in FAST else need
+        for need in NEEDS[kind]
+    )
+
+
+def baud_of(link: str) -> int:
+    """Baud rate in a serial link's URL, 0 for other links."""
+    if not link.startswith("serial:"):
+        return 0
+    tail = link.rsplit(":", 1)[-1]
+    return int(tail) if tail.isascii() and tail.isdigit() else 57600
+
+
+class Requests:
+    """Requests due now, for one autopilot."""
+
+    def __init__(self, to: Target, kind: Kind, control_rate_hz: float, link: str, signed: bool) -> None:
+        baud = baud_of(link)
+        self.parameters: dict[str, float] = {}
+        self.clock = TimesyncEstimator()
+        self._rates = Asking(
+            kind,
+            to,
+            capacity_of(baud) if baud else None,
+            signed=signed,
+            needs=needs_of(kind, control_rate_hz),
+        )
+        self._to = to
+        self._px4 = kind is Kind.PX4_MULTICOPTER
+        self._arrived: Counter[str] = Counter()
+        self._reviewed = self._param_at = self._clock_at = -1e9
+        self._missing = list(WANTED.get(kind, ()))
+        self._tries = 0
+        self._buffer_free = 1.0
+
+    def arrived(self, message: str) -> None:
+        """Count a message that came."""
+        self._arrived[message] += 1
+
+    def radio(self, buffer_free: float) -> None:
+        """The telemetry radio's transmit buffer, as it reports it."""
+        self._buffer_free = buffer_free
+
+    def parameter(self, value: ParamValue) -> None:
+        """Keep a parameter's value."""
+        if value.name in self._missing:
+            self._missing.remove(value.name)
+            self.parameters[value.name] = value.bytewise if self._px4 else value.value
+
+    def again(self) -> None:
+        """Ask for everything anew: the autopilot has started again, or another link is used."""
+        self._rates.forget()
+        self._reviewed = -1e9
+
+    def due(self, now: float, quality: float) -> list[MavMessage]:
+        """What to send at `now` [s, monotonic]; `quality`: share of the autopilot's frames that arrive.
+
+        What is lost on the way is no reason to ask for less: rates are judged by what was sent."""
+        messages: list[MavMessage] = []
+        span = now - self._reviewed
+        if span >= REVIEW_S:
+            first = span > 1e8
+            share = max(0.1, quality)
+            rates = {name: count / span / share for name, count in self._arrived.items()}
+            messages += self._rates.step(now, rates, self._buffer_free, share)
+            if first:
+                messages.append(commands.request_message(self._to, HOME))
+            self._arrived.clear()
+            self._reviewed = now
+        if self._missing and self._tries < PARAM_TRIES and now - self._param_at >= PARAM_AGAIN_S:
+            self._tries += 1
+            self._param_at = now
+            messages += [commands.param_read(self._to, name) for name in self._missing]
+        if now - self._clock_at >= CLOCK_EVERY_S:
+            self._clock_at = now
+            messages.append(self.clock.ask(round(now * 1e9)))
+        return messages

@@ -1,0 +1,235 @@
+"""The own vehicle: its autopilot discovered, asked for what is needed, and flown through its adapter."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from onboard.agent.config import AgentConfig
+from onboard.agent.journal import Journal
+from onboard.agent.mavlink_radio import Radio
+from onboard.agent.telemetry_requests import Requests
+from onboard.autopilot.base import NEVER, Adapter, Envelope, Refusal, Setpoint, Stage, Telemetry
+from onboard.autopilot.choose import adapter_for
+from onboard.autopilot.mavsdk import MavsdkAdapter
+from onboard.autopilot.telemetry_state import Observer
+from onboard.wire.bus.messages import Severity
+from onboard.wire.mavlink import commands
+from onboard.wire.mavlink.commands import Target
+from onboard.wire.mavlink.frames import Packet
+from onboard.wire.mavlink.values import (
+    CommandAck,
+    GlobalPosition,
+    Heartbeat,
+    ParamValue,
+    RadioStatus,
+    StatusText,
+    Timesync,
+    Version,
+)
+
+AUTOPILOT = 1  # MAV_COMP_ID_AUTOPILOT1
+RATE_WINDOW_S = 2.0  # over which rates are measured
+_SEVERITIES = {"info": Severity.INFO, "warning": Severity.WARNING, "error": Severity.ERROR}
+
+
+class Rate:
+    """How often something happened lately [Hz]."""
+
+    def __init__(self) -> None:
+        self.value = 0.0
+        self._count = 0
+        self._since = NEVER
+
+    def tick(self) -> None:
+        """It happened."""
+        self._count += 1
+
+    def review(self, now: float) -> float:
+        """The rate over the last window."""
+        if self._since == NEVER:
+            self._since = now
+        elif now - self._since >= RATE_WINDOW_S:
+            self.value = self._count / (now - self._since)
+            self._count, self._since = 0, now
+        return self.value
+
+
+class Craft:
+    """One vehicle and its autopilot. Time is an argument throughout."""
+
+    def __init__(self, config: AgentConfig, radio: Radio, journal: Journal) -> None:
+        self.config = config
+        self.radio = radio
+        self.observer = Observer(config.id)
+        self.telemetry = Telemetry()
+        self.adapter: Adapter | None = None
+        self.refusal = ""
+        self.foreign: Counter[str] = Counter()
+        self.heard_systems: dict[int, float] = {}
+        self.position_rate, self.setpoint_rate = Rate(), Rate()
+        self.sent_at = NEVER  # of the last setpoint [s]
+        self.handed_back = False  # a pilot gave control back since somebody last looked
+        self.rebooted = False  # what looked like a take-over was a restart, since somebody last looked
+        self.taken = False  # somebody else took it since somebody last looked
+        self.version: Version | None = None  # of the autopilot, once it has said so
+        self.to = Target(config.id)
+        self._journal = journal
+        self._heartbeat: Heartbeat | None = None
+        self._envelope = Envelope()
+        self._asking: Requests | None = None
+        self._reboots = 0
+        self._stepped_at = NEVER
+
+    @property
+    def hovers(self) -> bool | None:
+        """Whether it can stop in the air; None while no autopilot is known."""
+        return None if self.adapter is None else not self.adapter.holds_airspeed
+
+    @property
+    def stage(self) -> Stage:
+        """Who flies."""
+        return Stage.IDLE if self.adapter is None else self.adapter.stage
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """The autopilot's parameters, as far as read."""
+        return {} if self._asking is None else self._asking.parameters
+
+    def hear(self, packet: Packet, now: float) -> bool:
+        """Take one packet; True for a new position of the own vehicle."""
+        if packet.system != self.config.id:
+            self.foreign["foreign_system"] += 1
+            if packet.component == AUTOPILOT and len(self.heard_systems) < 16:
+                self.heard_systems[packet.system] = now
+            return False
+        if packet.component != AUTOPILOT:
+            self.foreign["foreign_component"] += 1
+            return False
+        value = self.observer.take(now, packet)
+        if self._asking is not None:
+            self._asking.arrived(packet.message.get_type())
+        if value is None:
+            return False
+        if isinstance(value, GlobalPosition):
+            self.position_rate.tick()
+            return True
+        if isinstance(value, Heartbeat):
+            self._discover(value)
+        elif isinstance(value, CommandAck) and self.adapter is not None:
+            self.adapter.acknowledge(now, value)
+        elif isinstance(value, ParamValue) and self._asking is not None:
+            self._asking.parameter(value)
+        elif isinstance(value, Timesync) and self._asking is not None:
+            answer = self._asking.clock.take(round(now * 1e9), value)
+            if answer is not None:
+                self.radio.send(answer)
+        elif isinstance(value, RadioStatus) and self._asking is not None:
+            self._asking.radio(value.buffer_free)
+        elif isinstance(value, Version):
+            self.version = value
+        elif isinstance(value, StatusText) and value.severity <= 4:
+            self._journal.warning("autopilot", value.text)
+        return False
+
+    def look(self, now: float) -> Telemetry:
+        """What is known of the vehicle at `now`; also notices an autopilot that started again."""
+        self.telemetry = self.observer.snapshot()
+        if self.telemetry.reboots != self._reboots:
+            self._reboots = self.telemetry.reboots
+            self._journal.error("reboot", "the autopilot has started again")
+            if self._asking is not None:
+                self._asking.again()
+        return self.telemetry
+
+    def envelope(self, envelope: Envelope) -> None:
+        """Another game, another envelope: a new adapter, unless the present one is flying."""
+        self._envelope = envelope
+        if self._heartbeat is not None and self.stage in (Stage.IDLE, Stage.LEFT):
+            self.adapter = None
+            self._discover(self._heartbeat)
+
+    def step(self, now: float, setpoint: Setpoint | None) -> None:
+        """Send what the adapter wants sent, and publish its notes."""
+        adapter = self.adapter
+        if adapter is None:
+            return
+        before = adapter.stage
+        step = adapter.step(now, self.telemetry, setpoint)
+        self._stepped_at = now
+        for message in step.messages:
+            self.radio.send(message)
+        if setpoint is not None and adapter.stage is Stage.ACTIVE:
+            self.setpoint_rate.tick()
+            self.sent_at = now
+        for note in step.notes:
+            self._journal.say(_SEVERITIES.get(note.severity, Severity.INFO), note.kind, note.text)
+        if adapter.stage is Stage.TAKEN and before is not Stage.TAKEN:
+            self.taken = True
+        if adapter.stage is Stage.ACTIVE and before in (Stage.TAKEN, Stage.LEFT):
+            self.handed_back = True
+        if adapter.stage is Stage.IDLE and before is Stage.TAKEN:
+            self.rebooted = True  # it was no pilot: the autopilot had started again
+
+    def chores(self, now: float) -> None:
+        """Everything that is due beside setpoints: requests, and the adapter's own retries."""
+        if self.radio.took_over:
+            self.radio.took_over = False
+            self._journal.warning("link", f"{self.radio.active} takes over")
+            if self._asking is not None:
+                self._asking.again()
+        if self._asking is not None:
+            for message in self._asking.due(now, self.telemetry.link_quality):
+                self.radio.send(message)
+        self.position_rate.review(now)
+        self.setpoint_rate.review(now)
+
+    def idle(self, now: float) -> float:
+        """Since the adapter was last stepped [s]."""
+        return now - self._stepped_at
+
+    def counters(self) -> dict[str, int]:
+        """Foreign packets by cause, and how well the autopilot's clock is known."""
+        counts = dict(self.foreign)
+        if self._asking is not None:
+            counts["timesync_round_trip_us"] = self._asking.clock.offset().round_trip_ns // 1000
+        return counts
+
+    def close(self) -> None:
+        """End what an adapter has running beside it."""
+        if isinstance(self.adapter, MavsdkAdapter):
+            self.adapter.close()
+
+    def heartbeat(self) -> None:
+        """Our own heartbeat, at 1 Hz."""
+        self.radio.send(commands.heartbeat())
+
+    def _discover(self, heartbeat: Heartbeat) -> None:
+        known = self._heartbeat
+        self._heartbeat = heartbeat
+        if self.adapter is not None and known is not None and known.kind is heartbeat.kind:
+            return
+        if self.adapter is not None and self.adapter.stage is Stage.ACTIVE:
+            return  # it does not turn into another aircraft in flight
+        found = adapter_for(
+            heartbeat,
+            self.to,
+            scheme=self.config.autopilot.value,
+            envelope=self._envelope,
+            parameters=self.parameters,
+            may_arm=self.config.may_arm,
+            hold_mode=self.config.hold_mode,
+            mavsdk_url=self.config.mavsdk,
+        )
+        if isinstance(found, Refusal):
+            if found.reason != self.refusal:
+                self.refusal = found.reason
+                self._journal.error("autopilot_refused", found.reason)
+        else:
+            self.refusal = ""
+            if self.adapter is None and (known is None or known.kind is not heartbeat.kind):
+                self._journal.info("autopilot", f"{heartbeat.kind.value} found, in {heartbeat.mode}")
+            self.adapter = found
+        if self._asking is None:
+            self._asking = Requests(
+                self.to, heartbeat.kind, self.config.control_rate_hz, self.radio.active, self.radio.signed
+            )

@@ -1,0 +1,133 @@
+"""The referee: capture (6), safety distance (4), target reached (5), over the whole step."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from math import sqrt
+from typing import NamedTuple
+
+from onboard.core.math.vectors import TINY, Vec, sub
+
+
+class Verdict(IntEnum):
+    """How a game stands."""
+
+    RUNNING = 0
+    CAPTURED = 1  # (6)
+    ARRIVED = 2  # (5)
+    ESCAPED = 3  # not captured at the horizon
+
+
+class Passage(NamedTuple):
+    """Two straight segments flown in the same step."""
+
+    smallest: float  # distance at the closest approach [m]
+    when: float  # share of the step at the closest approach, 0…1
+    enters: bool  # whether the distance falls to the radius
+    entry: float  # share of the step at which it does, 0…1
+
+
+def passage(a0: Vec, a1: Vec, b0: Vec, b1: Vec, radius: float) -> Passage:
+    """Closest approach of a (a0 → a1) and b (b0 → b1) [m], and when they come within `radius` [m]."""
+    r0 = sub(a0, b0)
+    x = a1.x - b1.x - r0.x
+    y = a1.y - b1.y - r0.y
+    z = a1.z - b1.z - r0.z
+    cc = r0.x * r0.x + r0.y * r0.y + r0.z * r0.z
+    aa = x * x + y * y + z * z
+    bb = r0.x * x + r0.y * y + r0.z * z
+    when = 0.0
+    if aa > TINY * TINY:
+        when = min(1.0, max(0.0, -bb / aa))
+    smallest = sqrt(max(0.0, cc + when * (2.0 * bb + when * aa)))
+    if cc <= radius * radius:
+        return Passage(smallest, when, True, 0.0)
+    if smallest > radius or aa <= TINY * TINY:
+        return Passage(smallest, when, False, 1.0)
+    inside = max(0.0, bb * bb - aa * (cc - radius * radius))
+    entry = (-bb - sqrt(inside)) / aa
+    return Passage(smallest, when, True, min(1.0, max(0.0, entry)))
+
+
+class Score(NamedTuple):
+    """What the referee has seen so far."""
+
+    verdict: Verdict
+    time: float  # of the verdict, or now [s]
+    captor: int  # index of the pursuer that captured, −1 = none
+    smallest: float  # smallest distance of any pursuer so far [m]
+    unsafe: float  # time spent nearer than the safety distance ρ, by step [s]
+
+
+def opening(e: Vec, pursuers: tuple[Vec, ...]) -> Score:
+    """The score before the first step."""
+    smallest = 1e300
+    for p in pursuers:
+        line = sub(p, e)
+        d = sqrt(line.x * line.x + line.y * line.y + line.z * line.z)
+        smallest = min(smallest, d)
+    return Score(Verdict.RUNNING, 0.0, -1, smallest, 0.0)
+
+
+def judge(
+    score: Score,
+    start: float,
+    dt: float,
+    e0: Vec,
+    e1: Vec,
+    before: tuple[Vec, ...],
+    after: tuple[Vec, ...],
+    R: float,
+    rho: float,
+    has_target: bool,
+    target: Vec,
+    epsilon: float,
+    horizon: float,
+) -> Score:
+    """Judge one step from `start` lasting `dt` [s].
+
+    Whatever comes first within the step decides: capture (6), arrival (5), the horizon. On a
+    tie capture stands. `rho` is the safety distance ρ of (4) [m].
+    """
+    if score.verdict != Verdict.RUNNING:
+        return score
+    smallest = score.smallest
+    near = False
+    captor = -1
+    capture = 2.0
+    for index in range(len(before)):
+        seen = passage(before[index], after[index], e0, e1, R)
+        smallest = min(smallest, seen.smallest)
+        near = near or seen.smallest < rho
+        if seen.enters and seen.entry < capture:
+            capture = seen.entry
+            captor = index
+    unsafe = score.unsafe + dt if near else score.unsafe
+    share = (horizon - start) / dt
+    if captor >= 0 and capture <= share:
+        arrival = passage(target, target, e0, e1, epsilon)
+        if not has_target or not arrival.enters or capture <= arrival.entry:
+            smallest = min(score.smallest, _nearest(capture, e0, e1, before, after))
+            return Score(Verdict.CAPTURED, start + capture * dt, captor, smallest, unsafe)
+    if has_target:
+        arrival = passage(target, target, e0, e1, epsilon)
+        if arrival.enters and arrival.entry <= share:
+            smallest = min(score.smallest, _nearest(arrival.entry, e0, e1, before, after))
+            return Score(Verdict.ARRIVED, start + arrival.entry * dt, -1, smallest, unsafe)
+    if share <= 1.0 + 1e-9:
+        return Score(Verdict.ESCAPED, horizon, -1, smallest, unsafe)
+    return Score(Verdict.RUNNING, start + dt, -1, smallest, unsafe)
+
+
+def _part(a: Vec, b: Vec, share: float) -> Vec:
+    return Vec(a.x + (b.x - a.x) * share, a.y + (b.y - a.y) * share, a.z + (b.z - a.z) * share)
+
+
+def _nearest(share: float, e0: Vec, e1: Vec, before: tuple[Vec, ...], after: tuple[Vec, ...]) -> float:
+    """Smallest distance within the first part of a step: a game ends with its verdict."""
+    smallest = 1e300
+    end = _part(e0, e1, share)
+    for index in range(len(before)):
+        seen = passage(before[index], _part(before[index], after[index], share), e0, end, 0.0)
+        smallest = min(smallest, seen.smallest)
+    return smallest

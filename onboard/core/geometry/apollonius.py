@@ -1,0 +1,109 @@
+"""Apollonius circles and spheres, the exact intercept and the closest approach: (11), (12), (19), (20).
+
+Closed forms over γ = v_p / v_e, d = |p − e| and φ, the angle between the evader's heading ê and
+the line of sight e→p. Angles are never formed: s = d cos φ and h = d sin φ do the work.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import NamedTuple
+
+from onboard.core.math.vectors import TINY, Vec, distance
+
+
+class Sphere(NamedTuple):
+    """Apollonius sphere (a circle in the plane): where both players arrive at the same time."""
+
+    exists: bool  # equal speeds give a plane, not a sphere
+    centre: Vec  # [m]
+    radius: float  # [m]
+
+
+class Meeting(NamedTuple):
+    """Where and when a pursuer comes as near to the evader as it can."""
+
+    exists: bool
+    time: float  # T [s]
+    point: Vec  # the evader's place at T, which the pursuer heads for [m]
+    miss: float  # distance left at T [m]; 0 for an intercept
+
+
+def apollonius_sphere(e: Vec, v_e: float, p: Vec, v_p: float) -> Sphere:
+    """Sphere (11) of evader place `e` [m] with speed `v_e` and pursuer place `p` with `v_p` [m/s].
+
+    The printed radius is negative for v_e > v_p: the absolute value of the denominator is meant.
+    """
+    a = v_e * v_e
+    b = v_p * v_p
+    k = a - b
+    if abs(k) <= 1e-9 * (a + b) or a + b <= 0.0:
+        return Sphere(False, e, 0.0)
+    centre = Vec((a * p.x - b * e.x) / k, (a * p.y - b * e.y) / k, (a * p.z - b * e.z) / k)
+    return Sphere(True, centre, v_p * v_e * distance(p, e) / abs(k))  # (11)
+
+
+def intercept(e: Vec, heading: Vec, v_e: float, p: Vec, v_p: float) -> Meeting:
+    """Exact intercept (11)–(12): the first T with |e + v_e T ê − p| = v_p T.
+
+    `heading` is the unit vector ê. Exists for γ < 1 iff φ ≤ asin γ, for γ > 1 always. The
+    quadratic is written in v_e² − v_p² so that γ → 1, γ > 1 and a resting evader need no case
+    of their own, and its root in the form that does not cancel.
+    """
+    ex, ey, ez = e
+    hx, hy, hz = heading
+    x, y, z = p
+    x -= ex
+    y -= ey
+    z -= ez
+    dd = x * x + y * y + z * z
+    if dd <= TINY * TINY:
+        return Meeting(True, 0.0, e, 0.0)
+    a = v_e * v_e - v_p * v_p
+    b = v_e * (x * hx + y * hy + z * hz)
+    inside = b * b - a * dd
+    if inside < 0.0:
+        return Meeting(False, 0.0, e, 0.0)
+    root = sqrt(inside)
+    if b >= 0.0:
+        bottom = b + root
+        if bottom <= TINY * sqrt(dd):
+            return Meeting(False, 0.0, e, 0.0)
+        time = dd / bottom
+    elif a < 0.0:
+        time = (b - root) / a
+    else:
+        return Meeting(False, 0.0, e, 0.0)
+    k = v_e * time
+    return Meeting(True, time, Vec(ex + hx * k, ey + hy * k, ez + hz * k), 0.0)
+
+
+def closest_approach(e: Vec, heading: Vec, v_e: float, p: Vec, v_p: float) -> Meeting:
+    """Optimal convergence (19)–(20) in closed form, for when no exact intercept exists.
+
+    T = (s + hγ/√(1−γ²)) / v_e, aim e + v_e T ê, miss d sin(φ − asin γ). Exists while the evader
+    comes closer (cos φ > 0) and γ < 1; a pursuer as fast as the evader intercepts instead. The
+    printed (19) lacks a factor v_e in its denominator and (20) is ambiguous by 180°; the vector
+    form here agrees with the corrected ones.
+    """
+    ex, ey, ez = e
+    hx, hy, hz = heading
+    x, y, z = p
+    x -= ex
+    y -= ey
+    z -= ez
+    s = x * hx + y * hy + z * hz
+    if s <= 0.0 or v_e <= TINY or v_p >= v_e:
+        return Meeting(False, 0.0, e, 0.0)
+    gamma = v_p / v_e
+    root = sqrt(max(0.0, 1.0 - gamma * gamma))
+    if root <= TINY:
+        return Meeting(False, 0.0, e, 0.0)
+    cx = hy * z - hz * y
+    cy = hz * x - hx * z
+    cz = hx * y - hy * x
+    h = sqrt(cx * cx + cy * cy + cz * cz)
+    time = (s + h * gamma / root) / v_e  # (19)
+    k = v_e * time
+    aim = Vec(ex + hx * k, ey + hy * k, ez + hz * k)
+    return Meeting(True, time, aim, max(0.0, h * root - s * gamma))  # (20)

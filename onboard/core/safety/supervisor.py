@@ -1,0 +1,162 @@
+"""The supervisor's one state machine: every decision becomes a setpoint, or a refusal with its cause.
+
+Graver actions take hold at once; milder ones return when the cause has been gone for `settle`
+seconds; what is latched stays until control is handed back. The drawing is in docs/safety.md.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from onboard.core.math.vectors import ZERO, Vec, add, along, clamp, norm, sub
+from onboard.core.safety.envelope import believable, bounded, finite, slewed
+from onboard.core.safety.fence import brake, keep_height, outside_by, turn
+from onboard.core.safety.field_profile import keep_layer
+from onboard.core.safety.health import Demand, health
+from onboard.core.safety.policy import Action, Cause, Policy, Seen
+from onboard.core.safety.separation import keep_apart
+
+PROTECTIVE = (
+    Cause.FENCE_AHEAD,
+    Cause.CEILING_AHEAD,
+    Cause.FLOOR_AHEAD,
+    Cause.OUTSIDE_FENCE,
+    Cause.SEPARATION,
+    Cause.LAYER,
+)
+
+
+class Watch(NamedTuple):
+    """The supervisor's memory from step to step."""
+
+    action: Action = Action.PASS  # in force
+    cause: Cause = Cause.NONE
+    since: float = 0.0  # monotonic [s]
+    urged: float = -1e9  # when the action in force was last demanded [s]
+    named: float = -1e9  # when the cause in force was last demanded [s]
+    floor: Action = Action.PASS  # latched: nothing milder until control is handed back
+    floor_cause: Cause = Cause.NONE
+    demand: Vec = ZERO  # last setpoint, relative to the air [m/s]
+    stamp: float = -1e9  # when that was [s]
+
+
+class Verdict(NamedTuple):
+    """What becomes of one decision."""
+
+    action: Action
+    cause: Cause
+    stream: bool  # whether `ground` goes out; False: hold, return or end by the autopilot's own modes
+    ground: Vec  # setpoint [m/s; over ground]; ZERO unless `stream`
+    air: Vec  # the same relative to the air [m/s]
+    watch: Watch
+    changed: bool  # a transition happened: publish it
+
+
+class Allowed(NamedTuple):
+    """The nearest allowed velocity, and the rule that changed it."""
+
+    air: Vec  # [m/s; relative to the air]
+    cause: Cause
+
+
+def supervise(wanted: Vec, seen: Seen, policy: Policy, watch: Watch) -> Verdict:
+    """One step: the decision's velocity `wanted` [m/s; relative to the air] through all rules."""
+    demand = health(seen, policy, _far_outside(seen, policy))
+    allowed = Allowed(ZERO, Cause.NONE)
+    wind = ZERO if policy.envelope.hovers or not believable(ZERO, seen.wind) else seen.wind
+    if demand.action < Action.HOLD:
+        if finite(wanted):
+            allowed = _allow(wanted, wind, seen, policy, watch)
+        if not finite(wanted) or not finite(allowed.air):
+            demand = Demand(Action.HOLD, Cause.NOT_FINITE, False)
+        elif allowed.cause != Cause.NONE:
+            demand = Demand(Action.CLIP, allowed.cause, False)
+    after = advance(watch, demand, seen.handed_back, seen.now, policy.settle)
+    changed = after.action != watch.action or after.cause != watch.cause
+    if after.action >= Action.HOLD:
+        after = after._replace(demand=ZERO, stamp=-1e9)
+        return Verdict(after.action, after.cause, False, ZERO, ZERO, after, changed)
+    after = after._replace(demand=allowed.air, stamp=seen.now)
+    return Verdict(after.action, after.cause, True, add(allowed.air, wind), allowed.air, after, changed)
+
+
+def advance(watch: Watch, demand: Demand, handed_back: bool, now: float, settle: float) -> Watch:
+    """The state machine alone: what is in force after a demand."""
+    floor = watch.floor
+    floor_cause = watch.floor_cause
+    if handed_back:
+        floor = Action.PASS
+        floor_cause = Cause.NONE
+    if demand.latched and demand.action >= floor:
+        floor = demand.action
+        floor_cause = demand.cause
+    action = demand.action
+    cause = demand.cause
+    if floor > action:
+        action = floor
+        cause = floor_cause
+    urged = now
+    if action < watch.action and not handed_back and now - watch.urged < settle:
+        action = watch.action
+        cause = watch.cause
+        urged = watch.urged
+    named = urged
+    other = action == Action.CLIP and watch.action == Action.CLIP and cause != watch.cause
+    graver = cause in PROTECTIVE and watch.cause not in PROTECTIVE
+    if other and not graver and now - watch.named < settle:
+        cause = watch.cause  # one event for a clip of many reasons, not one a step
+        named = watch.named
+    since = watch.since if action == watch.action and cause == watch.cause else now
+    return watch._replace(
+        action=action,
+        cause=cause,
+        since=since,
+        urged=urged,
+        named=named,
+        floor=floor,
+        floor_cause=floor_cause,
+    )
+
+
+def _allow(wanted: Vec, wind: Vec, seen: Seen, policy: Policy, watch: Watch) -> Allowed:
+    """Clip by limits, then give way to team mates, then keep inside the fences: the later rule outranks."""
+    e = policy.envelope
+    age = clamp(seen.telemetry_age, 0.0, policy.telemetry_age)
+    position = along(seen.position, seen.velocity, age)
+    running = 0.0 <= seen.now - watch.stamp <= 1.0
+    before = watch.demand if running else bounded(sub(seen.velocity, wind), wanted, e).velocity
+    if policy.layered:
+        wanted = keep_layer(wanted, position, policy)
+    limited = bounded(wanted, before, e)
+    cause = limited.cause
+    if policy.layered and abs(policy.layer + position.z) > policy.layer_band:
+        cause = Cause.LAYER
+    slow = slewed(limited.velocity, before, seen.now - watch.stamp if running else 0.05, e)
+    if cause == Cause.NONE:
+        cause = slow.cause
+    ground = add(bounded(slow.velocity, before, e).velocity, wind)
+    if policy.separation > 0.0:
+        apart = keep_apart(ground, position, seen.id, seen.mates, policy)
+        ground = apart.velocity
+        if apart.changed:
+            cause = Cause.SEPARATION
+    for fence in policy.fences:
+        height = keep_height(ground, position, fence, policy.height_margin, policy.reaction, e)
+        ground = height.velocity
+        if height.cause != Cause.NONE:
+            cause = height.cause
+    ground = add(bounded(sub(ground, wind), before, e).velocity, wind)
+    if e.hovers:
+        walls = brake(ground, position, policy.fences, policy.fence_margin, policy.reaction, e)
+    else:
+        walls = turn(ground, position, seen.velocity, policy.fences, policy.fence_margin,
+                     policy.reaction, norm(wind), e)
+    if walls.cause != Cause.NONE:
+        cause = walls.cause
+    return Allowed(bounded(sub(walls.velocity, wind), before, e).velocity, cause)
+
+
+def _far_outside(seen: Seen, policy: Policy) -> bool:
+    if not believable(seen.position, seen.velocity):
+        return False
+    return any(outside_by(seen.position, fence) > policy.fence_far for fence in policy.fences)

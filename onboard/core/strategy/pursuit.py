@@ -1,0 +1,227 @@
+"""The pursuers' rules (3.4.2, and those of the earlier paper [37]) and their tables.
+
+The pursuers know the evader's direction (2.2). "Moving away" is cos φ ≤ 0.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import NamedTuple
+
+from onboard.core.geometry.apollonius import closest_approach, intercept
+from onboard.core.geometry.cones import within
+from onboard.core.math.states import Limits, Vehicle
+from onboard.core.math.vectors import NORTH, TINY, Vec, add, along, cross, distance, dot, scale, sub, unit
+from onboard.core.strategy.knowledge import Decision, Module, Rule, RuleId, fold, silent
+
+NAVIGATION_GAIN = 3.0  # N of proportional navigation
+
+
+class PursuerView(NamedTuple):
+    """A situation as a pursuer sees it, in the moving air mass."""
+
+    own: Vehicle
+    limits: Limits
+    evader: Vehicle
+    heading: Vec  # ê, unit vector of the evader's velocity
+    has_mate: bool
+    mate: Vec  # place of the nearest team mate [m]
+    separation: float  # to keep from team mates [m]; 0 = off
+    has_prediction: bool
+    prediction: Vec  # place of the evader k steps ahead [m]
+    prediction_time: float  # until then [s]
+    dt: float  # control step [s]
+    planar: bool
+
+
+def _head(view: PursuerView, aim: Vec, rule: RuleId, time: float, miss: float) -> Decision:
+    (x, y, z), _velocity, speed = view.own
+    x = aim.x - x
+    y = aim.y - y
+    z = aim.z - z
+    far = sqrt(x * x + y * y + z * z)
+    ahead = view.heading if far <= TINY else Vec(x / far, y / far, z / far)
+    return Decision(True, within(ahead, view.limits, view.planar), speed, rule, aim, time, miss)
+
+
+def keep_off_mate(view: PursuerView) -> Decision:
+    """Figure 8b: a team mate is nearer than the separation: outwards, and past it towards the evader."""
+    own = view.own
+    if not view.has_mate:
+        return silent(view.heading, own.position)
+    apart = sub(own.position, view.mate)
+    if dot(apart, apart) >= view.separation * view.separation:
+        return silent(view.heading, own.position)
+    out = unit(apart, view.heading)
+    wanted = unit(sub(view.evader.position, own.position), view.heading)
+    past = along(wanted, out, -dot(wanted, out))
+    ahead = within(unit(add(out, past), out), view.limits, view.planar)
+    aim = along(own.position, ahead, view.separation)
+    return Decision(True, ahead, own.speed, RuleId.KEEP_OFF_MATE, aim, 0.0, 0.0)
+
+
+def exact_intercept(view: PursuerView) -> Decision:
+    """Rule 4 of 3.4.2: the evader's ray meets the sphere, so to the point of (11)–(12)."""
+    place, _velocity, speed = view.evader
+    own = view.own
+    # "Comes closer" needs no test of its own: a faster evader with cos φ ≤ 0 is never met.
+    exists, time, point, _miss = intercept(place, view.heading, speed, own.position, own.speed)
+    if not exists:
+        return silent(view.heading, place)
+    return _head(view, point, RuleId.INTERCEPT, time, 0.0)
+
+
+def greatest_approach(view: PursuerView) -> Decision:
+    """Rule 5 of 3.4.2: the evader comes closer but cannot be met, so along (19)–(20)."""
+    e = view.evader
+    meeting = closest_approach(e.position, view.heading, e.speed, view.own.position, view.own.speed)
+    if not meeting.exists:
+        return silent(view.heading, e.position)
+    return _head(view, meeting.point, RuleId.CLOSEST_APPROACH, meeting.time, meeting.miss)
+
+
+def parallel(view: PursuerView) -> Decision:
+    """Rule 6 of 3.4.2: the evader moves away, so parallel to it."""
+    own = view.own
+    ahead = within(view.heading, view.limits, view.planar)
+    aim = along(own.position, ahead, own.speed)
+    left = distance(own.position, view.evader.position)
+    return Decision(True, ahead, own.speed, RuleId.PARALLEL, aim, 1.0, left)
+
+
+def predicted_place(view: PursuerView) -> Decision:
+    """Rule 6's alternative: the evader moves away, so to the place predicted k steps ahead."""
+    if not view.has_prediction:
+        return silent(view.heading, view.evader.position)
+    left = distance(view.prediction, view.own.position) - view.own.speed * view.prediction_time
+    return _head(view, view.prediction, RuleId.PREDICTED_PLACE, view.prediction_time, max(0.0, left))
+
+
+def straight_at_evader(view: PursuerView) -> Decision:
+    """[37]: no intercept, so straight at the evader."""
+    return _head(view, view.evader.position, RuleId.STRAIGHT_AT_EVADER, 0.0, 0.0)
+
+
+def pure_pursuit(view: PursuerView) -> Decision:
+    """For comparison: the velocity always points at the evader."""
+    return _head(view, view.evader.position, RuleId.PURE_PURSUIT, 0.0, 0.0)
+
+
+def constant_bearing(view: PursuerView) -> Decision:
+    """For comparison: match the evader's velocity across the line of sight, close along it.
+
+    Where the evader's cross speed exceeds the own speed, all of it goes across.
+    """
+    own = view.own
+    e = view.evader
+    sight = unit(sub(e.position, own.position), view.heading)
+    motion = scale(view.heading, e.speed)
+    across = along(motion, sight, -dot(motion, sight))
+    lateral = dot(across, across)
+    square = own.speed * own.speed
+    if lateral >= square:
+        ahead = unit(across, sight)
+        closing = 0.0
+    else:
+        closing = sqrt(max(0.0, square - lateral))
+        ahead = unit(along(across, sight, closing), sight)
+    ahead = within(ahead, view.limits, view.planar)
+    rate = closing - dot(motion, sight)
+    far = distance(e.position, own.position)
+    time = far / rate if rate > TINY else 0.0
+    aim = along(own.position, ahead, own.speed * time)
+    return Decision(True, ahead, own.speed, RuleId.CONSTANT_BEARING, aim, time, 0.0)
+
+
+def proportional_navigation(view: PursuerView) -> Decision:
+    """For comparison: the heading turns at N times the rate of the line of sight (true PN, N = 3)."""
+    own = view.own
+    e = view.evader
+    line = sub(e.position, own.position)
+    square = dot(line, line)
+    sight = unit(line, view.heading)
+    ahead = unit(own.velocity, sight)
+    if square > TINY * TINY:
+        motion = sub(scale(view.heading, e.speed), scale(ahead, own.speed))
+        turn = scale(cross(line, motion), NAVIGATION_GAIN * view.dt / square)
+        ahead = unit(add(ahead, cross(turn, ahead)), ahead)
+    ahead = within(ahead, view.limits, view.planar)
+    aim = along(own.position, ahead, own.speed)
+    return Decision(True, ahead, own.speed, RuleId.PROPORTIONAL_NAVIGATION, aim, 1.0, 0.0)
+
+
+_KEEP_OFF: Rule[PursuerView] = Rule(
+    RuleId.KEEP_OFF_MATE,
+    "a team mate is nearer than the separation (off at 0)",
+    "outwards, sliding past it towards the evader",
+    "Figure 8b",
+    Module.INTELLIGENT,
+    keep_off_mate,
+)
+_INTERCEPT: Rule[PursuerView] = Rule(
+    RuleId.INTERCEPT,
+    "the evader comes closer and its ray meets the Apollonius sphere",
+    "to the point of convergence (11)–(12)",
+    "3.4.2, rule 4",
+    Module.GEOMETRIC,
+    exact_intercept,
+)
+_APPROACH: Rule[PursuerView] = Rule(
+    RuleId.CLOSEST_APPROACH,
+    "the evader comes closer (cos φ > 0) but its ray misses the sphere",
+    "in the direction of the maximum approach (19)–(20)",
+    "3.4.2, rule 5",
+    Module.GEOMETRIC,
+    greatest_approach,
+)
+_PARALLEL: Rule[PursuerView] = Rule(
+    RuleId.PARALLEL,
+    "the evader moves away (cos φ ≤ 0)",
+    "parallel to the evader",
+    "3.4.2, rule 6",
+    Module.INTELLIGENT,
+    parallel,
+)
+_PREDICTED: Rule[PursuerView] = Rule(
+    RuleId.PREDICTED_PLACE,
+    "the evader moves away and a prediction is known",
+    "to the place predicted k steps ahead",
+    "3.4.2, rule 6, alternative",
+    Module.INTELLIGENT,
+    predicted_place,
+)
+_STRAIGHT: Rule[PursuerView] = Rule(
+    RuleId.STRAIGHT_AT_EVADER,
+    "there is no intercept",
+    "straight at the evader",
+    "[37]",
+    Module.INTELLIGENT,
+    straight_at_evader,
+)
+
+PURSUER: tuple[Rule[PursuerView], ...] = (_KEEP_OFF, _INTERCEPT, _APPROACH, _PARALLEL)
+PURSUER_PREDICTIVE: tuple[Rule[PursuerView], ...] = (_KEEP_OFF, _INTERCEPT, _APPROACH, _PREDICTED, _PARALLEL)
+PURSUER_EARLIER: tuple[Rule[PursuerView], ...] = (_KEEP_OFF, _INTERCEPT, _STRAIGHT)
+
+
+def _comparison(rule: RuleId, then: str, apply: object) -> tuple[Rule[PursuerView], ...]:
+    return (_KEEP_OFF, Rule(rule, "always", then, "for comparison", Module.GEOMETRIC, apply))  # type: ignore[arg-type]
+
+
+PURE = _comparison(RuleId.PURE_PURSUIT, "straight at the evader", pure_pursuit)
+BEARING = _comparison(RuleId.CONSTANT_BEARING, "on a collision triangle", constant_bearing)
+NAVIGATION = _comparison(
+    RuleId.PROPORTIONAL_NAVIGATION, "turn at N times the sight line's rate", proportional_navigation
+)
+
+pursuer = fold(PURSUER)
+pursuer_predictive = fold(PURSUER_PREDICTIVE)
+pursuer_earlier = fold(PURSUER_EARLIER)
+pursuer_pure = fold(PURE)
+pursuer_bearing = fold(BEARING)
+pursuer_navigation = fold(NAVIGATION)
+
+
+def heading_at(evader: Vehicle) -> Vec:
+    """ê: unit vector of the evader's velocity; north for an evader at rest."""
+    return unit(evader.velocity, NORTH)

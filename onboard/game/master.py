@@ -1,0 +1,322 @@
+"""The game's master: lease, setup, phase, brief, resume of restarted agents, outcome. Sans I/O.
+
+There is exactly one in a game: the bridge in simulation, the ground station in the field. It listens
+first: who hears another master yields. Then it holds the lease, stages the vehicles, starts the game
+when all are ready, judges it from positions it is given, and ends it. Time is an argument: `wall_ns`
+stamps (nanoseconds since the epoch), `now_ns` is the monotonic clock that ages are taken from.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from enum import Enum
+from typing import NamedTuple
+
+from onboard.core.game.referee import Score, Verdict, judge, opening, passage
+from onboard.core.math.vectors import ZERO, Vec, along, sub
+from onboard.wire.bus import messages as swarm
+from onboard.wire.bus.messages import (
+    EvaderBrief,
+    Health,
+    Master,
+    Message,
+    Outcome,
+    Phase,
+    PhaseChange,
+    Role,
+    Setup,
+)
+from onboard.wire.bus.topics import EVADER_BRIEF, MASTER, OUTCOME, PHASE, SETUP, Topic
+
+NS = 1_000_000_000
+LEASE_S = 2.0
+LEASE_EVERY_NS = NS // 2
+LISTEN_NS = 12 * NS // 10  # a master that holds the lease speaks twice in this time
+HEALTH_NS = 3 * NS  # an agent silent for longer is not there: six heartbeats lost in a row
+SUPERSEDED_NS = 15 * NS // 10  # an agent's earlier process counts as gone after this silence
+READY_STAGES = ("ready", "acting")
+_WORDS = {Verdict.CAPTURED: "captured", Verdict.ARRIVED: "arrived", Verdict.ESCAPED: "escaped"}
+
+
+class Standing(Enum):
+    """Whether this one is the master."""
+
+    LISTENING = "listening"
+    HOLDING = "holding"
+    YIELDED = "yielded"  # another one is: this one says nothing more
+
+
+class Timing(NamedTuple):
+    """The master's patience."""
+
+    ready_s: float = 5.0  # from ready to t₀
+    timeout_s: float = 60.0  # to get everybody ready; 0 = for ever
+    recovery_s: float = 3.0  # from the end to recovery
+    auto_start: bool = True  # otherwise ready comes only after `start()`
+
+
+class Publication(NamedTuple):
+    """Something to be put on the bus."""
+
+    topic: Topic
+    message: Message
+
+
+class _Agent:
+    """What is known of one vehicle's agent."""
+
+    def __init__(self) -> None:
+        self.health: Health | None = None
+        self.heard_ns = 0
+        self.acting_nonce = 0  # the process that plays
+        self.nonces: dict[int, int] = {}  # process → last heard [ns]
+        self.silent = False
+
+
+class GameMaster:
+    """Give it time and messages; take `outgoing()` to the bus and `news()` to the people."""
+
+    def __init__(self, setup: Setup, target: Vec | None, name: str, nonce: int, timing: Timing) -> None:
+        self.setup = setup
+        self.name = name
+        self.nonce = nonce
+        self.standing = Standing.LISTENING
+        self.phase = Phase.STAGING
+        self.t0_ns = 0
+        self.outcome: Outcome | None = None
+        self.score: Score | None = None
+        self.nearest: dict[int, float] = {}  # smallest distance of each pursuer to the evader so far [m]
+        self._timing = timing
+        self._target = target
+        self._flat = setup.planar or setup.field_profile
+        self._agents = {member.id: _Agent() for member in setup.roster}
+        self._evader = next(member.id for member in setup.roster if member.role is Role.EVADER)
+        self._pursuers = tuple(member.id for member in setup.roster if member.role is Role.PURSUER)
+        self._resume: tuple[int, ...] = ()
+        self._began_ns = -1
+        self._lease_ns = 0
+        self._staged_ns = 0
+        self._ended_ns = 0
+        self._started = timing.auto_start
+        self._before: dict[int, Vec] = {}
+        self._before_ns = 0
+        self._outgoing: list[Publication] = []
+        self._news: list[str] = []
+        self._told: set[object] = set()
+
+    # ------------------------------------------------------------------ what it hears
+
+    def heard_master(self, message: Master, now_ns: int) -> None:
+        """Another master, or the own echo."""
+        if message.nonce == self.nonce or self.standing is Standing.YIELDED:
+            return
+        if self.standing is Standing.LISTENING or message.nonce < self.nonce:
+            self.standing = Standing.YIELDED
+            self._say(f"another master is at work: {message.name}; this one yields and publishes no game")
+        else:
+            self._say_once(
+                ("second master", message.nonce), f"a second master speaks: {message.name}; this one goes on"
+            )
+
+    def heard_health(self, health: Health, now_ns: int) -> None:
+        """An agent's heartbeat."""
+        agent = self._agents.get(health.id)
+        if agent is None:
+            self._say_once(("stranger", health.id), f"vehicle {health.id} is not in the roster: ignored")
+            return
+        for nonce, heard in list(agent.nonces.items()):
+            if nonce != health.nonce and now_ns - heard > SUPERSEDED_NS:
+                del agent.nonces[nonce]
+        agent.nonces[health.nonce] = now_ns
+        agent.health, agent.heard_ns = health, now_ns
+        if len(agent.nonces) > 1 and health.nonce == agent.acting_nonce:
+            self._say_once(
+                ("double", health.id, max(agent.nonces)), f"two agents speak as vehicle {health.id}: stop one"
+            )
+
+    def start(self) -> None:
+        """Let the game begin as soon as everybody is ready."""
+        self._started = True
+
+    def abort(self, wall_ns: int, now_ns: int, reason: str) -> None:
+        """End the game without a verdict."""
+        if self.outcome is None and self.standing is not Standing.YIELDED:
+            self._end("aborted", self._elapsed(wall_ns), 0, wall_ns, now_ns, reason)
+
+    # ------------------------------------------------------------------ time passes
+
+    def tick(self, wall_ns: int, now_ns: int) -> None:
+        """Do what is due; call it a few times a second or more."""
+        if self._began_ns < 0:
+            self._began_ns = now_ns
+        if self.standing is Standing.LISTENING and now_ns - self._began_ns >= LISTEN_NS:
+            self.standing = Standing.HOLDING
+            self._staged_ns = now_ns
+            self._lease_ns = now_ns
+            self._put(SETUP, self.setup)
+            self._put(EVADER_BRIEF, EvaderBrief(self._triple_target(), wall_ns))
+            self._publish_phase(wall_ns, "")
+        if self.standing is not Standing.HOLDING:
+            return
+        if now_ns >= self._lease_ns:
+            self._put(MASTER, Master(self.name, wall_ns, LEASE_S, self.nonce))
+            self._lease_ns = max(self._lease_ns + LEASE_EVERY_NS, now_ns)
+        if self.phase is Phase.STAGING:
+            self._stage(wall_ns, now_ns)
+        elif self.phase is Phase.READY:
+            self._count_down(wall_ns, now_ns)
+        elif self.phase is Phase.RUNNING:
+            self._look_after(wall_ns, now_ns)
+        elif self.phase is Phase.ENDED and now_ns - self._ended_ns >= round(self._timing.recovery_s * NS):
+            self._enter(Phase.RECOVERY, wall_ns, "")
+
+    def lacking(self, now_ns: int) -> dict[int, str]:
+        """Why the game cannot start: vehicle → what it lacks."""
+        lacking: dict[int, str] = {}
+        for id, agent in self._agents.items():
+            if agent.health is None:
+                lacking[id] = "no agent heard"
+            elif now_ns - agent.heard_ns > HEALTH_NS:
+                lacking[id] = "agent silent"
+            elif len(agent.nonces) > 1:
+                lacking[id] = "two agents with this id"
+            elif agent.health.stage not in READY_STAGES:
+                lacking[id] = f"{agent.health.stage}: {', '.join(agent.health.lacks) or 'no reason given'}"
+        return lacking
+
+    def observe(self, wall_ns: int, now_ns: int, positions: Mapping[int, Vec]) -> None:
+        """Judge the game on positions [m; NED] of `wall_ns`, over all the time since the last call.
+
+        A pursuer without a position takes no part until it has one again.
+        """
+        if self.phase is not Phase.RUNNING or self.standing is not Standing.HOLDING:
+            return
+        if self._evader not in positions:
+            return
+        here = {id: self._judged(positions[id]) for id in (self._evader, *self._pursuers) if id in positions}
+        if self.score is None:
+            self.score = opening(here[self._evader], tuple(here[id] for id in self._pursuers if id in here))
+        elif wall_ns > self._before_ns:
+            self._judge(wall_ns, now_ns, here)
+        self._before, self._before_ns = here, wall_ns
+
+    # ------------------------------------------------------------------ what it says
+
+    def outgoing(self) -> list[Publication]:
+        """What is to be published now; handed over once."""
+        out, self._outgoing = self._outgoing, []
+        return out
+
+    def news(self) -> list[str]:
+        """Lines for people; handed over once."""
+        out, self._news = self._news, []
+        return out
+
+    # ------------------------------------------------------------------ inside
+
+    def _stage(self, wall_ns: int, now_ns: int) -> None:
+        lacking = self.lacking(now_ns)
+        patience_ns = self._timing.timeout_s * NS
+        if not lacking and self._started:
+            for agent in self._agents.values():
+                agent.acting_nonce = agent.health.nonce if agent.health else 0
+            self.t0_ns = wall_ns + round(self._timing.ready_s * NS)
+            self._enter(Phase.READY, wall_ns, "")
+        elif lacking and patience_ns > 0 and now_ns - self._staged_ns > patience_ns:
+            missing = "; ".join(f"vehicle {id}: {reason}" for id, reason in sorted(lacking.items()))
+            self._end("aborted", 0.0, 0, wall_ns, now_ns, f"not ready in time: {missing}")
+
+    def _count_down(self, wall_ns: int, now_ns: int) -> None:
+        lacking = self.lacking(now_ns)
+        if lacking:
+            self.t0_ns = 0
+            self._staged_ns = now_ns
+            id, reason = min(lacking.items())
+            self._enter(Phase.STAGING, wall_ns, f"vehicle {id}: {reason}")
+        elif wall_ns >= self.t0_ns:
+            self._enter(Phase.RUNNING, wall_ns, "")
+
+    def _look_after(self, wall_ns: int, now_ns: int) -> None:
+        """Agents that fell silent, came back, or were started again while the game runs."""
+        resume = set(self._resume)
+        for id, agent in self._agents.items():
+            health = agent.health
+            silent = now_ns - agent.heard_ns > HEALTH_NS
+            if silent != agent.silent:
+                agent.silent = silent
+                self._say(f"agent {id} {'is silent' if silent else 'is back'}")
+            if silent or health is None:
+                continue
+            if health.nonce == agent.acting_nonce:
+                if id in resume and health.stage == "acting":
+                    resume.discard(id)
+            elif len(agent.nonces) == 1:
+                agent.acting_nonce = health.nonce
+                resume.add(id)
+                self._say(f"agent {id} was started again and may act again")
+        if resume != set(self._resume):
+            self._resume = tuple(sorted(resume))
+            self._publish_phase(wall_ns, "resume" if self._resume else "")
+
+    def _judge(self, wall_ns: int, now_ns: int, here: dict[int, Vec]) -> None:
+        assert self.score is not None
+        setup, evader = self.setup, self._evader
+        start, dt = (self._before_ns - self.t0_ns) / NS, (wall_ns - self._before_ns) / NS
+        ids = tuple(id for id in self._pursuers if id in self._before and id in here)
+        before = tuple(self._before[id] for id in ids)
+        after = tuple(here[id] for id in ids)
+        target = ZERO if self._target is None else self._judged(self._target)
+        self.score = score = judge(
+            self.score, start, dt, self._before[evader], here[evader], before, after,
+            setup.capture_radius, setup.safety_distance, self._target is not None, target,
+            setup.epsilon_min, setup.horizon,
+        )  # fmt: skip
+        played = min(1.0, (score.time - start) / dt)  # a game ends within a step
+        end = _part(self._before[evader], here[evader], played)
+        for id, p0, p1 in zip(ids, before, after, strict=True):
+            seen = passage(p0, _part(p0, p1, played), self._before[evader], end, 0.0).smallest
+            self.nearest[id] = min(self.nearest.get(id, seen), seen)
+        if score.verdict != Verdict.RUNNING:
+            captor = ids[score.captor] if score.captor >= 0 else 0
+            self._end(_WORDS[Verdict(score.verdict)], score.time, captor, wall_ns, now_ns, "")
+
+    def _judged(self, position: Vec) -> Vec:
+        """Plane games and field profiles are judged horizontally."""
+        return Vec(position.x, position.y, 0.0) if self._flat else position
+
+    def _elapsed(self, wall_ns: int) -> float:
+        return max(0.0, (wall_ns - self.t0_ns) / NS) if self.phase is Phase.RUNNING else 0.0
+
+    def _end(self, verdict: str, time: float, captor: int, wall_ns: int, now_ns: int, reason: str) -> None:
+        smallest = self.score.smallest if self.score is not None else -1.0
+        self.outcome = Outcome(verdict, time, captor, smallest, wall_ns, reason)
+        self._ended_ns = now_ns
+        self._resume = ()
+        self._put(OUTCOME, self.outcome)
+        self._enter(Phase.ENDED, wall_ns, reason or verdict)
+
+    def _enter(self, phase: Phase, wall_ns: int, reason: str) -> None:
+        self.phase = phase
+        self._publish_phase(wall_ns, reason)
+        self._say(f"{phase.value}{': ' + reason if reason else ''}")
+
+    def _publish_phase(self, wall_ns: int, reason: str) -> None:
+        self._put(PHASE, PhaseChange(self.phase, self.t0_ns, wall_ns, self._resume, reason))
+
+    def _triple_target(self) -> swarm.Triple | None:
+        return None if self._target is None else (self._target.x, self._target.y, self._target.z)
+
+    def _put(self, topic: Topic, message: Message) -> None:
+        self._outgoing.append(Publication(topic, message))
+
+    def _say(self, line: str) -> None:
+        self._news.append(line)
+
+    def _say_once(self, about: object, line: str) -> None:
+        if about not in self._told and len(self._told) < 1000:
+            self._told.add(about)
+            self._say(line)
+
+
+def _part(a: Vec, b: Vec, share: float) -> Vec:
+    return along(a, sub(b, a), share)

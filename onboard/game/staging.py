@@ -1,0 +1,68 @@
+"""From a scenario to the game's setup, as every master publishes it."""
+
+from __future__ import annotations
+
+from math import radians
+
+from onboard.core.math.vectors import Vec
+from onboard.game.scenario import Scenario, VehicleSpec, vec
+from onboard.wire.bus.messages import Fence, Member, Origin, Role, Setup
+
+
+def flown(scenario: Scenario, point: Vec) -> Vec:
+    """A place as it is flown: plane games at `flight.height`."""
+    return Vec(point.x, point.y, -scenario.flight.height) if scenario.planar else point
+
+
+def staging_place(scenario: Scenario, spec: VehicleSpec) -> Vec:
+    """Where a vehicle starts [m; NED]: on the ground where the scenario has a ground start."""
+    place = flown(scenario, spec.start())
+    return Vec(place.x, place.y, 0.0) if scenario.flight.ground_start else place
+
+
+def target_of(scenario: Scenario) -> Vec | None:
+    """The evader's target as it is flown."""
+    target = scenario.evader.target
+    return None if target is None else flown(scenario, vec(target))
+
+
+def setup_of(scenario: Scenario, game: str, master: str) -> Setup:
+    """`game/setup`: everything but the evader's target."""
+    p, flight = scenario.parameters, scenario.flight
+    roster = []
+    for index, (id, spec) in enumerate(zip(scenario.ids, scenario.vehicles, strict=True)):
+        place, limits = staging_place(scenario, spec), spec.limits()
+        roster.append(
+            Member(
+                id=id,
+                role=Role.PURSUER if index else Role.EVADER,
+                speed_max=spec.speed,
+                start=(place.x, place.y, place.z),
+                speed_min=limits.speed_min,
+                pitch_min=limits.pitch_min,
+                pitch_max=limits.pitch_max,
+                turn_rate=radians(spec.turn_rate_deg),
+                strategy=spec.strategy,
+            )
+        )
+    fence = flight.fence
+    return Setup(
+        game=game,
+        scenario=scenario.name,
+        scenario_hash=scenario.hash(),
+        master=master,
+        origin=Origin(flight.origin.latitude_deg, flight.origin.longitude_deg, flight.origin.altitude_m),
+        roster=tuple(roster),
+        capture_radius=p.R,
+        safety_distance=scenario.rho,
+        lambda_=p.lambda_,
+        beta=p.beta,
+        epsilon_min=p.epsilon_min,
+        horizon=p.horizon,
+        planar=scenario.planar,
+        fence=None if fence is None else Fence(fence.polygon, fence.height_min, fence.height_max),
+        separation=p.separation,
+        track_sigma=flight.sensor.sigma,
+        seed=scenario.seed,
+        field_profile=flight.field_profile,
+    )

@@ -1,0 +1,26 @@
+"""Run folders: `PARENT/<UTC time>-<name>`."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from pathlib import Path
+
+from onboard.config.strict import ConfigError
+
+SECOND_NS = 1_000_000_000
+
+
+def new_run(parent: Path, name: str, now_ns: int) -> Path:
+    """Make a new run folder at a wall instant [ns]. Raises ConfigError where that cannot be."""
+    at = datetime.fromtimestamp(now_ns // SECOND_NS, UTC).strftime("%Y%m%dT%H%M%SZ")
+    safe = "-".join("".join(c if c.isalnum() else " " for c in name).split())
+    for suffix in ("", *(f"-{n}" for n in range(2, 100))):
+        folder = parent / f"{at}-{safe}{suffix}"
+        try:
+            folder.mkdir(parents=True)
+        except FileExistsError:
+            continue
+        except OSError as error:
+            raise ConfigError(f"{folder}: {(error.strerror or str(error)).lower()}") from None
+        return folder
+    raise ConfigError(f"{parent}: too many runs of {at}-{safe}")

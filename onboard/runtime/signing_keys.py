@@ -1,0 +1,87 @@
+"""MAVLink signing keys and stamps in files that only their owner may read."""
+
+from __future__ import annotations
+
+import os
+import stat
+from pathlib import Path
+
+import msgspec
+
+from onboard.config.strict import ConfigError
+from onboard.wire.mavlink.signing import Stamps
+
+
+def read_key(path: Path) -> bytes:
+    """The 32-byte key in a file: raw bytes, or 64 hexadecimal digits in a line.
+
+    Raises ConfigError where the file is missing, not a file, of the wrong length, or where anybody but
+    its owner may read or write it.
+    """
+    try:
+        with path.open("rb") as file:
+            mode = os.fstat(file.fileno()).st_mode
+            content = file.read(4096)
+    except OSError as error:
+        raise ConfigError(f"{path}: signing key: {(error.strerror or str(error)).lower()}") from None
+    if not stat.S_ISREG(mode):
+        raise ConfigError(f"{path}: signing key: found no regular file, expected one")
+    if mode & 0o077:
+        raise ConfigError(
+            f"{path}: signing key: found mode {stat.S_IMODE(mode):04o}, expected 0600 or 0400: "
+            f"others may read it; run chmod 600 {path} and consider a new key"
+        )
+    if len(content) == 32:
+        return content
+    try:
+        key = bytes.fromhex(content.decode("ascii").strip())
+    except ValueError:
+        key = b""
+    if len(key) != 32:
+        raise ConfigError(
+            f"{path}: signing key: found {len(content)} bytes, expected 32 bytes or 64 hexadecimal digits"
+        )
+    return key
+
+
+class _Saved(msgspec.Struct, frozen=True):
+    own: int
+    streams: list[tuple[int, int, int, int]]  # link id, system, component, stamp
+
+
+class StampFile:
+    """The stamps of one key in a file beside it: replaced in one piece, mode 0600.
+
+    A file that cannot be read or written is a ConfigError at start (`load`) and a count afterwards
+    (`failures`): flying on without a record is safer than falling silent.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.failures = 0
+
+    def load(self) -> Stamps:
+        """What was saved last; nothing at the first start."""
+        try:
+            saved = msgspec.json.decode(self.path.read_bytes(), type=_Saved)
+        except FileNotFoundError:
+            return Stamps(0, {})
+        except OSError as error:
+            raise ConfigError(f"{self.path}: stamps: {(error.strerror or str(error)).lower()}") from None
+        except msgspec.MsgspecError:
+            raise ConfigError(
+                f"{self.path}: stamps: found damaged content, expected what was saved here; "
+                "remove the file if no recorded frame can be replayed"
+            ) from None
+        return Stamps(saved.own, {(link, system, comp): stamp for link, system, comp, stamp in saved.streams})
+
+    def save(self, stamps: Stamps) -> None:
+        """Replace the file."""
+        saved = _Saved(stamps.own, [(*stream, stamp) for stream, stamp in stamps.streams.items()])
+        beside = self.path.with_name(self.path.name + ".new")
+        try:
+            with os.fdopen(os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "wb") as file:
+                file.write(msgspec.json.encode(saved))
+            beside.replace(self.path)
+        except OSError:
+            self.failures += 1

@@ -1,0 +1,279 @@
+"""Messages of an autopilot → values in SI, radians and NED.
+
+degE7, centimetres, millimetres and the wire's degrees end here. `decode` gives None for a message
+that nobody reads, and for one with NaN, infinity or a place that is not on Earth.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import cos, isfinite, pi, radians, sin
+from struct import Struct, error
+from typing import Any
+
+from onboard.core.math.vectors import Vec
+from onboard.wire.mavlink.frames import MavMessage, dialect
+from onboard.wire.mavlink.modes import kind_of, mode_name
+from onboard.wire.mavlink.values import (
+    UNKNOWN,
+    AdsbVehicle,
+    AirData,
+    Attitude,
+    Battery,
+    CommandAck,
+    EkfStatus,
+    ExtendedState,
+    GlobalPosition,
+    GpsFix,
+    Heartbeat,
+    Home,
+    LocalPosition,
+    ParamValue,
+    RadioStatus,
+    StatusText,
+    SysStatus,
+    Timesync,
+    Value,
+    Version,
+    Wind,
+)
+
+
+def decode(message: MavMessage) -> Value | None:
+    """The value of a message that somebody reads; None for others and for one that is not sound."""
+    reader = _READERS.get(message.get_msgId())
+    return reader(message) if reader is not None else None
+
+
+def _finite(*numbers: float) -> bool:
+    return all(map(isfinite, numbers))
+
+
+def _on_earth(latitude_e7: int, longitude_e7: int) -> bool:
+    return -900_000_000 <= latitude_e7 <= 900_000_000 and -1_800_000_000 <= longitude_e7 <= 1_800_000_000
+
+
+def _heartbeat(m: Any) -> Heartbeat:
+    kind = kind_of(m.autopilot, m.type)
+    armed = bool(m.base_mode & dialect.MAV_MODE_FLAG_SAFETY_ARMED)
+    return Heartbeat(
+        kind, m.type, m.autopilot, m.custom_mode, mode_name(kind, m.custom_mode), armed, m.system_status
+    )
+
+
+def _global_position(m: Any) -> GlobalPosition | None:
+    if not _on_earth(m.lat, m.lon):
+        return None
+    velocity = Vec(m.vx * 0.01, m.vy * 0.01, m.vz * 0.01)
+    return GlobalPosition(
+        m.time_boot_ms * 1e-3, m.lat * 1e-7, m.lon * 1e-7, m.alt * 1e-3, m.relative_alt * 1e-3, velocity
+    )
+
+
+def _local_position(m: Any) -> LocalPosition | None:
+    if not _finite(m.x, m.y, m.z, m.vx, m.vy, m.vz):
+        return None
+    return LocalPosition(m.time_boot_ms * 1e-3, Vec(m.x, m.y, m.z), Vec(m.vx, m.vy, m.vz))
+
+
+def _attitude(m: Any) -> Attitude | None:
+    if not _finite(m.roll, m.pitch, m.yaw, m.rollspeed, m.pitchspeed, m.yawspeed):
+        return None
+    if abs(m.roll) > 2 * pi or abs(m.pitch) > 2 * pi or abs(m.yaw) > 4 * pi:
+        return None
+    rates = Vec(m.rollspeed, m.pitchspeed, m.yawspeed)
+    return Attitude(m.time_boot_ms * 1e-3, m.roll, m.pitch, m.yaw, rates)
+
+
+def _air_data(m: Any) -> AirData | None:
+    if not _finite(m.airspeed, m.groundspeed, m.climb, m.alt):
+        return None
+    return AirData(m.airspeed, m.groundspeed, m.climb, m.throttle * 0.01, m.alt)
+
+
+def _wind(m: Any) -> Wind | None:
+    """ArduPilot: `direction` is where it comes from [deg], `speed` is in the ground plane, `speed_z` down."""
+    if not _finite(m.direction, m.speed, m.speed_z):
+        return None
+    origin = radians(m.direction)
+    return Wind(Vec(-m.speed * cos(origin), -m.speed * sin(origin), m.speed_z))
+
+
+def _wind_cov(m: Any) -> Wind | None:
+    """PX4: the vector itself; it does not know the vertical part (NaN)."""
+    if not _finite(m.wind_x, m.wind_y):
+        return None
+    return Wind(Vec(m.wind_x, m.wind_y, m.wind_z if isfinite(m.wind_z) else 0.0))
+
+
+def _sys_status(m: Any) -> SysStatus:
+    bit = dialect.MAV_SYS_STATUS_PREARM_CHECK
+    enabled, health = m.onboard_control_sensors_enabled, m.onboard_control_sensors_health
+    return SysStatus(
+        battery=m.battery_remaining * 0.01 if 0 <= m.battery_remaining <= 100 else UNKNOWN,
+        voltage=m.voltage_battery * 1e-3 if 0 < m.voltage_battery < 65535 else UNKNOWN,
+        pre_arm_known=bool(m.onboard_control_sensors_present & bit),
+        pre_arm_ok=bool(health & bit),
+        unhealthy=enabled & ~health,
+        load=m.load * 1e-3,
+        drop_rate=m.drop_rate_comm * 1e-4,
+    )
+
+
+def _battery(m: Any) -> Battery:
+    cells = [mv for mv in (*m.voltages, *(mv for mv in m.voltages_ext if mv)) if mv != 65535]
+    return Battery(
+        id=m.id,
+        remaining=m.battery_remaining * 0.01 if 0 <= m.battery_remaining <= 100 else UNKNOWN,
+        voltage=sum(cells) * 1e-3 if cells else UNKNOWN,
+        time_left_s=float(m.time_remaining) if m.time_remaining > 0 else UNKNOWN,
+    )
+
+
+def _gps_fix(m: Any) -> GpsFix:
+    return GpsFix(
+        fix=m.fix_type,
+        satellites=m.satellites_visible if m.satellites_visible != 255 else -1,
+        hdop=m.eph * 0.01 if m.eph != 65535 else UNKNOWN,
+        accuracy_m=m.h_acc * 1e-3 if m.h_acc else UNKNOWN,
+    )
+
+
+_NEEDED = (
+    dialect.ESTIMATOR_ATTITUDE
+    | dialect.ESTIMATOR_VELOCITY_HORIZ
+    | dialect.ESTIMATOR_VELOCITY_VERT
+    | dialect.ESTIMATOR_POS_HORIZ_ABS
+)
+# The two reports agree on what is estimated and part ways on what is wrong.
+_FAULTS = dialect.ESTIMATOR_CONST_POS_MODE | dialect.ESTIMATOR_GPS_GLITCH | dialect.ESTIMATOR_ACCEL_ERROR
+_EKF_FAULTS = dialect.EKF_CONST_POS_MODE | dialect.EKF_UNINITIALIZED | dialect.EKF_GPS_GLITCHING
+
+
+def _ekf(flags: int, faults: int, ratios: tuple[float, ...]) -> EkfStatus:
+    """A ratio that is not a number is one that the estimator does not compute."""
+    worst = max((abs(ratio) for ratio in ratios if isfinite(ratio)), default=0.0)
+    return EkfStatus(flags, flags & _NEEDED == _NEEDED and not flags & faults and worst <= 1.0, worst)
+
+
+def _ekf_status_report(m: Any) -> EkfStatus:
+    ratios = (m.velocity_variance, m.pos_horiz_variance, m.pos_vert_variance, m.compass_variance)
+    return _ekf(m.flags, _EKF_FAULTS, ratios)
+
+
+def _estimator_status(m: Any) -> EkfStatus:
+    return _ekf(m.flags, _FAULTS, (m.vel_ratio, m.pos_horiz_ratio, m.pos_vert_ratio, m.mag_ratio))
+
+
+def _extended_state(m: Any) -> ExtendedState:
+    return ExtendedState(m.vtol_state, m.landed_state)
+
+
+def _command_ack(m: Any) -> CommandAck:
+    return CommandAck(m.command, m.result, m.target_system, m.target_component)
+
+
+def _status_text(m: Any) -> StatusText:
+    return StatusText(m.severity, _text(m.text), m.id, m.chunk_seq)
+
+
+def _home(m: Any) -> Home | None:
+    if not _on_earth(m.latitude, m.longitude):
+        return None
+    return Home(m.latitude * 1e-7, m.longitude * 1e-7, m.altitude * 1e-3)
+
+
+_FLOAT = Struct("<f")
+_INTEGERS = {
+    dialect.MAV_PARAM_TYPE_UINT8: Struct("<Bxxx"),
+    dialect.MAV_PARAM_TYPE_INT8: Struct("<bxxx"),
+    dialect.MAV_PARAM_TYPE_UINT16: Struct("<Hxx"),
+    dialect.MAV_PARAM_TYPE_INT16: Struct("<hxx"),
+    dialect.MAV_PARAM_TYPE_UINT32: Struct("<I"),
+    dialect.MAV_PARAM_TYPE_INT32: Struct("<i"),
+}
+
+
+def _param_value(m: Any) -> ParamValue | None:
+    layout = _INTEGERS.get(m.param_type)
+    payload = m.get_payload()  # a float that is NaN loses bits of an integer on its way through Python
+    try:
+        bits = bytes(payload[:4]).ljust(4, b"\0") if payload else _FLOAT.pack(m.param_value)
+    except (error, OverflowError):
+        return None
+    bytewise = float(layout.unpack(bits)[0]) if layout is not None else m.param_value
+    value = m.param_value
+    if not isfinite(value):
+        if layout is None:
+            return None
+        value = bytewise
+    return ParamValue(_text(m.param_id), value, bytewise, m.param_type, m.param_count, m.param_index)
+
+
+def _version(m: Any) -> Version:
+    v = m.flight_sw_version
+    flight = (v >> 24 & 0xFF, v >> 16 & 0xFF, v >> 8 & 0xFF, v & 0xFF)
+    return Version(m.capabilities, flight, m.board_version, m.uid)
+
+
+def _timesync(m: Any) -> Timesync:
+    return Timesync(m.tc1, m.ts1)
+
+
+def _adsb_vehicle(m: Any) -> AdsbVehicle | None:
+    if not _on_earth(m.lat, m.lon):
+        return None
+    course, speed = radians(m.heading * 0.01), m.hor_velocity * 0.01
+    horizontal = m.flags & dialect.ADSB_FLAGS_VALID_VELOCITY and m.flags & dialect.ADSB_FLAGS_VALID_HEADING
+    return AdsbVehicle(
+        icao=m.ICAO_address,
+        callsign=_text(m.callsign).strip(),
+        latitude_deg=m.lat * 1e-7,
+        longitude_deg=m.lon * 1e-7,
+        altitude_m=m.altitude * 1e-3,
+        geometric=m.altitude_type == dialect.ADSB_ALTITUDE_TYPE_GEOMETRIC,
+        velocity=Vec(speed * cos(course), speed * sin(course), -m.ver_velocity * 0.01),
+        age_s=float(m.tslc),
+        position_valid=bool(
+            m.flags & dialect.ADSB_FLAGS_VALID_COORDS and m.flags & dialect.ADSB_FLAGS_VALID_ALTITUDE
+        ),
+        velocity_valid=bool(horizontal),
+    )
+
+
+def _radio_status(m: Any) -> RadioStatus:
+    return RadioStatus(min(m.txbuf, 100) * 0.01, m.rssi, m.remrssi, m.rxerrors)
+
+
+def _text(raw: str | bytes) -> str:
+    if isinstance(raw, bytes):
+        raw = raw.split(b"\0", 1)[0].decode("ascii", errors="replace")
+    return raw.rstrip("\0")
+
+
+_READERS: dict[int, Callable[[Any], Value | None]] = {
+    dialect.MAVLINK_MSG_ID_HEARTBEAT: _heartbeat,
+    dialect.MAVLINK_MSG_ID_GLOBAL_POSITION_INT: _global_position,
+    dialect.MAVLINK_MSG_ID_LOCAL_POSITION_NED: _local_position,
+    dialect.MAVLINK_MSG_ID_ATTITUDE: _attitude,
+    dialect.MAVLINK_MSG_ID_VFR_HUD: _air_data,
+    dialect.MAVLINK_MSG_ID_WIND: _wind,
+    dialect.MAVLINK_MSG_ID_WIND_COV: _wind_cov,
+    dialect.MAVLINK_MSG_ID_SYS_STATUS: _sys_status,
+    dialect.MAVLINK_MSG_ID_BATTERY_STATUS: _battery,
+    dialect.MAVLINK_MSG_ID_GPS_RAW_INT: _gps_fix,
+    dialect.MAVLINK_MSG_ID_EKF_STATUS_REPORT: _ekf_status_report,
+    dialect.MAVLINK_MSG_ID_ESTIMATOR_STATUS: _estimator_status,
+    dialect.MAVLINK_MSG_ID_EXTENDED_SYS_STATE: _extended_state,
+    dialect.MAVLINK_MSG_ID_COMMAND_ACK: _command_ack,
+    dialect.MAVLINK_MSG_ID_STATUSTEXT: _status_text,
+    dialect.MAVLINK_MSG_ID_HOME_POSITION: _home,
+    dialect.MAVLINK_MSG_ID_PARAM_VALUE: _param_value,
+    dialect.MAVLINK_MSG_ID_AUTOPILOT_VERSION: _version,
+    dialect.MAVLINK_MSG_ID_TIMESYNC: _timesync,
+    dialect.MAVLINK_MSG_ID_ADSB_VEHICLE: _adsb_vehicle,
+    dialect.MAVLINK_MSG_ID_RADIO_STATUS: _radio_status,
+}
+
+READ = frozenset(_READERS)
+"""Numbers of the messages that `decode` has a value for."""

@@ -1,0 +1,272 @@
+"""The core compiled: the same source, registered with numba, played at millions of steps a second.
+
+The core itself knows nothing of numba. `register()` marks every kernel of the given modules as
+compilable (`register_jitable`), functions found in closures included, and gives `each` its
+compiled form: a tuple written out in full for the length at hand. `campaign()` plays many games
+of one size, in the plane or in space, from arrays of starts.
+
+Nothing is cached on disk: numba's cache does not notice a change in a called function, and would
+answer with yesterday's strategy. Compiling takes some ten seconds a number of pursuers.
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from functools import cache
+from types import FunctionType, ModuleType
+from typing import Any, NamedTuple
+
+import numba
+import numpy as np
+from numba.core import types
+from numba.extending import overload, register_jitable
+from numpy.typing import NDArray
+
+from onboard.core.game.advance import EvaderStrategy, Game, Params, PursuerStrategy, advance, begin
+from onboard.core.game.referee import Verdict
+from onboard.core.math import each as each_module
+from onboard.core.math.each import each
+from onboard.core.math.states import Limits, Vehicle
+from onboard.core.math.vectors import Vec
+
+KERNELS = (
+    "onboard.core.math.vectors",
+    "onboard.core.geometry.apollonius",
+    "onboard.core.geometry.cones",
+    "onboard.core.strategy.evasion",
+    "onboard.core.strategy.pursuit",
+    "onboard.core.game.referee",
+    "onboard.core.game.advance",
+)
+
+# Everything is inlined, or else the many small functions would pass whole games by value; but
+# this one is called from every rule and would swell the code.
+OUT_OF_LINE = frozenset({"free_ray_limited"})
+
+Array = NDArray[np.float64]
+
+_registered: set[int] = set()
+
+
+def register(modules: Iterable[str] = KERNELS) -> None:
+    """Register every function of the modules with numba; idempotent."""
+    _overload_each()
+    for name in modules:
+        for function in _functions(importlib.import_module(name)):
+            _register(function)
+
+
+def _functions(module: ModuleType) -> list[FunctionType]:
+    return [value for value in vars(module).values() if isinstance(value, FunctionType)]
+
+
+def _register(function: FunctionType) -> None:
+    if id(function) in _registered or function.__module__ == each_module.__name__:
+        return
+    if not function.__module__.startswith(("onboard.core", "sim_bridge")):
+        return
+    _registered.add(id(function))
+    _register_parts(function)
+    register_jitable(forceinline=function.__name__ not in OUT_OF_LINE)(function)
+
+
+def _register_parts(function: FunctionType) -> None:
+    for cell in function.__closure__ or ():
+        if isinstance(cell.cell_contents, FunctionType):
+            _register(cell.cell_contents)
+
+
+@cache
+def _overload_each() -> None:
+    def compiled_each(function, items, shared):  # type: ignore[no-untyped-def]
+        calls = "".join(f"function(items[{k}], {k}, shared), " for k in range(_count(items)))
+        return _written_out("function, items, shared", calls)
+
+    def compiled_pair(function, items, others, shared):  # type: ignore[no-untyped-def]
+        calls = "".join(f"function(items[{k}], others[{k}], shared), " for k in range(_count(items)))
+        return _written_out("function, items, others, shared", calls)
+
+    options: Any = {"forceinline": True}
+    overload(each_module.each, jit_options=options)(compiled_each)
+    overload(each_module.each_pair, jit_options=options)(compiled_pair)
+
+
+def _count(items: Any) -> int:
+    return len(items) if isinstance(items, types.BaseTuple) else 0
+
+
+def _written_out(arguments: str, calls: str) -> Any:
+    names: dict[str, Any] = {}
+    exec(f"def written_out({arguments}):\n    return ({calls})", names)
+    return names["written_out"]
+
+
+class Starts(NamedTuple):
+    """Where many games of one size begin. Player 0 is the evader; NED [m], [m/s]."""
+
+    positions: Array  # (games, players, 3)
+    velocities: Array  # (games, players, 3)
+    speeds: Array  # (games, players)
+    limits: Array  # (games, players, 6), in the order of `Limits`
+    targets: Array  # (games, 3), unused where the parameters say that there is no target
+
+
+class Ends(NamedTuple):
+    """How they ended."""
+
+    verdicts: NDArray[np.int64]  # (games,) of `Verdict`
+    times: Array  # (games,) of the verdict [s]
+    captors: NDArray[np.int64]  # (games,) index of the pursuer, −1 = none
+    smallest: Array  # (games,) smallest distance [m]
+    unsafe: Array  # (games,) time within the safety distance [s]
+    steps: NDArray[np.int64]  # (games,) played
+    trace: Array  # (games, kept + 1, players, 3) places at the start and after every step, NaN after the end
+
+
+def starts_of(games: Sequence[Game], targets: Sequence[Vec]) -> Starts:
+    """The starts of games made elsewhere (from `onboard.core.game.advance.begin`), one target each."""
+    teams = [(game.evader, *game.pursuers) for game in games]
+    limits = [(game.evader_limits, *game.pursuer_limits) for game in games]
+    return Starts(
+        np.array([[v.position for v in team] for team in teams], dtype=float),
+        np.array([[v.velocity for v in team] for team in teams], dtype=float),
+        np.array([[v.speed for v in team] for team in teams], dtype=float),
+        np.array(limits, dtype=float),
+        np.array(targets, dtype=float),
+    )
+
+
+class _Table(NamedTuple):
+    """The starts and the game that is being built from them."""
+
+    starts: Starts
+    game: int
+
+
+def _vehicle(player: int, _index: int, table: _Table) -> Vehicle:
+    """A player of the game at its start (for `each`)."""
+    p = table.starts.positions[table.game, player]
+    v = table.starts.velocities[table.game, player]
+    return Vehicle(
+        Vec(float(p[0]), float(p[1]), float(p[2])),
+        Vec(float(v[0]), float(v[1]), float(v[2])),
+        float(table.starts.speeds[table.game, player]),
+    )
+
+
+def _limits(player: int, _index: int, table: _Table) -> Limits:
+    """What that player may do (for `each`)."""
+    a = table.starts.limits[table.game, player]
+    return Limits(float(a[0]), float(a[1]), float(a[2]), float(a[3]), float(a[4]), float(a[5]))
+
+
+def _begin(table: _Table, pursuers: tuple[int, ...]) -> Game:
+    """The game before its first step."""
+    return begin(
+        _vehicle(0, 0, table),
+        each(_vehicle, pursuers, table),
+        _limits(0, 0, table),
+        each(_limits, pursuers, table),
+    )
+
+
+def _aimed(params: Params, target: Array) -> Params:
+    """The parameters with a game's own target."""
+    return Params(
+        float(params.R), float(params.rho), float(params.lambda_), float(params.beta), float(params.epsilon),
+        float(params.dt), float(params.horizon), float(params.separation), params.planar, params.has_target,
+        Vec(float(target[0]), float(target[1]), float(target[2])), float(params.lookahead),
+    )  # fmt: skip
+
+
+def _note(game: Game, places: Array) -> None:
+    """Write everybody's place down, (players, 3)."""
+    places[0, 0] = game.evader.position.x
+    places[0, 1] = game.evader.position.y
+    places[0, 2] = game.evader.position.z
+    for k in range(len(game.pursuers)):
+        place = game.pursuers[k].position
+        places[k + 1, 0] = place.x
+        places[k + 1, 1] = place.y
+        places[k + 1, 2] = place.z
+
+
+Campaign = Callable[..., Ends]
+
+
+@cache
+def _player(
+    decide_evader: EvaderStrategy, decide_pursuer: PursuerStrategy, pursuers: int, compiled: bool
+) -> Callable[[Starts, Params, Ends, int, int], None]:
+    """Plays games first…last − 1 of the starts into the ends."""
+    team = tuple(range(1, pursuers + 1))
+
+    def play(starts: Starts, params: Params, ends: Ends, first: int, last: int) -> None:
+        kept = ends.trace.shape[1]
+        for number in range(first, last):
+            mine = _aimed(params, starts.targets[number])
+            game = _begin(_Table(starts, number), team)
+            steps = 0
+            if kept > 0:
+                _note(game, ends.trace[number, 0])
+            while game.score.verdict == Verdict.RUNNING:
+                game = advance(game, mine, decide_evader, decide_pursuer)
+                steps += 1
+                if steps < kept:
+                    _note(game, ends.trace[number, steps])
+            ends.verdicts[number] = game.score.verdict
+            ends.times[number] = game.score.time
+            ends.captors[number] = game.score.captor
+            ends.smallest[number] = game.score.smallest
+            ends.unsafe[number] = game.score.unsafe
+            ends.steps[number] = steps
+
+    if not compiled:
+        return play
+    register((*KERNELS, __name__))
+    for strategy in (decide_evader, decide_pursuer):
+        if isinstance(strategy, FunctionType) and id(strategy) not in _registered:
+            _registered.add(id(strategy))
+            _register_parts(strategy)
+            register_jitable(forceinline=True)(strategy)
+    machine: Callable[[Starts, Params, Ends, int, int], None] = numba.njit(nogil=True)(play)
+    return machine
+
+
+def campaign(
+    decide_evader: EvaderStrategy, decide_pursuer: PursuerStrategy, pursuers: int, compiled: bool = True
+) -> Callable[..., Ends]:
+    """The play of many games of one size under two strategies in kernel style.
+
+    Returns `play(starts, params, workers=1, keep=0) -> Ends`: the games go to that many threads (compiled
+    code holds no interpreter lock), and `keep` records everybody's places over the first so many
+    steps. The games differ in their starts, speeds, limits and targets; the rest of the parameters,
+    `planar` too, is common to a call. Compiles at the first call; `compiled=False` runs the same
+    functions interpreted. Raises ValueError where the arrays' shapes disagree.
+    """
+
+    def play(starts: Starts, params: Params, workers: int = 1, keep: int = 0) -> Ends:
+        games = starts.positions.shape[0]
+        shapes = ((pursuers + 1, 3), (pursuers + 1, 3), (pursuers + 1,), (pursuers + 1, 6), (3,))
+        for name, array, shape in zip(Starts._fields, starts, shapes, strict=True):
+            if array.shape != (games, *shape):
+                raise ValueError(f"{name}: shape {array.shape}, expected {(games, *shape)}")
+        starts = Starts(*(np.ascontiguousarray(array, dtype=np.float64) for array in starts))
+        kept = keep + 1 if keep > 0 else 0
+        ends = Ends(
+            np.zeros(games, np.int64), np.zeros(games), np.zeros(games, np.int64), np.zeros(games),
+            np.zeros(games), np.zeros(games, np.int64), np.full((games, kept, pursuers + 1, 3), np.nan),
+        )  # fmt: skip
+        run = _player(decide_evader, decide_pursuer, pursuers, compiled)
+        if workers <= 1 or games < 2 * workers:
+            run(starts, params, ends, 0, games)
+            return ends
+        # Small parts, because games differ in length; each writes into rows of its own.
+        edges = np.linspace(0, games, 8 * workers + 1).astype(int).tolist()
+        with ThreadPoolExecutor(workers) as pool:
+            list(pool.map(lambda k: run(starts, params, ends, edges[k], edges[k + 1]), range(8 * workers)))
+        return ends
+
+    return play

@@ -1,0 +1,68 @@
+"""An aircraft in its air, as one value: the kernel that campaigns step. Kernel style.
+
+One `fly` is one sample of the aircraft; the gusts advance on their own grid, every `GUST_EVERY`
+samples, as `sim_bridge.vehicle.wind.field` does.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from onboard.core.math.vectors import Vec, norm, pitch_of, yaw_of
+from sim_bridge.vehicle.flight.plane import Command, PlaneModel, PlaneState, Steer, step_plane
+from sim_bridge.vehicle.wind.dryden import GustNoise, GustState, first_gust, gust_of, step_gust
+from sim_bridge.vehicle.wind.shear import ROUGHNESS, mean_wind
+
+GUST_EVERY = 2  # samples of the aircraft between two of the gusts (100 Hz and 50 Hz)
+
+
+class Climate(NamedTuple):
+    """The wind of a scenario."""
+
+    reference: Vec  # mean at 20 ft [m/s; NED]
+    shear: bool
+    sigma: float  # rms of the gusts, an axis [m/s]
+    axis_x: float  # level unit vector along which gusts are longitudinal
+    axis_y: float
+
+
+class Flown(NamedTuple):
+    """An aircraft and the gusts it meets."""
+
+    plane: PlaneState
+    gusts: GustState
+
+
+def wind_at(climate: Climate, position: Vec) -> Vec:
+    """Mean wind with shear [m/s; NED]; ground at the height of the origin."""
+    return mean_wind(climate.reference, -position.z, climate.shear, ROUGHNESS)
+
+
+def gust_at(climate: Climate, flown: Flown) -> Vec:
+    """The gust that the aircraft meets now [m/s; NED]."""
+    return gust_of(flown.gusts, climate.sigma, climate.axis_x, climate.axis_y)
+
+
+def launched(plane: PlaneState, noise: GustNoise) -> Flown:
+    """At the start: gusts from their stationary distribution."""
+    return Flown(plane, first_gust(noise))
+
+
+def command_for(velocity: Vec, course: float) -> Command:
+    """What an autopilot makes of a decided velocity through the air [m/s; NED], on `course` [rad] now."""
+    speed = norm(velocity)
+    if speed <= 0.0:
+        return Command(Steer.COURSE, course, 0.0, 0.0)
+    return Command(Steer.COURSE, yaw_of(velocity), pitch_of(velocity), speed)
+
+
+def blown(flown: Flown, dt: float, noise: GustNoise) -> Flown:
+    """The gusts after one tick of their grid, `dt` [s]."""
+    plane = flown.plane
+    return Flown(plane, step_gust(flown.gusts, plane.speed, -plane.position.z, dt, noise))
+
+
+def fly(flown: Flown, model: PlaneModel, command: Command, climate: Climate) -> Flown:
+    """One sample of the aircraft."""
+    wind = wind_at(climate, flown.plane.position)
+    return Flown(step_plane(flown.plane, model, command, wind, gust_at(climate, flown)), flown.gusts)

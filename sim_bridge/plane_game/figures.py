@@ -1,0 +1,206 @@
+"""Pictures of plane games, in the manner of the paper's Figures 2 and 5–7, and animations."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from functools import partial
+from math import atan2, degrees, pi
+from pathlib import Path
+from typing import Any
+
+from onboard.config.strict import ConfigError
+from onboard.core.game.advance import evader_view
+from onboard.core.geometry.apollonius import apollonius_sphere
+from onboard.core.geometry.assessment import half_angle
+from onboard.core.math.vectors import Vec, norm
+from onboard.core.strategy.evasion import resultant_force, target_direction
+from sim_bridge.plane_game.program import Frame, Played
+
+EVADER, PURSUER, TARGET, CIRCLE, CONE = "#d62728", "#555555", "#2ca02c", "#17becf", "#ff7f0e"
+STRATEGY_NAMES = {"paper": "strategy of this paper", "earlier": "strategy of the earlier paper [37]"}
+
+
+def _pyplot() -> Any:
+    import matplotlib
+
+    matplotlib.use("Agg")
+    matplotlib.rcParams["svg.hashsalt"] = "apollonius"
+    import matplotlib.pyplot as plt
+
+    return plt
+
+
+def draw_game(played: Played, folder: Path) -> list[Path]:
+    """Initial and final stage side by side, as PNG and SVG. Returns the files written."""
+    plt = _pyplot()
+    figure, axes = plt.subplots(1, 2, figsize=(14, 7.2), layout="constrained")
+    for axis, index, title in ((axes[0], 0, "initial stage"), (axes[1], -1, "final stage")):
+        draw_stage(axis, played, len(played.frames) - 1 if index else 0)
+        axis.set_title(title)
+    score = played.final.score
+    strategy = STRATEGY_NAMES.get(played.strategy, played.strategy)
+    figure.suptitle(
+        f"{played.scenario.name}, {strategy}: {played.verdict.name.lower()} at {score.time:.1f} s, "
+        f"smallest distance {score.smallest:.1f} m"
+    )
+    handles, labels = axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=5, fontsize=9)
+    stem = f"{played.scenario.name}-{played.strategy}".replace(" ", "-").replace(",", "").replace("/", "-")
+    written = []
+    for ending in ("png", "svg"):
+        path = folder / f"{stem}.{ending}"
+        metadata = {"Date": None} if ending == "svg" else None
+        whole_or_nothing(path, partial(figure.savefig, dpi=110, metadata=metadata))
+        written.append(path)
+    plt.close(figure)
+    return written
+
+
+def draw_stage(axis: Any, played: Played, index: int) -> None:
+    """One instant: paths so far, circles and centres, cones, forces, headings."""
+    frame = played.frames[index]
+    game, params = frame.game, played.params
+    view = evader_view(game, params)
+    span = _extent(played)
+    _paths(axis, played, index)
+    for number, pursuer in enumerate(game.pursuers):
+        sphere = apollonius_sphere(
+            game.evader.position, game.evader.speed, pursuer.position, pursuer.speed
+        )
+        if sphere.exists:
+            axis.add_patch(_circle(sphere.centre, sphere.radius, CIRCLE))
+            axis.plot(sphere.centre.y, sphere.centre.x, "+", color=CIRCLE, ms=7,
+                      label="Apollonius circle and its centre" if number == 0 else None)
+        axis.plot(pursuer.position.y, pursuer.position.x, "o", color=PURSUER, ms=7,
+                  label="pursuer" if number == 0 else None)
+        axis.annotate(str(number + 1), (pursuer.position.y, pursuer.position.x), textcoords="offset points",
+                      xytext=(6, 5), fontsize=9, color=PURSUER)
+        _arrow(axis, pursuer.position, frame.decisions.pursuers[number].direction, 0.05 * span, PURSUER, None)
+    e = game.evader.position
+    for number, cone in enumerate(view.cones):
+        half, middle = half_angle(cone), atan2(cone.axis.x, cone.axis.y)
+        if half < pi:
+            axis.add_patch(_wedge(e, 0.14 * span, middle, half))
+            if number == 0:
+                axis.plot([], [], color=CONE, lw=8, alpha=0.25, label="headings blocked by a pursuer")
+    axis.plot(e.y, e.x, "o", color=EVADER, ms=8, label="evader")
+    _arrow(axis, e, frame.decisions.evader.direction, 0.13 * span, EVADER, "chosen heading")
+    force = resultant_force(view)
+    if norm(force) > 0.0:
+        size = 1.0 / norm(force)
+        way = Vec(force.x * size, force.y * size, 0.0)
+        _arrow(axis, e, way, 0.09 * span, "#9467bd", "resultant force F_res")
+    if params.has_target:
+        _arrow(axis, e, target_direction(view), 0.09 * span, TARGET, "direction of the target F_g")
+        axis.plot(params.target.y, params.target.x, "*", color=TARGET, ms=14, label="target")
+    rule = frame.decisions.evader.rule.name.lower().replace("_", " ")
+    words = f"t = {game.time:.2f} s\nevader: {rule}"
+    axis.text(0.02, 0.98, words, transform=axis.transAxes, va="top", fontsize=9)
+    _frame(axis, played)
+
+
+def check_film(path: Path) -> None:
+    """Demand a kind of film that can be written here. Raises ConfigError."""
+    ending = path.suffix.lower()
+    if ending not in (".gif", ".mp4"):
+        raise ConfigError(f"--animate: found '{path.name}', expected a name ending in .gif or .mp4")
+    if ending == ".mp4":
+        from matplotlib.animation import FFMpegWriter
+
+        if not FFMpegWriter.isAvailable():
+            raise ConfigError("--animate: .mp4 needs ffmpeg, which is not here; .gif needs nothing")
+    if not path.parent.is_dir():
+        raise ConfigError(f"--animate: found the folder '{path.parent}', expected one that exists")
+
+
+def animate(played: Played, path: Path, seconds: float = 10.0, fps: int = 12) -> None:
+    """The game as GIF, or as MP4 where ffmpeg is at hand. Raises ConfigError."""
+    check_film(path)
+    plt = _pyplot()
+    from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
+
+    figure, axis = plt.subplots(figsize=(7.5, 7.5), layout="constrained")
+    count = min(len(played.frames), max(2, int(seconds * fps)))
+    chosen = [round(k * (len(played.frames) - 1) / (count - 1)) for k in range(count)]
+
+    title = f"{played.scenario.name}: {played.verdict.name.lower()} at {played.final.score.time:.1f} s"
+
+    def draw(index: int) -> None:
+        axis.clear()
+        draw_stage(axis, played, index)
+        axis.set_title(title)
+
+    movie = FuncAnimation(figure, draw, frames=chosen)
+    writer = PillowWriter(fps=fps) if path.suffix.lower() == ".gif" else FFMpegWriter(fps=fps)
+    whole_or_nothing(path, lambda part: movie.save(part, writer=writer, dpi=80))
+    plt.close(figure)
+
+
+def whole_or_nothing(path: Path, write: Callable[[Path], None]) -> None:
+    """Write through a neighbour file: a reader sees the whole or nothing. Raises ConfigError."""
+    part = path.with_name(f".{path.stem}.part{path.suffix}")
+    try:
+        write(part)
+        os.replace(part, path)
+    except OSError as error:
+        raise ConfigError(f"{path}: {(error.strerror or str(error)).lower()}") from None
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def _paths(axis: Any, played: Played, index: int) -> None:
+    frames: tuple[Frame, ...] = played.frames[: index + 1]
+    step = max(1, len(frames) // 600)
+    kept = [*frames[:-1:step], frames[-1]]
+    line = [f.game.evader.position for f in kept]
+    axis.plot([p.y for p in line], [p.x for p in line], "--", color=EVADER, lw=1.4)
+    for number in range(len(played.final.pursuers)):
+        line = [f.game.pursuers[number].position for f in kept]
+        axis.plot([p.y for p in line], [p.x for p in line], "-", color=PURSUER, lw=1.0)
+
+
+def _circle(centre: Vec, radius: float, colour: str) -> Any:
+    from matplotlib.patches import Circle
+
+    return Circle((centre.y, centre.x), radius, fill=False, ec=colour, lw=1.0)
+
+
+def _wedge(centre: Vec, radius: float, middle: float, half: float) -> Any:
+    from matplotlib.patches import Wedge
+
+    return Wedge((centre.y, centre.x), radius, degrees(middle - half), degrees(middle + half),
+                 fc=CONE, alpha=0.16, ec="none")
+
+
+def _arrow(axis: Any, start: Vec, way: Vec, length: float, colour: str, label: str | None) -> None:
+    axis.annotate("", (start.y + way.y * length, start.x + way.x * length), (start.y, start.x),
+                  arrowprops={"arrowstyle": "-|>", "color": colour, "lw": 1.6})
+    if label:
+        axis.plot([], [], color=colour, lw=1.6, label=label)
+
+
+def _points(played: Played) -> list[Vec]:
+    step = max(1, len(played.frames) // 100)
+    points = [v.position for f in played.frames[::step] for v in (f.game.evader, *f.game.pursuers)]
+    return [*points, played.params.target] if played.params.has_target else points
+
+
+def _extent(played: Played) -> float:
+    points = _points(played)
+    wide = max(p.y for p in points) - min(p.y for p in points)
+    high = max(p.x for p in points) - min(p.x for p in points)
+    return 1.3 * max(wide, high, 1.0)
+
+
+def _frame(axis: Any, played: Played) -> None:
+    points = _points(played)
+    half = 0.5 * _extent(played)
+    east = 0.5 * (max(p.y for p in points) + min(p.y for p in points))
+    north = 0.5 * (max(p.x for p in points) + min(p.x for p in points))
+    axis.set_xlim(east - half, east + half)
+    axis.set_ylim(north - half, north + half)
+    axis.set_aspect("equal")
+    axis.set_xlabel("east (Z) [m]")
+    axis.set_ylabel("north (X) [m]")
+    axis.grid(alpha=0.25)

@@ -1,0 +1,195 @@
+"""`sim-bridge planar`: the paper's plane game, and Table 1."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import NamedTuple
+
+import msgspec
+
+from onboard.config.strict import ConfigError
+from onboard.core.game.advance import (
+    Decisions,
+    EvaderStrategy,
+    Game,
+    Params,
+    PursuerStrategy,
+    advance,
+    decide,
+)
+from onboard.core.game.referee import Verdict
+from onboard.core.math.vectors import Vec
+from onboard.game.scenario import Scenario, load
+from onboard.runtime.plugins import evader_strategy, pursuer_strategy
+from onboard.runtime.resources import configs
+from sim_bridge.plane_game.setup import game_of, params_of
+
+EARLIER = "earlier"
+THIS_PAPER = "paper"
+
+
+class Frame(NamedTuple):
+    """One instant of a played game, for pictures."""
+
+    game: Game
+    decisions: Decisions  # those taken at this instant
+
+
+class Played(NamedTuple):
+    """A played game."""
+
+    scenario: Scenario
+    strategy: str
+    params: Params
+    frames: tuple[Frame, ...]  # every step
+    final: Game  # at the instant of the verdict
+
+    @property
+    def verdict(self) -> Verdict:
+        """How it ended."""
+        return self.final.score.verdict
+
+
+class Result(msgspec.Struct, frozen=True):
+    """What `--json` prints of one game."""
+
+    scenario: str
+    strategy: str
+    verdict: str
+    escapes: bool
+    reaches: bool | None  # None without a target
+    time: float  # of the verdict [s]
+    captor: int  # number of the pursuer, 0 = none
+    smallest_distance: float  # [m]
+    time_within_safety_distance: float  # [s]
+    dt: float
+    final_positions: list[tuple[float, float]]  # evader, then pursuers (north, east) [m]
+    expected_escapes: bool | None
+    expected_reaches: bool | None
+
+
+def play(scenario: Scenario, strategy: str, dt: float | None = None, keep: bool = True) -> Played:
+    """Play a plane game under a pursuers' strategy; `keep` records every step."""
+    params = params_of(scenario, dt)
+    decide_evader: EvaderStrategy = evader_strategy(scenario.evader.strategy)
+    decide_pursuer: PursuerStrategy = pursuer_strategy(strategy)
+    game = game_of(scenario)
+    frames = []
+    before = game
+    while game.score.verdict == Verdict.RUNNING:
+        if keep:
+            frames.append(Frame(game, decide(game, params, decide_evader, decide_pursuer)))
+        before = game
+        game = advance(game, params, decide_evader, decide_pursuer)
+    final = _cut(before, game)
+    if keep:
+        frames.append(Frame(final, decide(final, params, decide_evader, decide_pursuer)))
+    return Played(scenario, strategy, params, tuple(frames), final)
+
+
+def _cut(before: Game, after: Game) -> Game:
+    """The game at the instant of its verdict, which may lie within the last step."""
+    whole = after.time - before.time
+    share = min(1.0, (after.score.time - before.time) / whole) if whole > 0.0 else 1.0
+
+    def part(a: Vec, b: Vec) -> Vec:
+        return Vec(a.x + (b.x - a.x) * share, a.y + (b.y - a.y) * share, a.z + (b.z - a.z) * share)
+
+    pairs = zip(before.pursuers, after.pursuers, strict=True)
+    return after._replace(
+        time=after.score.time,
+        evader=after.evader._replace(position=part(before.evader.position, after.evader.position)),
+        pursuers=tuple(b._replace(position=part(a.position, b.position)) for a, b in pairs),
+    )
+
+
+def result(played: Played) -> Result:
+    """The figures of a played game."""
+    score = played.final.score
+    expect = played.scenario.expect
+    vehicles = (played.final.evader, *played.final.pursuers)
+    judged = expect is not None and played.strategy in (THIS_PAPER, EARLIER)
+    wanted = None
+    if expect is not None and judged:
+        wanted = expect.escapes_earlier if played.strategy == EARLIER else expect.escapes
+    return Result(
+        played.scenario.name,
+        played.strategy,
+        score.verdict.name.lower(),
+        score.verdict != Verdict.CAPTURED,
+        score.verdict == Verdict.ARRIVED if played.params.has_target else None,
+        round(score.time, 6),
+        score.captor + 1,
+        round(score.smallest, 6),
+        round(score.unsafe, 6),
+        played.params.dt,
+        [(round(v.position.x, 6), round(v.position.y, 6)) for v in vehicles],
+        wanted,
+        expect.reaches if expect is not None and played.strategy == THIS_PAPER else None,
+    )
+
+
+def table1() -> list[Path]:
+    """The scenario files of Table 1's ten rows."""
+    return sorted((configs() / "scenarios" / "table1").glob("row*.toml"))
+
+
+def load_plane(paths: Iterable[Path]) -> list[Scenario]:
+    """Load scenarios and demand that they are plane. Raises ConfigError."""
+    scenarios = []
+    for path in paths:
+        scenario = load(path)
+        if not scenario.planar:
+            raise ConfigError(f"{path}: position: found three numbers, expected two (a plane game)")
+        scenarios.append(scenario)
+    return scenarios
+
+
+def differs(results: Iterable[Result]) -> tuple[int, int]:
+    """How many verdicts agree with the paper's, and how many there are.
+
+    A row without a target counts its "–" as the verdict on the target, as the paper's table does.
+    """
+    agree = total = 0
+    for r in results:
+        if r.expected_escapes is not None:
+            total += 1
+            agree += r.escapes == r.expected_escapes
+            if r.strategy == THIS_PAPER:
+                total += 1
+                agree += r.reaches == r.expected_reaches
+    return agree, total
+
+
+def table(results: list[Result]) -> str:
+    """The table that people read: a line a scenario, all strategies beside each other."""
+    by_name: dict[str, list[Result]] = {}
+    for r in results:
+        by_name.setdefault(r.scenario, []).append(r)
+    rows = [("scenario", "escapes", "paper", "reaches", "paper", "how it went, by the pursuers' strategy")]
+    for name, games in by_name.items():
+        first = next((g for g in games if g.strategy == THIS_PAPER), games[0])
+        rows.append((
+            name,
+            "/".join(_word(g.escapes) for g in games),
+            "/".join(_word(g.expected_escapes) for g in games),
+            _word(first.reaches),
+            _word(first.expected_reaches),
+            ";  ".join(_story(g) for g in games),
+        ))
+    widths = [max(len(row[i]) for row in rows) for i in range(6)]
+    lines = [
+        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows
+    ]
+    lines.insert(1, "  ".join("-" * width for width in widths))
+    return "\n".join(lines)
+
+
+def _word(value: bool | None) -> str:
+    return "–" if value is None else ("Yes" if value else "No")
+
+
+def _story(game: Result) -> str:
+    distance = f"nearest {game.smallest_distance:5.2f} m"
+    return f"{game.strategy}: {game.verdict:8} {game.time:6.2f} s, {distance}"

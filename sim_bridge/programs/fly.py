@@ -1,0 +1,166 @@
+"""`sim-bridge fly`: the whole game, agents included, and the run folder that it leaves.
+
+`--fast` plays it in this process on virtual time; otherwise agents are processes of their own,
+over UDP and Zenoh on loopback, in real time.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+from onboard.config.strict import ConfigError
+from onboard.game.scenario import Scenario, load
+from onboard.runtime.clock import RealClock
+from onboard.runtime.loop import run_virtual, virtual_clock
+from onboard.runtime.plugins import evader_strategy, pursuer_strategy
+from onboard.runtime.run_folder import new_run
+from sim_bridge.programs import run_folder
+from sim_bridge.programs.summary import Summary
+
+REPORT_S = 120.0
+ROOMS = ("flight", "spatial")  # below configs/scenarios/: what is known by its bare name
+
+
+class Options(NamedTuple):
+    """What `fly` can be told."""
+
+    fast: bool = False
+    seed: int | None = None
+    runs: Path = Path("runs")
+    bus: str = ""  # Zenoh endpoint, "" = tcp/127.0.0.1:7447
+    report: bool = True
+    quiet: bool = False
+
+
+class Flown(NamedTuple):
+    """A game that was flown."""
+
+    folder: Path
+    summary: Summary
+    report: Path | None
+
+
+def fly(path: Path, options: Options, say: Callable[[str], None] = print) -> Flown:
+    """Fly a scenario file. Raises ConfigError for what the user can mend."""
+    scenario = load(path)
+    demand_strategies(scenario, str(path))
+    clock = RealClock()
+    folder = new_run(options.runs, scenario.name, clock.wall_ns())
+    tell = (lambda line: None) if options.quiet else say
+    run_folder.write_bytes(folder / "scenario.toml", path.read_bytes())
+    run_folder.write(folder / "versions.json", run_folder.versions())
+    began = clock.monotonic_ns()
+    try:
+        if options.fast:
+            summary, timing = _fast(scenario, options, folder, path.parent, tell)
+        else:
+            from sim_bridge.programs.fly_real import fly_real
+
+            summary, timing = asyncio.run(fly_real(scenario, options, folder, path.parent, tell))
+    except ConfigError:
+        run_folder.discard(folder)
+        raise
+    wall_s = (clock.monotonic_ns() - began) / 1e9
+    run_folder.write(folder / "summary.json", summary)
+    timing = {"wall_s": round(wall_s, 3), **timing}
+    run_folder.write(folder / "timing.json", timing)
+    report = _report(folder, tell) if options.report else None
+    return Flown(folder, summary, report)
+
+
+def _fast(
+    scenario: Scenario, options: Options, folder: Path, home: Path, say: Callable[[str], None]
+) -> tuple[Summary, dict[str, object]]:
+    from sim_bridge.rehearsal import Rehearsal
+
+    seed = scenario.seed if options.seed is None else options.seed
+    clock = RealClock()
+
+    async def play() -> tuple[Summary, float]:
+        virtual = virtual_clock()
+        async with Rehearsal(
+            scenario, virtual, seed=seed, folder=folder, scenario_folder=home, say=say,
+            version=run_folder.versions().get("apollonius", ""),
+        ) as game:  # fmt: skip
+            run_folder.write(folder / "configuration.json", game.configuration())
+            await game.until_ended()
+            await game.land_agents()
+            return game.summary(), virtual.monotonic_ns() / 1e9
+
+    began = clock.monotonic_ns()
+    summary, virtual_s = run_virtual(play())
+    took = max((clock.monotonic_ns() - began) / 1e9, 1e-9)
+    return summary, {
+        "virtual_s": round(virtual_s, 3),
+        "times_real_time": round(virtual_s / took, 2),
+    }
+
+
+def demand_strategies(scenario: Scenario, name: str) -> None:
+    """Raise ConfigError for a strategy that nobody here has: its vehicle would never be ready."""
+    for index, spec in enumerate(scenario.vehicles):
+        try:
+            (pursuer_strategy if index else evader_strategy)(spec.strategy)
+        except ConfigError as error:
+            at = f"pursuers[{index - 1}]" if index else "evader"
+            raise ConfigError(f"{name}: {at}.{error}") from None
+
+
+def _report(folder: Path, say: Callable[[str], None]) -> Path | None:
+    """The report, made by the ground station in a process of its own; a failure is told, not fatal."""
+    command = [sys.executable, "-m", "gcs.cli", "report", str(folder)]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=REPORT_S, check=False)
+    except subprocess.TimeoutExpired:
+        say("the report took too long and was given up")
+        return None
+    page = folder / "report.html"
+    if done.returncode != 0 or not page.exists():
+        lines = done.stderr.strip().splitlines()
+        say(f"no report: {lines[-1] if lines else f'exit code {done.returncode}'}")
+        return None
+    return page
+
+
+def verdict_line(summary: Summary) -> str:
+    """How it ended, in a sentence."""
+    smallest = summary.smallest_distance
+    nearest = "" if smallest is None else f"; smallest distance {smallest:.2f} m"
+    text = {
+        "captured": f"captured by pursuer {summary.captor} after {summary.time:.1f} s",
+        "arrived": f"the evader reached its target after {summary.time:.1f} s",
+        "escaped": f"the evader escaped: not captured within {summary.time:.0f} s",
+        "aborted": f"aborted: {summary.reason}",
+    }.get(summary.verdict, "no outcome")
+    expected = f"; the paper's verdict: {summary.expected}" if summary.expected else ""
+    return f"{text}{nearest}{expected}"
+
+
+def story(flown: Flown) -> str:
+    """What to tell when it is over."""
+    lines = [verdict_line(flown.summary), f"run folder: {flown.folder}"]
+    pictures = sorted((flown.folder / "figures").glob("*.png"))
+    if pictures:
+        lines.append(f"figures:    {pictures[0].parent}: {', '.join(p.stem for p in pictures)}")
+    if flown.report is not None:
+        lines.append(f"report:     {flown.report}  (open it in a browser)")
+    return "\n".join(lines)
+
+
+def scenario_file(name: Path) -> Path:
+    """A scenario's path: as given, or a name below the shipped `configs/scenarios/`."""
+    from onboard.runtime.resources import configs
+
+    if name.exists():
+        return name
+    shipped = configs() / "scenarios"
+    for candidate in (str(name), f"{name}.toml", *(f"{room}/{name}.toml" for room in ROOMS)):
+        if (shipped / candidate).is_file():
+            return shipped / candidate
+    known = sorted(p.stem for room in ROOMS for p in (shipped / room).glob("*.toml"))
+    raise ConfigError(f"{name}: no such file; shipped scenarios: {', '.join(known)}")

@@ -1,0 +1,160 @@
+"""`sim-bridge scenario new|check`: a commented template, and what a scenario promises."""
+
+from __future__ import annotations
+
+from math import degrees, pi, radians
+from pathlib import Path
+
+from onboard.config.strict import ConfigError
+from onboard.core.geometry.assessment import assess
+from onboard.core.geometry.cones import blocked_cones
+from onboard.core.math.vectors import ZERO, distance
+from onboard.game.scenario import Scenario
+from sim_bridge.plane_game.setup import params_of, vehicles_of
+
+TEMPLATE = '''\
+# A scenario of Apollonius. Metres, metres a second, degrees where a key ends in _deg.
+# Positions: [north, east], or [north, east, height above the origin] in all places.
+name = "my game"
+seed = 1                       # of noise, wind and lost datagrams
+
+[evader]
+position = [0, 0]
+speed = 5                      # what the game reckons with
+target = [-60, -140]           # leave it out: the evader only flees
+# strategy = "paper"           # or "straight"
+# pitch_min_deg = -20          # limits (2)-(3); they enter the decision itself
+# pitch_max_deg = 20
+
+[[pursuers]]                   # as many as you like
+position = [40, 30]
+speed = 4
+
+[[pursuers]]
+position = [-30, -60]
+speed = 4
+# strategy = "paper"           # predictive, earlier, pure-pursuit, constant-bearing, proportional-navigation
+
+[parameters]
+R = 2.0                        # capture radius (6)
+# rho = 4.0                    # safety distance (4); 2R where it is not given
+lambda = 100.0                 # of (21)-(22)
+beta = 1.0                     # of (22)
+epsilon_min = 2.0              # the target counts as reached within this (5)
+dt = 0.05                      # time step of plane and compiled games
+horizon = 100.0                # not captured until then: escaped
+separation = 0.0               # pursuers keep this apart (Figure 8b); 0 = off
+
+[flight]                       # only for serve and fly
+autopilot = "arducopter"       # px4, arducopter or arduplane
+airframe = "kinematic"         # nose, slip or coordinated need arduplane
+height = 50.0                  # at which a plane game is flown
+ready_s = 5.0                  # from ready to the start
+# ground_start = true
+# prediction = "network"       # what carries tracks forward: network, ridge or constant-velocity
+
+[flight.origin]
+latitude_deg = 47.397742
+longitude_deg = 8.545594
+altitude_m = 488.0             # above mean sea level
+
+[flight.sensor]                # how the players see each other
+rate_hz = 10.0
+sigma = 0.1                    # position noise [m]
+sigma_velocity = 0.05          # [m/s]
+delay_s = 0.1
+dropout = 0.05                 # share of measurements lost
+
+[flight.impairment]            # what happens to datagrams
+loss = 0.0
+
+[flight.wind]
+speed = 0.0                    # mean wind at 6 m height
+from_deg = 270.0               # where it comes from
+gust_sigma = 0.0               # of Dryden gusts
+'''
+
+
+def new(path: Path) -> str:
+    """Write the template to a new file. Raises ConfigError where it exists or cannot be."""
+    try:
+        with path.open("x", encoding="utf-8") as file:
+            file.write(TEMPLATE)
+    except FileExistsError:
+        raise ConfigError(f"{path}: there is a file of this name already") from None
+    except OSError as error:
+        raise ConfigError(f"{path}: {(error.strerror or str(error)).lower()}") from None
+    return f"template written to {path}; try: sim-bridge scenario check {path}"
+
+
+def check(scenario: Scenario) -> str:
+    """What a scenario promises, in lines for people."""
+    params = params_of(scenario)
+    evader, *pursuers = vehicles_of(scenario)
+    rho = params.rho
+    seen = assess(evader, tuple(pursuers), rho, params.has_target, params.target, params.planar)
+    lines = [
+        f"{scenario.name}: {len(pursuers)} pursuers, {'plane' if params.planar else 'in space'}, "
+        f"R = {params.R:g} m, ρ = {rho:g} m, horizon {params.horizon:g} s",
+        "",
+        "vehicle   role      speed    turn radius  distance  γ      half-angle  intercepts  denies target",
+    ]
+    for index, (id, spec) in enumerate(zip(scenario.ids, scenario.vehicles, strict=True)):
+        radius = spec.speed / radians(spec.turn_rate_deg)
+        row = f"{id:7d}   {'pursuer' if index else 'evader':8s}  {spec.speed:4.1f} m/s  {radius:8.1f} m"
+        if index:
+            prospect = seen.prospects[index - 1]
+            meets = f"in {prospect.time:.1f} s" if prospect.intercepts else "no"
+            denies = ("yes" if prospect.denies_target else "no") if params.has_target else "–"
+            row += (
+                f"   {distance(pursuers[index - 1].position, evader.position):7.1f} m"
+                f"  {spec.speed / evader.speed:5.2f}  {degrees(prospect.half_angle):8.1f}°"
+                f"   {meets:>10s}  {denies}"
+            )
+        lines.append(row)
+    lines += ["", *_freedom(scenario), *_duration(scenario)]
+    return "\n".join(lines)
+
+
+def _freedom(scenario: Scenario) -> list[str]:
+    params = params_of(scenario)
+    evader, *pursuers = vehicles_of(scenario)
+    seen = assess(evader, tuple(pursuers), params.rho, params.has_target, params.target, params.planar)
+    if seen.encircled:
+        return ["free rays at the start: none, the evader is encircled"]
+    if params.planar:
+        gaps = ", ".join(
+            f"{degrees(g.start) % 360:.0f}° to {degrees(g.start + g.width) % 360:.0f}°" for g in seen.gaps
+        )
+        return [f"free headings at the start: {gaps} (largest gap {degrees(seen.largest_gap):.0f}°)"]
+    cones = blocked_cones(evader, tuple(pursuers), params.rho)
+    return [
+        f"free rays at the start: the largest free cap has a radius of {degrees(seen.cap.radius):.1f}° "
+        f"({len(cones)} cones)"
+    ]
+
+
+def _duration(scenario: Scenario) -> list[str]:
+    """How long it will last, as far as one can say without playing it."""
+    params = params_of(scenario)
+    evader, *pursuers = vehicles_of(scenario)
+    lines = []
+    if params.has_target:
+        straight = distance(evader.position, params.target) / evader.speed
+        lines.append(f"straight to the target: {straight:.1f} s; the game lasts at most {params.horizon:g} s")
+    else:
+        lines.append(f"no target: the game lasts until a capture, at most {params.horizon:g} s")
+    turn = radians(scenario.evader.turn_rate_deg)
+    half_turn = pi / turn
+    lines.append(f"a half turn of the evader takes {half_turn:.1f} s")
+    faster = [p for p in pursuers if p.speed > evader.speed]
+    if faster:
+        least = min(distance(p.position, evader.position) / (p.speed - evader.speed) for p in faster)
+        lines.append(f"{len(faster)} faster than the evader: a chase from behind ends within {least:.0f} s")
+    if params.has_target and distance(evader.position, params.target) <= params.epsilon:
+        lines.append("warning: the evader starts at its target")
+    if any(distance(p.position, evader.position) <= params.R for p in pursuers):
+        lines.append("warning: a pursuer starts within the capture radius")
+    if scenario.flight.airframe.value != "kinematic" and evader.position == ZERO and params.R < 10.0:
+        lines.append("warning: R below 10 m is less than what transfer-function aircraft can aim at")
+    return lines

@@ -1,0 +1,172 @@
+"""`sim-bridge serve`: the simulated autopilots on UDP, the sensor and the master on the bus, in real time."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import secrets
+import signal
+from collections.abc import Awaitable, Callable, Sequence
+from pathlib import Path
+
+import msgspec
+
+from onboard.config.strict import ConfigError
+from onboard.game.master import Standing
+from onboard.game.scenario import Scenario, load
+from onboard.runtime.bus_zenoh import ZenohBus, open_zenoh
+from onboard.runtime.clock import RealClock
+from onboard.runtime.links import open_udp
+from onboard.runtime.protocols import Link
+from onboard.runtime.tasks import Pace, periodic
+from onboard.wire.bus.messages import Outcome, Phase
+from onboard.wire.bus.topics import DEFAULT_GAME
+from sim_bridge.world.bridge import Bridge
+from sim_bridge.world.radio import GROUND_STATIONS, Radio, agent_ports
+from sim_bridge.world.staging import kind_of
+from sim_bridge.world.world import Tap
+
+HOST = "127.0.0.1"
+STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+Started = Callable[[Bridge, ZenohBus, dict[int, int]], None]  # the bridge, its bus, the agents' ports
+Ending = Callable[[], Awaitable[None]]
+
+
+class Options(msgspec.Struct, frozen=True, kw_only=True):
+    """What `serve` can be told."""
+
+    game: str = DEFAULT_GAME
+    bus: str = ""  # Zenoh endpoint; "" = tcp/127.0.0.1:7447
+    listen: bool = False  # be the one the others connect to
+    zenoh: Path | None = None  # Zenoh configuration file
+    host: str = HOST
+    referee: bool = True  # be the game's master, unless another one is
+    once: bool = False  # end when the game has ended
+    seed: int | None = None  # in place of the scenario's
+    ports: Path | None = None  # JSON file to write the agents' ports to
+    ground_stations: bool = True  # send to 14550 too
+
+
+def serve(
+    scenario: Path, options: Options, say: Callable[[str], None] = print, tap: Tap | None = None
+) -> Outcome | None:
+    """Serve a scenario file until ctrl-C or SIGTERM (or the game's end); gives the outcome if there was one.
+
+    Raises ConfigError: a wrong scenario, a port or a bus that cannot be.
+    """
+    return asyncio.run(serve_scenario(load(scenario), options, say, tap, scenario.parent))
+
+
+async def serve_scenario(
+    scenario: Scenario,
+    options: Options,
+    say: Callable[[str], None],
+    tap: Tap | None = None,
+    folder: Path | None = None,
+    started: Started | None = None,
+    ending: Ending | None = None,
+) -> Outcome | None:
+    """`serve` on the running loop; recordings of wind lie in `folder`; `started` is told what is up.
+
+    `ending` is awaited when it shall end, while the vehicles still fly."""
+    if not options.game or set(options.game) & set("/*$?#"):
+        raise ConfigError(f"game: found '{options.game}', expected a name without / * $ ? #")
+    loop, stop = asyncio.get_running_loop(), asyncio.Event()
+    radios: dict[int, Radio] = {}
+    bus: ZenohBus | None = None
+    try:
+        for number in STOPPING:
+            with contextlib.suppress(ValueError, NotImplementedError):  # not on the main thread
+                loop.add_signal_handler(number, stop.set)
+        ports = agent_ports(scenario.ids, options.host)
+        for id in scenario.ids:
+            peers = [(options.host, ports[id])]
+            if options.ground_stations:
+                peers.append((options.host, GROUND_STATIONS))
+            radios[id] = Radio(await open_udp(options.host, 0), peers)
+        bus = await open_zenoh(options.bus or None, listen=options.listen, config_file=options.zenoh)
+        links: dict[int, Sequence[Link]] = {id: (radio,) for id, radio in radios.items()}
+        bridge = Bridge(
+            scenario,
+            RealClock(),
+            bus,
+            links,
+            nonce=secrets.randbits(48),
+            game=options.game,
+            seed=options.seed,
+            folder=folder,
+            tap=tap,
+            say=say,
+            referee=options.referee,
+        )
+        _introduce(scenario, options, ports, radios, bus, say)
+        if started is not None:
+            started(bridge, bus, ports)
+        await _until_stopped(bridge, bus, options, stop, say, ending)
+        bridge.close()
+        return bridge.master.rules.outcome if bridge.master is not None else None
+    finally:
+        for number in STOPPING:
+            with contextlib.suppress(ValueError, NotImplementedError):
+                loop.remove_signal_handler(number)
+        for radio in radios.values():
+            radio.close()
+        if bus is not None:
+            await bus.close()
+
+
+async def _until_stopped(
+    bridge: Bridge,
+    bus: ZenohBus,
+    options: Options,
+    stop: asyncio.Event,
+    say: Callable[[str], None],
+    ending: Ending | None,
+) -> None:
+    last = bus.status()
+
+    def watch() -> None:
+        nonlocal last
+        status = bus.status()
+        if status != last:
+            last = status
+            say(f"bus: {status}")
+        rules = bridge.master.rules if bridge.master is not None else None
+        over = rules is not None and (rules.phase is Phase.RECOVERY or rules.standing is Standing.YIELDED)
+        if options.once and over:
+            stop.set()
+
+    async with asyncio.TaskGroup() as group:
+        tasks = [
+            group.create_task(bridge.run(), name="world"),
+            group.create_task(periodic(Pace("watch", 0.5), watch, RealClock()), name="watch"),
+        ]
+        await stop.wait()
+        if ending is not None:
+            await ending()
+        for task in tasks:
+            task.cancel()
+
+
+def _introduce(
+    scenario: Scenario,
+    options: Options,
+    ports: dict[int, int],
+    radios: dict[int, Radio],
+    bus: ZenohBus,
+    say: Callable[[str], None],
+) -> None:
+    say(f"{scenario.name}: {len(scenario.ids)} vehicles, game '{options.game}', seed "
+        f"{scenario.seed if options.seed is None else options.seed}")
+    for id, spec in zip(scenario.ids, scenario.vehicles, strict=True):
+        role = "evader" if spec is scenario.evader else "pursuer"
+        say(f"  vehicle {id:3d}  {role:8s} {kind_of(scenario, spec).value:10s}  agent on udp {options.host}:"
+            f"{ports[id]}  autopilot at {radios[id].address[1]}")
+    if options.ground_stations:
+        say(f"  ground stations on udp {options.host}:{GROUND_STATIONS}")
+    say(f"bus: {bus.status()}")
+    if options.ports is not None:
+        try:
+            options.ports.write_bytes(msgspec.json.encode({str(id): port for id, port in ports.items()}))
+        except OSError as error:
+            raise ConfigError(f"{options.ports}: {(error.strerror or str(error)).lower()}") from None

@@ -1,0 +1,98 @@
+"""Figures of predictors, in the manner of the paper's Figures 3 and 4, and of a comparison."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from onboard.pilot.predictor.activation import SParabola
+from sim_bridge.studies.predict import FIGURE4_TRAINED, FLYING, LAST, PAPER, STEADY, Drawn, Figure4
+
+COLOURS = {LAST: "#888888", STEADY: "#1f77b4", FLYING: "#d62728", PAPER: "#9467bd"}
+
+
+def _pyplot() -> Any:
+    import matplotlib
+
+    matplotlib.use("Agg")
+    matplotlib.rcParams["svg.hashsalt"] = "apollonius"
+    import matplotlib.pyplot as plt
+
+    return plt
+
+
+def draw_activation(folder: Path) -> list[Path]:
+    """The s-parabola for p = 1/4 and 1/20 (Figure 3). Returns the files written."""
+    plt = _pyplot()
+    figure, axes = plt.subplots(1, 2, figsize=(10, 4), layout="constrained", sharey=True)
+    s = np.linspace(-3.0, 3.0, 1201)
+    for axis, p, name in zip(axes, (0.25, 0.05), ("1/4", "1/20"), strict=True):
+        f = SParabola(p, 0.0)
+        axis.plot(s, f.value(s), color="#1f77b4", label="s-parabola (25)")
+        axis.plot(s, f.upper(s), color="#2ca02c", linestyle="--", label="upper branch alone")
+        axis.plot(s, SParabola(p, -0.5).value(s), color="#ff7f0e", linestyle=":", label="β = −0.5")
+        axis.set(title=f"p = {name}", xlabel="s")
+        axis.axhline(0.0, color="#cccccc", linewidth=0.8)
+        axis.axvline(0.0, color="#cccccc", linewidth=0.8)
+    axes[0].set_ylabel("f(s)")
+    axes[0].legend()
+    return _save(plt, figure, folder, "s-parabola")
+
+
+def draw_example(example: Figure4, folder: Path) -> list[Path]:
+    """Trajectory, prediction on the training set and on the test set (Figure 4). Returns the files."""
+    plt = _pyplot()
+    figure, axis = plt.subplots(figsize=(8, 6), layout="constrained")
+    cut = FIGURE4_TRAINED
+    axis.plot(*example.truth.T, color="#2ca02c", label="trajectory")
+    axis.plot(*example.predicted[:cut].T, color="#1f77b4", linestyle="-.", label="prediction, training set")
+    axis.plot(*example.predicted[cut:].T, color="#d62728", linestyle="--", label="prediction, test set")
+    x, y = example.results
+    axis.set(
+        title=f"mean test error: x {x.error_test:.2f} m, y {y.error_test:.2f} m",
+        xlabel="x [m]",
+        ylabel="y [m]",
+        aspect="equal",
+    )
+    axis.legend()
+    return _save(plt, figure, folder, "example-3-5-2")
+
+
+def draw_comparison(drawn: Drawn, folder: Path) -> list[Path]:
+    """The track with what was predicted 1 s ahead, and mean errors by horizon. Returns the files."""
+    plt = _pyplot()
+    figure, (left, right) = plt.subplots(1, 2, figsize=(13, 6), layout="constrained")
+    truth = drawn.recording.truth
+    left.plot(truth[:, 1], truth[:, 0], color="#2ca02c", label="track")
+    for name, path in drawn.paths.items():
+        if name != LAST:
+            label = f"{name}, 1 s ahead"
+            left.plot(path[:, 1], path[:, 0], ".", markersize=3, color=COLOURS[name], label=label)
+    left.set(title=drawn.comparison.track, xlabel="east [m]", ylabel="north [m]")
+    left.set_aspect("equal", adjustable="datalim")
+    left.legend(fontsize=8)
+    for row in drawn.comparison.rows:
+        right.plot(drawn.comparison.horizons, row.mean_error, "o-", color=COLOURS[row.predictor],
+                   label=row.predictor)
+        if any(row.stated):
+            right.plot(drawn.comparison.horizons, row.stated, ":", color=COLOURS[row.predictor],
+                       label=f"{row.predictor}, stated")
+    right.set(xscale="log", yscale="log", xlabel="ahead [s]", ylabel="mean distance [m]", title="error")
+    right.set_xticks(drawn.comparison.horizons, [f"{h:g}" for h in drawn.comparison.horizons])
+    right.minorticks_off()
+    right.legend(fontsize=8)
+    stem = "predict-" + "".join(c if c.isalnum() else "-" for c in drawn.comparison.track)
+    return _save(plt, figure, folder, stem)
+
+
+def _save(plt: Any, figure: Any, folder: Path, stem: str) -> list[Path]:
+    folder.mkdir(parents=True, exist_ok=True)
+    written = []
+    for ending in ("png", "svg"):
+        path = folder / f"{stem}.{ending}"
+        figure.savefig(path, dpi=110, metadata={"Date": None} if ending == "svg" else None)
+        written.append(path)
+    plt.close(figure)
+    return written

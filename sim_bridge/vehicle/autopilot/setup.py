@@ -1,0 +1,39 @@
+"""What an autopilot is made from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from onboard.game.scenario import Kind
+from onboard.wire.geodesy import Frame, Geodetic
+from onboard.wire.mavlink.signing import Signing
+from sim_bridge.vehicle.motion import Motion
+
+
+class Setup(NamedTuple):
+    """One vehicle, as its autopilot is delivered.
+
+    `origin` is that of the autopilot's own local frame: it differs from the game's, as it does
+    between real vehicles, which set it where their own receiver found its first fix.
+    """
+
+    kind: Kind
+    system: int  # MAVLink system id; the component is always 1
+    frame: Frame  # the game's, in which motion is given
+    start: Motion
+    home: Geodetic  # where RTL leads
+    origin: Geodetic  # of LOCAL_POSITION_NED
+    epoch_ns: int  # wall instant at now_ns = 0
+    airborne: bool  # whether it starts flying and armed, in LOITER or HOLD
+    speed_min: float  # [m/s; air] of planes: AIRSPEED_MIN
+    speed_max: float  # [m/s; air]
+    speed_cruise: float  # [m/s; air] flown when nothing else is asked
+    bank_max_deg: float  # of planes: ROLL_LIMIT_DEG
+    pitch_min_deg: float  # of planes: PTCH_LIM_MIN_DEG
+    pitch_max_deg: float
+    ready_s: float = 12.0  # a ground start's time from boot until arming is accepted [s]
+    healthy_s: float = 7.0  # … until the pre-arm bit says healthy: real ones say it too early [s]
+    battery_s: float = 1200.0  # from full to empty in flight [s]
+    parameters: Mapping[str, float] = {}  # in place of the defaults
+    signing: Signing | None = None

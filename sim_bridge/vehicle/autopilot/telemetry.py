@@ -1,0 +1,354 @@
+"""The messages an autopilot sends about itself: one builder a message, SI in, the wire's units out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import atan2, cos, degrees, nan, sin, sqrt
+from typing import TYPE_CHECKING
+
+from onboard.core.math.vectors import Vec, clamp
+from onboard.wire.mavlink.frames import MavMessage, dialect
+from sim_bridge.vehicle.autopilot import health
+
+if TYPE_CHECKING:
+    from sim_bridge.vehicle.autopilot.autopilot import Autopilot
+
+PX4: int = dialect.MAV_AUTOPILOT_PX4
+MAVLINK_VERSION = 3
+UNKNOWN_U16 = 65535
+
+
+def _i16(value: float) -> int:
+    return int(clamp(round(value), -32768, 32767))
+
+
+def _u16(value: float) -> int:
+    return int(clamp(round(value), 0, 65535))
+
+
+def _i32(value: float) -> int:
+    return int(clamp(round(value), -(2**31), 2**31 - 1))
+
+
+def _e7(angle_deg: float) -> int:
+    return _i32(angle_deg * 1e7)
+
+
+def heartbeat(ap: Autopilot, now_ns: int) -> MavMessage:
+    mode: int = dialect.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED
+    if ap.armed:
+        mode |= dialect.MAV_MODE_FLAG_SAFETY_ARMED
+    if not ap.is_mode("STABILIZED" if ap.autopilot_type == PX4 else "STABILIZE"):
+        mode |= dialect.MAV_MODE_FLAG_STABILIZE_ENABLED | dialect.MAV_MODE_FLAG_GUIDED_ENABLED
+    if not ap.health.positioned and not ap.landed:
+        status: int = dialect.MAV_STATE_CRITICAL
+    else:
+        status = dialect.MAV_STATE_ACTIVE if ap.armed else dialect.MAV_STATE_STANDBY
+    message: MavMessage = dialect.MAVLink_heartbeat_message(
+        ap.vehicle_type, ap.autopilot_type, mode, ap.mode, status, MAVLINK_VERSION
+    )
+    return message
+
+
+def attitude(ap: Autopilot, now_ns: int) -> MavMessage:
+    m = ap.motion
+    message: MavMessage = dialect.MAVLink_attitude_message(
+        ap.boot_ms(now_ns), m.roll, m.pitch, m.yaw, m.rates.x, m.rates.y, m.rates.z
+    )
+    return message
+
+
+def global_position(ap: Autopilot, now_ns: int) -> MavMessage | None:
+    if not ap.positioned(now_ns):
+        return None
+    place, v = ap.place, ap.motion.velocity
+    heading = round(degrees(ap.motion.yaw) * 100.0) % 36000
+    message: MavMessage = dialect.MAVLink_global_position_int_message(
+        ap.boot_ms(now_ns),
+        _e7(place.latitude_deg),
+        _e7(place.longitude_deg),
+        _i32(place.altitude_m * 1e3),
+        _i32((place.altitude_m - ap.home.altitude_m) * 1e3),
+        _i16(v.x * 1e2),
+        _i16(v.y * 1e2),
+        _i16(v.z * 1e2),
+        heading,
+    )
+    return message
+
+
+def local_position(ap: Autopilot, now_ns: int) -> MavMessage | None:
+    if not ap.positioned(now_ns):
+        return None
+    p, v = ap.local.ned_from_geodetic(*ap.place), ap.motion.velocity
+    message: MavMessage = dialect.MAVLink_local_position_ned_message(
+        ap.boot_ms(now_ns), p.x, p.y, p.z, v.x, v.y, v.z
+    )
+    return message
+
+
+def vfr_hud(ap: Autopilot, now_ns: int) -> MavMessage:
+    m = ap.motion
+    ground = sqrt(m.velocity.x * m.velocity.x + m.velocity.y * m.velocity.y)
+    throttle = 0 if ap.landed else 50
+    message: MavMessage = dialect.MAVLink_vfr_hud_message(
+        m.airspeed, ground, round(degrees(m.yaw)) % 360, throttle, ap.place.altitude_m, -m.velocity.z
+    )
+    return message
+
+
+def sys_status(ap: Autopilot, now_ns: int) -> MavMessage:
+    h = ap.health
+    good = h.sensor_health(ap.gps_fixed(now_ns), ap.positioned(now_ns), ap.healthy(now_ns))
+    current = health.CURRENT_IDLE if ap.landed else health.CURRENT_FLYING
+    message: MavMessage = dialect.MAVLink_sys_status_message(
+        health.SENSORS,
+        health.SENSORS,
+        good,
+        250,
+        _u16(h.voltage * 1e3),
+        _i16(current * 1e2),
+        round(h.battery * 100.0),
+        0,
+        0,
+        0,
+        0,
+        0,
+        0,
+    )
+    return message
+
+
+def battery_status(ap: Autopilot, now_ns: int) -> MavMessage:
+    h = ap.health
+    cells = [_u16(h.voltage / health.CELLS * 1e3)] * health.CELLS + [UNKNOWN_U16] * (10 - health.CELLS)
+    current = health.CURRENT_IDLE if ap.landed else health.CURRENT_FLYING
+    used = (1.0 - h.battery) * ap.setup.battery_s * health.CURRENT_FLYING / 3.6  # [mAh]
+    message: MavMessage = dialect.MAVLink_battery_status_message(
+        0,
+        dialect.MAV_BATTERY_FUNCTION_ALL,
+        dialect.MAV_BATTERY_TYPE_LIPO,
+        32767,
+        cells,
+        _i16(current * 1e2),
+        _i32(used),
+        -1,
+        round(h.battery * 100.0),
+    )
+    return message
+
+
+def gps_raw(ap: Autopilot, now_ns: int) -> MavMessage:
+    place, v = ap.place, ap.motion.velocity
+    fixed = ap.gps_fixed(now_ns)
+    fix = dialect.GPS_FIX_TYPE_3D_FIX if fixed else dialect.GPS_FIX_TYPE_NO_FIX
+    course = round(degrees(atan2(v.y, v.x)) * 100.0) % 36000
+    message: MavMessage = dialect.MAVLink_gps_raw_int_message(
+        (ap.boot_ms(now_ns)) * 1000,
+        fix,
+        _e7(place.latitude_deg) if fixed else 0,
+        _e7(place.longitude_deg) if fixed else 0,
+        _i32(place.altitude_m * 1e3) if fixed else 0,
+        121 if fixed else UNKNOWN_U16,
+        200 if fixed else UNKNOWN_U16,
+        _u16(sqrt(v.x * v.x + v.y * v.y) * 1e2) if fixed else UNKNOWN_U16,
+        course if fixed else UNKNOWN_U16,
+        10 if fixed else 0,
+    )
+    return message
+
+
+def extended_state(ap: Autopilot, now_ns: int) -> MavMessage:
+    landed = dialect.MAV_LANDED_STATE_ON_GROUND if ap.landed else dialect.MAV_LANDED_STATE_IN_AIR
+    message: MavMessage = dialect.MAVLink_extended_sys_state_message(dialect.MAV_VTOL_STATE_UNDEFINED, landed)
+    return message
+
+
+def ekf_status(ap: Autopilot, now_ns: int) -> MavMessage:
+    positioned = ap.positioned(now_ns)
+    ratio = 0.05 if positioned else 1.5
+    message: MavMessage = dialect.MAVLink_ekf_status_report_message(
+        ap.health.ekf_flags(positioned), ratio, ratio, 0.03, 0.02, 0.0, 0.0
+    )
+    return message
+
+
+def estimator_status(ap: Autopilot, now_ns: int) -> MavMessage:
+    positioned = ap.positioned(now_ns)
+    ratio = 0.05 if positioned else 1.5
+    message: MavMessage = dialect.MAVLink_estimator_status_message(
+        ap.boot_ms(now_ns) * 1000,
+        ap.health.ekf_flags(positioned),
+        ratio,
+        ratio,
+        0.03,
+        0.02,
+        0.0,
+        0.0,
+        0.3,
+        0.4,
+    )
+    return message
+
+
+def wind(ap: Autopilot, now_ns: int) -> MavMessage:
+    """ArduPilot: the direction the wind comes from [degrees] and its speed."""
+    w = ap.air.wind
+    message: MavMessage = dialect.MAVLink_wind_message(
+        degrees(atan2(-w.y, -w.x)) % 360.0, sqrt(w.x * w.x + w.y * w.y), w.z
+    )
+    return message
+
+
+def wind_cov(ap: Autopilot, now_ns: int) -> MavMessage:
+    """PX4: where the wind blows to, as velocity."""
+    w = ap.air.wind
+    message: MavMessage = dialect.MAVLink_wind_cov_message(
+        ap.boot_ms(now_ns) * 1000, w.x, w.y, w.z, 0.1, 0.1, ap.place.altitude_m, 0.5, 0.5
+    )
+    return message
+
+
+def system_time(ap: Autopilot, now_ns: int) -> MavMessage:
+    wall_us = (ap.setup.epoch_ns + now_ns) // 1000 if ap.gps_fixed(now_ns) else 0
+    message: MavMessage = dialect.MAVLink_system_time_message(wall_us, ap.boot_ms(now_ns))
+    return message
+
+
+def home_position(ap: Autopilot, now_ns: int) -> MavMessage | None:
+    if not ap.home_known:
+        return None
+    p: Vec = ap.local.ned_from_geodetic(*ap.home)
+    q = [nan] * 4 if ap.autopilot_type != PX4 else [1.0, 0.0, 0.0, 0.0]
+    message: MavMessage = dialect.MAVLink_home_position_message(
+        _e7(ap.home.latitude_deg),
+        _e7(ap.home.longitude_deg),
+        _i32(ap.home.altitude_m * 1e3),
+        p.x,
+        p.y,
+        p.z,
+        q,
+        0.0,
+        0.0,
+        0.0,
+        ap.boot_ms(now_ns) * 1000,
+    )
+    return message
+
+
+def global_origin(ap: Autopilot, now_ns: int) -> MavMessage | None:
+    if not ap.home_known:
+        return None
+    o = ap.local.origin
+    message: MavMessage = dialect.MAVLink_gps_global_origin_message(
+        _e7(o.latitude_deg), _e7(o.longitude_deg), _i32(o.altitude_m * 1e3), ap.boot_ms(now_ns) * 1000
+    )
+    return message
+
+
+def attitude_quaternion(ap: Autopilot, now_ns: int) -> MavMessage:
+    m = ap.motion
+    cr, sr = cos(0.5 * m.roll), sin(0.5 * m.roll)
+    cp, sp = cos(0.5 * m.pitch), sin(0.5 * m.pitch)
+    cy, sy = cos(0.5 * m.yaw), sin(0.5 * m.yaw)
+    message: MavMessage = dialect.MAVLink_attitude_quaternion_message(
+        ap.boot_ms(now_ns),
+        cr * cp * cy + sr * sp * sy,
+        sr * cp * cy - cr * sp * sy,
+        cr * sp * cy + sr * cp * sy,
+        cr * cp * sy - sr * sp * cy,
+        m.rates.x,
+        m.rates.y,
+        m.rates.z,
+    )
+    return message
+
+
+def altitude(ap: Autopilot, now_ns: int) -> MavMessage:
+    amsl = ap.place.altitude_m
+    local = amsl - ap.local.origin.altitude_m
+    message: MavMessage = dialect.MAVLink_altitude_message(
+        ap.boot_ms(now_ns) * 1000, amsl, amsl, local, ap.height, nan, nan
+    )
+    return message
+
+
+def mission_current(ap: Autopilot, now_ns: int) -> MavMessage:
+    message: MavMessage = dialect.MAVLink_mission_current_message(0)
+    return message
+
+
+def autopilot_version(ap: Autopilot, now_ns: int) -> MavMessage:
+    """Capabilities name what is truly there: no file transfer, no missions."""
+    capabilities = (
+        dialect.MAV_PROTOCOL_CAPABILITY_COMMAND_INT
+        | dialect.MAV_PROTOCOL_CAPABILITY_MAVLINK2
+        | dialect.MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_LOCAL_NED
+        | dialect.MAV_PROTOCOL_CAPABILITY_SET_POSITION_TARGET_GLOBAL_INT
+        | dialect.MAV_PROTOCOL_CAPABILITY_SET_ATTITUDE_TARGET
+        | (
+            dialect.MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_BYTEWISE
+            if ap.autopilot_type == PX4
+            else dialect.MAV_PROTOCOL_CAPABILITY_PARAM_FLOAT
+        )
+    )
+    message: MavMessage = dialect.MAVLink_autopilot_version_message(
+        capabilities, ap.version, 0, 0, 0, [0] * 8, [0] * 8, [0] * 8, 0, 0, ap.system
+    )
+    return message
+
+
+Builder = Callable[["Autopilot", int], MavMessage | None]
+
+COMMON: dict[int, Builder] = {
+    dialect.MAVLINK_MSG_ID_HEARTBEAT: heartbeat,
+    dialect.MAVLINK_MSG_ID_SYS_STATUS: sys_status,
+    dialect.MAVLINK_MSG_ID_SYSTEM_TIME: system_time,
+    dialect.MAVLINK_MSG_ID_GPS_RAW_INT: gps_raw,
+    dialect.MAVLINK_MSG_ID_ATTITUDE: attitude,
+    dialect.MAVLINK_MSG_ID_ATTITUDE_QUATERNION: attitude_quaternion,
+    dialect.MAVLINK_MSG_ID_LOCAL_POSITION_NED: local_position,
+    dialect.MAVLINK_MSG_ID_GLOBAL_POSITION_INT: global_position,
+    dialect.MAVLINK_MSG_ID_MISSION_CURRENT: mission_current,
+    dialect.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN: global_origin,
+    dialect.MAVLINK_MSG_ID_VFR_HUD: vfr_hud,
+    dialect.MAVLINK_MSG_ID_BATTERY_STATUS: battery_status,
+    dialect.MAVLINK_MSG_ID_AUTOPILOT_VERSION: autopilot_version,
+    dialect.MAVLINK_MSG_ID_HOME_POSITION: home_position,
+    dialect.MAVLINK_MSG_ID_EXTENDED_SYS_STATE: extended_state,
+}
+OF_PX4: dict[int, Builder] = {
+    **COMMON,
+    dialect.MAVLINK_MSG_ID_ALTITUDE: altitude,
+    dialect.MAVLINK_MSG_ID_ESTIMATOR_STATUS: estimator_status,
+    dialect.MAVLINK_MSG_ID_WIND_COV: wind_cov,
+}
+OF_ARDUPILOT: dict[int, Builder] = {
+    **COMMON,
+    dialect.MAVLINK_MSG_ID_WIND: wind,
+    dialect.MAVLINK_MSG_ID_EKF_STATUS_REPORT: ekf_status,
+}
+
+# REQUEST_DATA_STREAM, as ArduPilot groups what is simulated here.
+DATA_STREAMS: dict[int, tuple[int, ...]] = {
+    dialect.MAV_DATA_STREAM_EXTENDED_STATUS: (1, 24, 42),  # SYS_STATUS, GPS_RAW_INT, MISSION_CURRENT
+    dialect.MAV_DATA_STREAM_POSITION: (32, 33),  # LOCAL_POSITION_NED, GLOBAL_POSITION_INT
+    dialect.MAV_DATA_STREAM_EXTRA1: (30,),  # ATTITUDE
+    dialect.MAV_DATA_STREAM_EXTRA2: (74,),  # VFR_HUD
+    dialect.MAV_DATA_STREAM_EXTRA3: (2, 147, 168, 193),  # SYSTEM_TIME, BATTERY_STATUS, WIND, EKF
+}
+DATA_STREAMS[dialect.MAV_DATA_STREAM_ALL] = tuple(n for group in DATA_STREAMS.values() for n in group)
+
+
+def _builders(ap: Autopilot) -> dict[int, Builder]:
+    return OF_PX4 if ap.autopilot_type == PX4 else OF_ARDUPILOT
+
+
+def can_build(ap: Autopilot, number: int) -> bool:
+    """Whether this kind sends such messages at all."""
+    return number in _builders(ap)
+
+
+def build(ap: Autopilot, number: int, now_ns: int) -> MavMessage | None:
+    """The message now; None where there is nothing to say (no position, no home)."""
+    return _builders(ap)[number](ap, now_ns)

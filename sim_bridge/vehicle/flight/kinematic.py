@@ -1,0 +1,207 @@
+"""The kinematic airframes: (7)–(8) with limited turn rate, climb angle and acceleration.
+
+Multicopters follow a ground velocity under an acceleration limit. Planes fly relative to the air: a
+roll, heading or course, a climb rate and an airspeed in; the mean wind carries them. Gusts are for
+the airframes that have dynamics: a mass point with none has nothing they could disturb.
+
+Deterministic: the same demands give the same motion to the last bit.
+"""
+
+from __future__ import annotations
+
+from math import asin, atan, cos, pi, radians, sin, sqrt, tan
+from typing import NamedTuple
+
+from onboard.core.math.vectors import ZERO, Vec, clamp, norm, scale, sub, yaw_of
+from onboard.game.scenario import Kind, VehicleSpec
+from sim_bridge.vehicle.motion import CALM, Air, Airframe, Demand, Lateral, Motion
+
+G = 9.80665  # [m/s²]
+ROLL_RATE = radians(180.0)  # [rad/s] how fast a plane banks
+HEADING_GAIN = 2.0  # [1/s] turn rate per heading error, below the limit
+MOVING = 0.3  # [m/s] a multicopter turns its nose along its course above this
+STALL_SHARE = 0.4  # of the speed the game reckons with
+WIND_FROM_COURSE = 0.999  # of the airspeed: a stronger crosswind cannot be crabbed against
+
+
+class Ability(NamedTuple):
+    """What a kinematic airframe can do."""
+
+    speed_min: float  # [m/s; air] 0 for multicopters
+    speed_max: float  # [m/s; air; ground for multicopters]
+    pitch_min: float  # [rad] of the path, for planes
+    pitch_max: float  # [rad]
+    turn_rate: float  # [rad/s]
+    acceleration: float  # [m/s²]
+
+
+def wrap(angle: float) -> float:
+    """The same angle in [−π, π)."""
+    return (angle + pi) % (2.0 * pi) - pi
+
+
+def toward(value: float, target: float, most: float) -> float:
+    """`target`, or as far towards it as a step of `most` leads."""
+    return value + clamp(target - value, -most, most)
+
+
+class KinematicMulticopter:
+    """Follows a ground velocity under an acceleration limit; its nose turns along the course.
+
+    The wind tilts no path: it only enters the airspeed. Any demand but `Lateral.VELOCITY` means: stop.
+    """
+
+    def __init__(self, ability: Ability, motion: Motion) -> None:
+        self._ability = ability
+        self._motion = motion
+
+    @property
+    def motion(self) -> Motion:
+        return self._motion
+
+    def step(self, demand: Demand, air: Air, dt: float) -> Motion:
+        a = self._ability
+        old = self._motion
+        wanted = demand.velocity if demand.lateral == Lateral.VELOCITY else ZERO
+        speed = norm(wanted)
+        if speed > a.speed_max:
+            wanted = scale(wanted, a.speed_max / speed)
+        change = sub(wanted, old.velocity)
+        size = norm(change)
+        most = a.acceleration * dt
+        velocity = (
+            wanted
+            if size <= most
+            else Vec(
+                old.velocity.x + change.x * most / size,
+                old.velocity.y + change.y * most / size,
+                old.velocity.z + change.z * most / size,
+            )
+        )
+        position = Vec(
+            old.position.x + 0.5 * (old.velocity.x + velocity.x) * dt,
+            old.position.y + 0.5 * (old.velocity.y + velocity.y) * dt,
+            old.position.z + 0.5 * (old.velocity.z + velocity.z) * dt,
+        )
+        yaw = old.yaw
+        if velocity.x * velocity.x + velocity.y * velocity.y > MOVING * MOVING:
+            error = wrap(yaw_of(velocity) - old.yaw)
+            yaw = wrap(old.yaw + clamp(error, -a.turn_rate * dt, a.turn_rate * dt))
+        c, s = cos(yaw), sin(yaw)
+        ax, ay = (velocity.x - old.velocity.x) / dt, (velocity.y - old.velocity.y) / dt
+        roll = atan((c * ay - s * ax) / G)  # thrust leans into the acceleration
+        pitch = -atan((c * ax + s * ay) / G)
+        rates = Vec((roll - old.roll) / dt, (pitch - old.pitch) / dt, wrap(yaw - old.yaw) / dt)
+        airspeed = norm(sub(velocity, air.wind))
+        self._motion = Motion(position, velocity, airspeed, roll, pitch, yaw, rates)
+        return self._motion
+
+
+class KinematicPlane:
+    """Coordinated flight of a mass point: turn rate g tan φ / V, path angle and speed under limits.
+
+    A demanded airspeed of 0 or less means the engine is off: on the ground the plane stands, so an airframe
+    that stands speeds up from rest once it is asked to fly. In the air it never flies below its least speed.
+    """
+
+    def __init__(self, ability: Ability, motion: Motion, air: Air = CALM) -> None:
+        self._ability = ability
+        self._motion = motion
+        self._speed = motion.airspeed
+        self._heading = motion.yaw
+        self._climb = -(motion.velocity.z - air.wind.z)
+        self._roll = motion.roll
+
+    @property
+    def motion(self) -> Motion:
+        return self._motion
+
+    def step(self, demand: Demand, air: Air, dt: float) -> Motion:
+        a = self._ability
+        old = self._motion
+        if demand.airspeed <= 0.0 and self._speed < a.speed_min:
+            self._speed = self._climb = self._roll = 0.0
+            self._motion = Motion(old.position, ZERO, 0.0, 0.0, 0.0, old.yaw)
+            return self._motion
+        most = a.acceleration * dt
+        speed = toward(self._speed, clamp(demand.airspeed, a.speed_min, a.speed_max), most)
+        flying = max(speed, 1.0)
+        bank_max = atan(a.turn_rate * flying / G)
+        roll = toward(self._roll, clamp(self._bank(demand, air, flying), -bank_max, bank_max), ROLL_RATE * dt)
+        turn = clamp(G * tan(roll) / flying, -a.turn_rate, a.turn_rate)
+        middle = self._heading + 0.5 * turn * dt
+        heading = wrap(self._heading + turn * dt)
+        low, high = flying * sin(a.pitch_min), flying * sin(a.pitch_max)
+        rolling = speed < a.speed_min - 1e-9  # taking off: no lift yet
+        climb = 0.0 if rolling else toward(self._climb, clamp(demand.climb, low, high), most)
+        climb = clamp(climb, min(low, 0.0), max(high, 0.0))
+        level = sqrt(max(0.0, speed * speed - climb * climb))
+        velocity = Vec(
+            level * cos(heading) + air.wind.x, level * sin(heading) + air.wind.y, air.wind.z - climb
+        )
+        if rolling:
+            velocity = Vec(level * cos(heading), level * sin(heading), 0.0)
+        # Over the step: along the middle heading, exact for a circle to third order.
+        half = 0.5 * (level + sqrt(max(0.0, self._speed * self._speed - self._climb * self._climb)))
+        wx, wy, wz = (0.0, 0.0, 0.0) if rolling else air.wind
+        position = Vec(
+            old.position.x + (half * cos(middle) + wx) * dt,
+            old.position.y + (half * sin(middle) + wy) * dt,
+            old.position.z + (wz - 0.5 * (climb + self._climb)) * dt,
+        )
+        pitch = asin(clamp(climb / flying, -1.0, 1.0))
+        rates = Vec((roll - self._roll) / dt, (pitch - old.pitch) / dt, turn)
+        self._speed, self._heading, self._climb, self._roll = speed, heading, climb, roll
+        self._motion = Motion(position, velocity, speed, roll, pitch, heading, rates)
+        return self._motion
+
+    def _bank(self, demand: Demand, air: Air, speed: float) -> float:
+        """The bank angle a demand asks for [rad]."""
+        if demand.lateral == Lateral.ROLL:
+            return demand.angle
+        heading = demand.angle
+        if demand.lateral == Lateral.COURSE:
+            heading = crab(demand.angle, speed, air.wind)
+        elif demand.lateral == Lateral.VELOCITY:
+            heading = self._heading
+        rate = clamp(
+            HEADING_GAIN * wrap(heading - self._heading), -self._ability.turn_rate, self._ability.turn_rate
+        )
+        return atan(rate * speed / G)
+
+
+def crab(course: float, airspeed: float, wind: Vec) -> float:
+    """The heading that makes good a course over ground [rad] in a wind [m/s; NED, where it moves to]."""
+    across = wind.y * cos(course) - wind.x * sin(course)
+    most = WIND_FROM_COURSE * airspeed
+    return wrap(course - asin(clamp(across, -most, most) / airspeed))
+
+
+def ability_of(spec: VehicleSpec, kind: Kind) -> Ability:
+    """Limits of a scenario's vehicle. A plane that names no least speed stalls below 40 % of its speed."""
+    limits = spec.limits()
+    stall = STALL_SHARE * spec.speed if kind == Kind.ARDUPLANE and spec.speed_min <= 0.0 else 0.0
+    return Ability(
+        max(limits.speed_min, stall),
+        limits.speed_max,
+        limits.pitch_min,
+        limits.pitch_max,
+        radians(spec.turn_rate_deg),
+        spec.acceleration,
+    )
+
+
+def start_motion(position: Vec, yaw: float, kind: Kind, speed: float, air: Air, airborne: bool) -> Motion:
+    """How a vehicle starts: a plane at its airspeed, a multicopter hovering, either at rest on the ground."""
+    if not airborne or kind != Kind.ARDUPLANE:
+        return Motion(position, ZERO, norm(air.wind) if airborne else 0.0, 0.0, 0.0, yaw)
+    velocity = Vec(speed * cos(yaw) + air.wind.x, speed * sin(yaw) + air.wind.y, air.wind.z)
+    return Motion(position, velocity, speed, 0.0, 0.0, yaw)
+
+
+def kinematic(spec: VehicleSpec, kind: Kind, start: Motion, air: Air = CALM) -> Airframe:
+    """The kinematic airframe of a scenario's vehicle: of a plane for ArduPlane, else of a multicopter."""
+    ability = ability_of(spec, kind)
+    if kind == Kind.ARDUPLANE:
+        return KinematicPlane(ability, start, air)
+    return KinematicMulticopter(ability, start)

@@ -1,0 +1,122 @@
+"""Transfer functions (36)–(37) of an axis, and the exact sampled model the kernel steps.
+
+Coefficients run from the highest power of s down. Surface to rate: degrees to degrees per second.
+Wind to rate: m/s to degrees per second. `sampled` turns all into radians.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import pi
+from typing import NamedTuple
+
+import numpy as np
+
+from onboard.config.strict import ConfigError
+from sim_bridge.vehicle.flight import control_toolbox as linear
+from sim_bridge.vehicle.flight.axis import AxisModel
+from sim_bridge.vehicle.flight.control_toolbox import Array
+
+ORDER = 2  # of the denominators: the short-period and the yaw motion
+
+
+class AxisTransfer(NamedTuple):
+    """Three transfer functions over one denominator, as in (36) and (37)."""
+
+    denominator: tuple[float, ...]
+    surface: tuple[float, ...]  # elevator or rudder [deg] → rate [deg/s]
+    wind1: tuple[float, ...]  # w_x or w_z [m/s] → rate [deg/s]
+    wind2: tuple[float, ...]  # w_y or nothing
+
+    @property
+    def steady(self) -> float:
+        """Steady rate per surface angle [1/s]."""
+        return self.surface[-1] / self.denominator[-1]
+
+
+def check(transfer: AxisTransfer, name: str, keys: tuple[str, str, str, str]) -> None:
+    """Refuse what cannot fly. Raises ConfigError with the reason; `keys` name the four polynomials."""
+    key = keys[0]
+    denominator = transfer.denominator
+    if len(denominator) != ORDER + 1 or denominator[0] == 0.0:
+        raise ConfigError(
+            f"{name}: {key}: found {list(denominator)}, expected a polynomial of degree {ORDER} "
+            "(three coefficients, the first not zero)"
+        )
+    unstable = [pole for pole in np.roots(denominator) if pole.real >= 0.0]
+    if unstable:
+        pole = unstable[0]
+        raise ConfigError(
+            f"{name}: {key}: unstable: found a pole at {pole.real:.4g}{pole.imag:+.4g}j, "
+            "expected every pole left of the imaginary axis"
+        )
+    for key, numerator in zip(keys[1:], (transfer.surface, transfer.wind1, transfer.wind2), strict=True):
+        trimmed = trim(numerator)
+        if len(trimmed) > len(denominator):
+            raise ConfigError(
+                f"{name}: {key}: improper: found degree {len(trimmed) - 1} over degree {ORDER}, "
+                f"expected at most {ORDER}"
+            )
+    if not transfer.surface or transfer.surface[-1] == 0.0:
+        raise ConfigError(
+            f"{name}: {keys[1]}: found a zero at s = 0 (no steady effect), "
+            "expected a last coefficient that is not zero"
+        )
+
+
+def trim(polynomial: Sequence[float]) -> tuple[float, ...]:
+    """Without leading zeros."""
+    for index, value in enumerate(polynomial):
+        if value != 0.0:
+            return tuple(polynomial[index:])
+    return (0.0,)
+
+
+def matrices(transfer: AxisTransfer) -> tuple[Array, Array, Array, Array]:
+    """Observable canonical form of the three functions together: A (2, 2), B (2, 3), C (1, 2), D (1, 3)."""
+    lead, first, last = transfer.denominator
+    a1, a0 = first / lead, last / lead
+    b = np.zeros((2, 3))
+    d = np.zeros((1, 3))
+    for column, numerator in enumerate((transfer.surface, transfer.wind1, transfer.wind2)):
+        padded = (0.0, 0.0, 0.0, *numerator)[-3:]
+        n2, n1, n0 = (value / lead for value in padded)
+        b[0, column] = n1 - n2 * a1
+        b[1, column] = n0 - n2 * a0
+        d[0, column] = n2
+    return np.array([[-a1, 1.0], [-a0, 0.0]]), b, np.array([[1.0, 0.0]]), d
+
+
+def sampled(transfer: AxisTransfer, dt: float) -> AxisModel:
+    """The exact model for inputs held over `dt` [s], in radians: rate, and its integral, the angle."""
+    a, b, c, d = matrices(transfer)
+    radians = np.diag([1.0, pi / 180.0, pi / 180.0])  # winds arrive in m/s, surfaces in radians
+    b, d = b @ radians, d @ radians
+    wide = np.zeros((3, 3))
+    wide[:2, :2] = a
+    wide[2, :2] = c[0]
+    system = linear.state_space(wide, np.vstack([b, d]), np.eye(3), np.zeros((3, 3)))
+    ad, bd, _, _ = linear.hold(system, dt)
+    values = (
+        ad[0, 0],
+        ad[0, 1],
+        ad[1, 0],
+        ad[1, 1],
+        bd[0, 0],
+        bd[1, 0],
+        bd[0, 1],
+        bd[1, 1],
+        bd[0, 2],
+        bd[1, 2],
+        c[0, 0],
+        c[0, 1],
+        d[0, 0],
+        d[0, 1],
+        d[0, 2],
+        ad[2, 0],
+        ad[2, 1],
+        bd[2, 0],
+        bd[2, 1],
+        bd[2, 2],
+    )
+    return AxisModel(*(float(value) for value in values))

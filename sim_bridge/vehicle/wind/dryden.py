@@ -1,0 +1,136 @@
+"""Dryden gusts after MIL-F-8785C, discretised exactly. Kernel style.
+
+Frozen turbulence met at airspeed V: the longitudinal component is white noise through
+H_u = 1/(1 + τ s), the lateral and vertical ones through (1 + √3 τ s)/(1 + τ s)², with τ = L/V. The
+states are normalised, so that the components have unit variance whatever the time step and while L and V
+change; the rms value multiplies at the end.
+"""
+
+from __future__ import annotations
+
+from math import exp, sqrt
+from typing import NamedTuple
+
+from onboard.core.math.vectors import Vec
+
+FOOT = 0.3048  # [m]
+ROOT3 = sqrt(3.0)
+SLOWEST = 1.0  # [m/s] gusts pass a vehicle at rest this fast
+
+
+class GustState(NamedTuple):
+    """Normalised filter states."""
+
+    u: float
+    v1: float
+    v2: float
+    w1: float
+    w2: float
+
+
+class GustNoise(NamedTuple):
+    """Five independent standard normal numbers: the drive of one step."""
+
+    u: float
+    v1: float
+    v2: float
+    w1: float
+    w2: float
+
+
+class Scales(NamedTuple):
+    """Turbulence scale lengths [m]."""
+
+    horizontal: float  # L_u = L_v
+    vertical: float  # L_w
+
+
+def power12(x: float) -> float:
+    """x^1.2 for positive x, by roots: x · x^(1/5); interpreted and compiled alike."""
+    # Newton for the fifth root of x, from a guess good for 0.1 … 10
+    r = 1.0 + 0.2 * (x - 1.0)
+    if r < 0.4:
+        r = 0.4
+    for _ in range(8):
+        r4 = r * r * r * r
+        r = (4.0 * r + x / r4) / 5.0
+    return x * r
+
+
+def scales(height: float) -> Scales:
+    """Scale lengths at `height` above ground [m].
+
+    Low altitude (10–1000 ft): L_w = h, L_u = h / (0.177 + 0.000823 h)^1.2 [ft]. From 2000 ft up 1750 ft;
+    linear between.
+    """
+    h = height / FOOT
+    if h < 10.0:
+        h = 10.0
+    if h >= 2000.0:
+        return Scales(1750.0 * FOOT, 1750.0 * FOOT)
+    if h > 1000.0:
+        both = (1000.0 + 750.0 * (h - 1000.0) / 1000.0) * FOOT
+        return Scales(both, both)
+    return Scales(h / power12(0.177 + 0.000823 * h) * FOOT, h * FOOT)
+
+
+def first_gust(noise: GustNoise) -> GustState:
+    """A state drawn from the stationary distribution."""
+    a = sqrt(0.5)
+    b = 0.25 / a
+    c = sqrt(0.125)
+    return GustState(
+        noise.u,
+        a * noise.v1,
+        b * noise.v1 + c * noise.v2,
+        a * noise.w1,
+        b * noise.w1 + c * noise.w2,
+    )
+
+
+class Pair(NamedTuple):
+    """States of a second-order filter."""
+
+    first: float
+    second: float
+
+
+def step_pair(first: float, second: float, r: float, n1: float, n2: float) -> Pair:
+    """(1 + √3 τ s)/(1 + τ s)² over a step of r = dt/τ: exact transition and exact noise covariance."""
+    e = exp(-r)
+    e2 = e * e
+    q11 = 0.5 * (1.0 - e2)
+    q12 = 0.25 - e2 * (0.5 * r + 0.25)
+    q22 = 0.25 - e2 * (0.5 * r * r + 0.5 * r + 0.25)
+    if r < 0.02:  # the differences above cancel: their series
+        q12 = r * r * (0.5 - 2.0 * r / 3.0)
+        q22 = r * r * r * (1.0 / 3.0 - 0.5 * r)
+    l11 = sqrt(max(q11, 1e-300))
+    l21 = q12 / l11
+    l22 = sqrt(max(0.0, q22 - l21 * l21))
+    return Pair(e * first + l11 * n1, e * (second + r * first) + l21 * n1 + l22 * n2)
+
+
+def step_gust(state: GustState, airspeed: float, height: float, dt: float, noise: GustNoise) -> GustState:
+    """The gusts `dt` seconds on, met at `airspeed` [m/s] and `height` above ground [m]."""
+    v = airspeed if airspeed > SLOWEST else SLOWEST
+    lengths = scales(height)
+    r = v * dt / lengths.horizontal
+    e = exp(-r)
+    lateral = step_pair(state.v1, state.v2, r, noise.v1, noise.v2)
+    vertical = step_pair(state.w1, state.w2, v * dt / lengths.vertical, noise.w1, noise.w2)
+    return GustState(
+        e * state.u + sqrt(max(0.0, 1.0 - e * e)) * noise.u,
+        lateral.first,
+        lateral.second,
+        vertical.first,
+        vertical.second,
+    )
+
+
+def gust_of(state: GustState, sigma: float, axis_x: float, axis_y: float) -> Vec:
+    """The gust [m/s; NED]: longitudinal along the level unit vector (axis_x, axis_y), rms `sigma` an axis."""
+    u = sigma * state.u
+    v = sigma * (ROOT3 * state.v1 + (1.0 - ROOT3) * state.v2)
+    w = sigma * (ROOT3 * state.w1 + (1.0 - ROOT3) * state.w2)
+    return Vec(u * axis_x - v * axis_y, u * axis_y + v * axis_x, w)

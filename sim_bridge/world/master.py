@@ -1,0 +1,76 @@
+"""The bridge as the game's master: a thin shell that joins `GameMaster` to the bus and the true motions."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from onboard.core.math.vectors import Vec
+from onboard.game.master import GameMaster, Timing
+from onboard.game.scenario import Scenario
+from onboard.game.staging import setup_of, target_of
+from onboard.runtime.protocols import Bus, Clock, Sample
+from onboard.wire.bus import messages as swarm
+from onboard.wire.bus.topics import EVADER_BRIEF, HEALTH, MASTER, OUTCOME, PHASE, SETUP, Topic, key
+from sim_bridge.vehicle.motion import Motion
+
+NAME = "sim-bridge"
+RECOVERY_S = 3.0
+_CODECS: Mapping[Topic, swarm.Codec[Any]] = {
+    SETUP: swarm.SETUP,
+    PHASE: swarm.PHASE,
+    OUTCOME: swarm.OUTCOME,
+    MASTER: swarm.MASTER,
+    EVADER_BRIEF: swarm.EVADER_BRIEF,
+}
+
+
+class BridgeMaster:
+    """Call `step` each step of the world; `rules` is the master itself."""
+
+    def __init__(
+        self, scenario: Scenario, game: str, clock: Clock, bus: Bus, nonce: int, say: Callable[[str], None]
+    ) -> None:
+        flight = scenario.flight
+        timing = Timing(flight.ready_s, flight.timeout_s, RECOVERY_S)
+        self.rules = GameMaster(setup_of(scenario, game, NAME), target_of(scenario), NAME, nonce, timing)
+        self.drops: Counter[str] = Counter()
+        self._game = game
+        self._clock = clock
+        self._bus = bus
+        self._say = say
+        self._subscriptions = [
+            bus.subscribe(key(game, MASTER), self._on_master),
+            bus.subscribe(key(game, HEALTH), self._on_health),
+        ]
+
+    def step(self, motions: Mapping[int, Motion]) -> None:
+        """Judge what has happened since the last step, and say what is due."""
+        wall_ns, now_ns = self._clock.wall_ns(), self._clock.monotonic_ns()
+        positions: dict[int, Vec] = {id: motion.position for id, motion in motions.items()}
+        self.rules.tick(wall_ns, now_ns)
+        self.rules.observe(wall_ns, now_ns, positions)
+        for topic, message in self.rules.outgoing():
+            self._bus.publish(key(self._game, topic), _CODECS[topic].encode(message), topic.delivery)
+        for line in self.rules.news():
+            self._say(line)
+
+    def abort(self, reason: str) -> None:
+        """End the game without a verdict; published with the next step."""
+        self.rules.abort(self._clock.wall_ns(), self._clock.monotonic_ns(), reason)
+
+    def close(self) -> None:
+        """Hear no more."""
+        for subscription in self._subscriptions:
+            subscription.close()
+
+    def _on_master(self, sample: Sample) -> None:
+        message = swarm.MASTER.decode(sample.payload, self.drops)
+        if message is not None:
+            self.rules.heard_master(message, self._clock.monotonic_ns())
+
+    def _on_health(self, sample: Sample) -> None:
+        health = swarm.HEALTH.decode(sample.payload, self.drops)
+        if health is not None:
+            self.rules.heard_health(health, self._clock.monotonic_ns())

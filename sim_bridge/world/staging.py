@@ -1,0 +1,94 @@
+"""From a scenario to what is flown: starts, kinds, airframes, and generators by concern."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from zlib import crc32
+
+import numpy as np
+from numpy.random import Generator, SeedSequence
+
+from onboard.config.strict import ConfigError
+from onboard.core.math.vectors import yaw_of
+from onboard.game.scenario import AirframeKind, Kind, Scenario, VehicleSpec
+from onboard.game.staging import staging_place
+from onboard.wire.geodesy import Frame
+from sim_bridge.plane_game.setup import start_headings
+from sim_bridge.vehicle.flight.kinematic import kinematic, start_motion
+from sim_bridge.vehicle.motion import CALM, Air, Airframe, Motion
+from sim_bridge.vehicle.wind.field import WindField
+
+Wind = Callable[[int, Motion, float], Air]  # (vehicle id, its motion, time since the start [s]) → its air
+
+
+def calm(id: int, motion: Motion, t: float) -> Air:
+    """No wind."""
+    return CALM
+
+
+def seeds(seed: int, concern: str) -> SeedSequence:
+    """The seeds of one concern: others for each, and the same whichever other concerns there are."""
+    return SeedSequence(seed, spawn_key=(crc32(concern.encode()),))
+
+
+def generator(seed: int, concern: str) -> Generator:
+    """The generator of one concern."""
+    return np.random.default_rng(seeds(seed, concern))
+
+
+def wind_of(scenario: Scenario, seed: int, folder: Path | None = None) -> Wind:
+    """The scenario's wind; a recording's path is relative to `folder`. Raises ConfigError."""
+    spec = scenario.flight.wind
+    if spec.speed <= 0.0 and spec.gust_sigma <= 0.0 and not spec.recorded:
+        return calm
+    field = WindField(spec, seeds(seed, "wind"), len(scenario.ids), folder)
+    numbers = {id: number for number, id in enumerate(scenario.ids)}
+
+    def air(id: int, motion: Motion, t: float) -> Air:
+        return field.air(numbers[id], motion.position, motion.airspeed, t)
+
+    return air
+
+
+def frame_of(scenario: Scenario) -> Frame:
+    """The game frame."""
+    origin = scenario.flight.origin
+    return Frame(origin.latitude_deg, origin.longitude_deg, origin.altitude_m)
+
+
+def kind_of(scenario: Scenario, spec: VehicleSpec) -> Kind:
+    """Which autopilot flies a vehicle."""
+    return scenario.flight.autopilot if spec.autopilot is None else spec.autopilot
+
+
+def starts(scenario: Scenario, wind: Wind) -> dict[int, Motion]:
+    """The motion of every vehicle at the start, in the air that is there."""
+    motions: dict[int, Motion] = {}
+    for id, spec, heading in zip(scenario.ids, scenario.vehicles, start_headings(scenario), strict=True):
+        place, kind, yaw = staging_place(scenario, spec), kind_of(scenario, spec), yaw_of(heading)
+        airborne = not scenario.flight.ground_start
+        still = start_motion(place, yaw, kind, spec.speed, CALM, airborne)
+        motions[id] = start_motion(place, yaw, kind, spec.speed, wind(id, still, 0.0), airborne)
+    return motions
+
+
+def airframe_of(scenario: Scenario, spec: VehicleSpec, start: Motion, air: Air) -> Airframe:
+    """The airframe of a vehicle. Raises ConfigError for an aircraft that its autopilot cannot fly."""
+    kind = kind_of(scenario, spec)
+    airframe = scenario.flight.airframe if spec.airframe is None else spec.airframe
+    if airframe is AirframeKind.KINEMATIC:
+        return kinematic(spec, kind, start, air)
+    if kind is not Kind.ARDUPLANE:
+        raise ConfigError(
+            f"{scenario.name}: airframe: found {airframe.value} under a {kind.value}, expected kinematic "
+            "(the transfer-function aircraft are planes: autopilot = arduplane)"
+        )
+    if scenario.flight.ground_start:
+        raise ConfigError(
+            f"{scenario.name}: flight.ground_start: found true with airframe {airframe.value}, expected "
+            "false: its transfer functions hold in flight alone"
+        )
+    from sim_bridge.vehicle.flight.airframe import fixed_wing
+
+    return fixed_wing(airframe.value, spec.limits(), start.position, start.yaw, start.airspeed, air.wind)

@@ -1,0 +1,154 @@
+"""The world: simulated vehicles, each an autopilot, an airframe and its links, in one air.
+
+`World.step` is plain: give it the time and it moves everything on by whole physics steps, on the
+virtual loop and the real one alike. What arrives on a link is answered at once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Mapping, Sequence
+
+from onboard.game.scenario import Scenario, VehicleSpec
+from onboard.runtime.protocols import Clock, Link
+from sim_bridge.vehicle.autopilot.autopilot import Autopilot
+from sim_bridge.vehicle.autopilot.make import autopilot_for
+from sim_bridge.vehicle.motion import CALM, Airframe, Motion
+from sim_bridge.world.staging import Wind, airframe_of, calm, frame_of, kind_of, starts
+
+RATE_HZ = 100.0
+BEHIND_MAX = 50  # physics steps made up for in one call; beyond them time is lost, and counted
+_NS = 1_000_000_000
+
+Tap = Callable[[int, int, bytes, bool], None]  # (vehicle id, wall instant [ns], bytes, sent by the autopilot)
+
+
+class SimVehicle:
+    """One vehicle: what flies it, what moves it, and who hears it."""
+
+    def __init__(
+        self, id: int, spec: VehicleSpec, autopilot: Autopilot, airframe: Airframe, links: Sequence[Link]
+    ) -> None:
+        self.id = id
+        self.spec = spec
+        self.autopilot = autopilot
+        self.airframe = airframe
+        self.links = list(links)
+        self.air = CALM
+
+    def send(self, frames: Sequence[bytes]) -> None:
+        """Send frames on every link."""
+        for link in self.links:
+            for frame in frames:
+                link.send(frame)
+
+
+class World:
+    """All vehicles of a scenario. `links`: for each vehicle id the links its autopilot speaks on.
+
+    `wind` gives each vehicle its air; `tap` sees every frame sent and every datagram received.
+    Raises ConfigError for an aircraft that its autopilot cannot fly.
+    """
+
+    def __init__(
+        self,
+        scenario: Scenario,
+        clock: Clock,
+        links: Mapping[int, Sequence[Link]],
+        *,
+        wind: Wind = calm,
+        rate_hz: float = RATE_HZ,
+        tap: Tap | None = None,
+        battery_s: float = 1200.0,
+    ) -> None:
+        self.step_ns = round(_NS / rate_hz)
+        self.lost_steps = 0
+        self._clock = clock
+        self._wind = wind
+        self._tap = tap
+        self._start_ns = clock.monotonic_ns()
+        self._epoch_ns = clock.wall_ns()
+        self._done = 0  # physics steps
+        self.vehicles: dict[int, SimVehicle] = {}
+        frame, motions = frame_of(scenario), starts(scenario, wind)
+        for id, spec in zip(scenario.ids, scenario.vehicles, strict=True):
+            start = motions[id]
+            air = wind(id, start, 0.0)
+            autopilot = autopilot_for(
+                spec,
+                kind_of(scenario, spec),
+                id,
+                frame,
+                start,
+                airborne=not scenario.flight.ground_start,
+                epoch_ns=self._epoch_ns,
+                battery_s=battery_s,
+            )
+            airframe = airframe_of(scenario, spec, start, air)
+            self.vehicles[id] = vehicle = SimVehicle(id, spec, autopilot, airframe, links.get(id, ()))
+            vehicle.air = air
+            for number, link in enumerate(vehicle.links):
+                self._listen(vehicle, link, number)
+
+    @property
+    def motions(self) -> dict[int, Motion]:
+        """The true motion of every vehicle."""
+        return {id: vehicle.airframe.motion for id, vehicle in self.vehicles.items()}
+
+    @property
+    def elapsed_ns(self) -> int:
+        """Time simulated so far."""
+        return self._done * self.step_ns
+
+    @property
+    def wall_ns(self) -> int:
+        """The wall instant that the motions are of."""
+        return self._epoch_ns + self.elapsed_ns
+
+    def add_link(self, id: int, link: Link) -> None:
+        """Let one more link hear and speak to a vehicle."""
+        vehicle = self.vehicles[id]
+        vehicle.links.append(link)
+        self._listen(vehicle, link, len(vehicle.links) - 1)
+
+    def step(self) -> None:
+        """Move on to the clock's time, by whole physics steps."""
+        due = (self._clock.monotonic_ns() - self._start_ns) // self.step_ns
+        behind = due - self._done
+        if behind > BEHIND_MAX:  # the process was stopped: do not spiral
+            lost = behind - BEHIND_MAX
+            self.lost_steps += lost
+            self._start_ns += lost * self.step_ns
+            self._epoch_ns += lost * self.step_ns
+            behind = BEHIND_MAX
+        for _ in range(behind):
+            self._done += 1
+            for vehicle in self.vehicles.values():
+                self._move(vehicle)
+
+    def _move(self, vehicle: SimVehicle) -> None:
+        autopilot, airframe = vehicle.autopilot, vehicle.airframe
+        now_ns = self.elapsed_ns
+        motion = airframe.motion
+        vehicle.air = air = self._wind(vehicle.id, motion, now_ns / _NS)
+        demand = autopilot.step(now_ns, motion, air)
+        if not autopilot.parked:
+            airframe.step(demand, air, self.step_ns / _NS)
+        self._flush(vehicle)
+
+    def _flush(self, vehicle: SimVehicle) -> None:
+        frames = vehicle.autopilot.outgoing()
+        if not frames:
+            return
+        if self._tap is not None:
+            for frame in frames:
+                self._tap(vehicle.id, self._clock.wall_ns(), frame, True)
+        vehicle.send(frames)
+
+    def _listen(self, vehicle: SimVehicle, link: Link, number: int) -> None:
+        def arrived(data: bytes, peer: Hashable) -> None:
+            if self._tap is not None:
+                self._tap(vehicle.id, self._clock.wall_ns(), data, False)
+            vehicle.autopilot.receive(self.elapsed_ns, data, (number, peer))
+            self._flush(vehicle)
+
+        link.receive(arrived)

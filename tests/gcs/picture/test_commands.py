@@ -1,0 +1,206 @@
+"""Commands: repeated until confirmed, harmless when repeated, and the console knows who has not."""
+
+from __future__ import annotations
+
+import asyncio
+from contextlib import asynccontextmanager
+
+import numpy as np
+import pytest
+
+from gcs.picture.commands import EXPIRY_NS, RETRY_NS, CommandBook
+from gcs.picture.values import CommandView
+from gcs.station import Station
+from onboard.runtime.bus_memory import MemoryBroker
+from onboard.runtime.impairment import Impairment
+from onboard.runtime.loop import virtual_clock
+from onboard.wire.bus.messages import Command, CommandKind, CommandReply
+from tests.support.crews import Crew
+from tests.support.radio import GAME, NS, START_NS
+from tests.support.virtual import virtual
+
+
+def order(kind: CommandKind = CommandKind.ABORT, name: str = "c1", sender: str = "tower") -> Command:
+    return Command(name, kind, sender, START_NS)
+
+
+def reply(state: str, i: int = 2, name: str = "c1", reason: str = "") -> CommandReply:
+    return CommandReply(name, i, state, reason, "tower", START_NS)
+
+
+def legs(book: CommandBook, name: str = "c1", now_ns: int = START_NS) -> dict[int, str]:
+    view = book.view(name, now_ns)
+    assert view is not None
+    return {leg.id: leg.state for leg in view.legs}
+
+
+def test_a_command_is_repeated_every_80_ms_until_each_has_confirmed():
+    book = CommandBook()
+    book.issue(order(), (2, 3), START_NS)
+    assert [due.id for due in book.due(START_NS)] == [2, 3]
+    assert book.due(START_NS + RETRY_NS - 1) == []
+    assert [due.id for due in book.due(START_NS + RETRY_NS)] == [2, 3]
+    book.reply(reply("pending"), START_NS + RETRY_NS)
+    book.reply(reply("confirmed", 3), START_NS + RETRY_NS)
+    assert legs(book) == {2: "pending", 3: "confirmed"}
+    assert [due.id for due in book.due(START_NS + 2 * RETRY_NS)] == [2]
+    book.reply(reply("confirmed"), START_NS + 3 * RETRY_NS)
+    assert book.due(START_NS + 10 * NS) == []
+    assert not book.busy(START_NS + 10 * NS)
+    view = book.view("c1", START_NS + 10 * NS)
+    assert view is not None
+    assert view.confirmed
+    assert [leg.took_s for leg in view.legs] == [pytest.approx(0.24), pytest.approx(0.08)]
+
+
+def test_the_pace_falls_when_nobody_answers_but_an_abort_never_gives_up():
+    book = CommandBook()
+    book.issue(order(), (2,), START_NS)
+    sent = sum(len(book.due(START_NS + n * NS // 100)) for n in range(60 * 100))
+    assert 3 / 0.08 < sent < 3 / 0.08 + 62
+    assert len(book.due(START_NS + 3600 * NS)) == 1
+
+
+@pytest.mark.parametrize("kind", [CommandKind.START, CommandKind.RESUME])
+def test_what_sets_a_vehicle_off_expires(kind):
+    book = CommandBook()
+    book.issue(order(kind), (2,), START_NS)
+    assert len(book.due(START_NS + EXPIRY_NS - 1)) == 1
+    assert book.due(START_NS + EXPIRY_NS) == []
+    assert legs(book, now_ns=START_NS + EXPIRY_NS) == {2: "expired"}
+
+
+def test_a_newer_command_supersedes_what_is_open_to_the_same_vehicles_alone():
+    book = CommandBook()
+    book.issue(order(CommandKind.HOLD), (2, 3), START_NS)
+    book.issue(order(CommandKind.RETURN, "c2"), (3,), START_NS + NS)
+    assert legs(book) == {2: "sent", 3: "superseded"}
+    assert {(d.id, d.command.command_id) for d in book.due(START_NS + NS)} == {(2, "c1"), (3, "c2")}
+
+
+def test_nothing_sets_a_vehicle_off_while_an_abort_is_not_confirmed():
+    book = CommandBook()
+    book.issue(order(), (2, 3), START_NS)
+    book.reply(reply("confirmed", 3), START_NS)
+    book.issue(order(CommandKind.RESUME, "c2"), (2, 3), START_NS + NS)
+    assert legs(book) == {2: "sent", 3: "confirmed"}
+    assert legs(book, "c2") == {2: "refused", 3: "sent"}
+
+
+def test_answers_to_nothing_late_and_unknown_ones_change_nothing():
+    book = CommandBook()
+    book.issue(order(), (2,), START_NS)
+    book.reply(reply("confirmed", name="other"), START_NS)
+    book.reply(reply("confirmed", 7), START_NS)
+    book.reply(reply("nonsense"), START_NS)
+    assert legs(book) == {2: "sent"}
+    book.reply(reply("refused", reason="no autopilot"), START_NS)
+    book.reply(reply("pending"), START_NS)
+    assert legs(book) == {2: "refused"}
+    book.issue(order(), (2, 3), START_NS)  # the same id again is the same command
+    assert legs(book) == {2: "refused"}
+
+
+def test_the_book_is_bounded():
+    book = CommandBook()
+    for n in range(200):
+        book.issue(order(CommandKind.HOLD, f"c{n}"), (2,), START_NS + n)
+    assert len(book.views(START_NS)) == 50
+
+
+@asynccontextmanager
+async def field(count: int, impairment: Impairment | None = None, seed: int = 1, **crew: object):
+    """A station and `count` vehicles on one bus."""
+    clock = virtual_clock()
+    broker = MemoryBroker(impairment, np.random.default_rng(seed))
+    crews = [Crew(broker.connect(), clock, i, **crew) for i in range(1, count + 1)]
+    station = Station(broker.connect("gcs"), clock, GAME, operator="anna")
+    task = asyncio.create_task(station.run())
+    await asyncio.sleep(0.01)
+    try:
+        yield station, crews
+    finally:
+        task.cancel()
+        await asyncio.gather(task, return_exceptions=True)
+
+
+async def confirmed(station: Station, command_id: str, within_s: float) -> CommandView:
+    """The command's state after it is confirmed, or at the end of the time."""
+    view = None
+    for _ in range(round(within_s / 0.01)):
+        view = station.watch.book.view(command_id, station.now_ns())
+        if view is not None and view.confirmed:
+            break
+        await asyncio.sleep(0.01)
+    assert view is not None
+    return view
+
+
+@virtual
+async def test_an_abort_of_six_is_confirmed_by_their_autopilots():
+    async with field(6) as (station, crews):
+        command_id = station.command(CommandKind.ABORT, range(1, 7))
+        view = await confirmed(station, command_id, 2.0)
+        assert view.confirmed
+        assert {leg.mode for leg in view.legs} == {"LOITER"}
+        assert all(0.3 <= leg.took_s < 0.5 for leg in view.legs)
+        assert all(len(crew.obeyed) == 1 for crew in crews)  # however often it was sent
+        assert all(crew.obeyed[0].sender == "anna" for crew in crews)
+        await asyncio.sleep(1.0)
+        assert all(crew.heard[command_id] <= 1 + 0.4 / 0.08 for crew in crews)
+
+
+@virtual
+async def test_who_does_not_confirm_is_named_and_confirms_when_it_comes_back():
+    async with field(3) as (station, _):
+        command_id = station.command(CommandKind.ABORT, (1, 2, 3, 4))
+        assert (await confirmed(station, command_id, 2.0)).unconfirmed == (4,)
+        await asyncio.sleep(0.5)
+        assert "abort not confirmed by 4" in [a.text for a in station.picture().alerts]
+        bus = station.bus
+        Crew(bus, virtual_clock(), 4)
+        assert (await confirmed(station, command_id, 3.0)).confirmed
+        await asyncio.sleep(3.0)
+        assert station.picture().alerts == ()
+
+
+@virtual
+async def test_a_refusal_is_shown_with_its_reason():
+    async with field(1, refuses="the pilot flies") as (station, _):
+        command_id = station.command(CommandKind.HOLD, (1,))
+        await asyncio.sleep(0.5)
+        view = station.watch.book.view(command_id, station.now_ns())
+        assert view is not None
+        assert [(leg.state, leg.reason) for leg in view.legs] == [("refused", "the pilot flies")]
+        assert [a.text for a in station.picture().alerts] == ["hold refused by 1: the pilot flies"]
+
+
+@virtual
+async def test_two_stations_command_and_each_sees_whom_the_vehicle_obeys():
+    async with field(1, takes_s=5.0) as (station, crews):
+        other = Station(crews[0]._bus, virtual_clock(), GAME, operator="ben")
+        task = asyncio.create_task(other.run())
+        await asyncio.sleep(0.01)
+        first = station.command(CommandKind.HOLD, (1,))
+        await asyncio.sleep(0.5)
+        other.command(CommandKind.RETURN, (1,))
+        await asyncio.sleep(0.5)
+        view = station.watch.book.view(first, station.now_ns())
+        assert view is not None
+        assert [(leg.state, leg.obeyed) for leg in view.legs] == [("superseded", "ben")]
+        task.cancel()
+        await asyncio.gather(task, return_exceptions=True)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_an_abort_gets_through_a_bus_that_loses_every_third_message(seed):
+    @virtual
+    async def fly() -> None:
+        loss = Impairment(loss=0.3, delay_s=0.02, jitter_s=0.02)
+        async with field(6, loss, seed, takes_s=0.1) as (station, crews):
+            view = await confirmed(station, station.command(CommandKind.ABORT, range(1, 7)), 5.0)
+            assert view.confirmed
+            assert all(len(crew.obeyed) == 1 for crew in crews)
+
+    fly()
+

@@ -1,0 +1,261 @@
+"""The report: what it says of a flight, with whatever a run folder still holds."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+
+import matplotlib.image
+import msgspec
+import numpy as np
+import pytest
+
+from gcs.recording.recorder import Recorder
+from gcs.report.plots import figures
+from gcs.report.program import read_run, write_report
+from onboard.config.strict import ConfigError
+from onboard.wire.bus import messages as swarm
+from onboard.wire.bus import topics
+from tests.support.chase import EPOCH_NS, Item
+from tests.support.runs import flight, make_run, make_tlogs
+
+FIGURES = ["space", "plan", "distances", "rules", "speeds", "heights", "wind", "links", "latencies"]
+
+
+class Page(HTMLParser):
+    """Attributes, ids and text of a page, scripts and styles apart."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.attributes: list[tuple[str, str, str]] = []
+        self.scripts: list[str] = []
+        self.styles: list[str] = []
+        self.words: list[str] = []
+        self._inside = ""
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self._inside = tag
+        self.attributes += [(tag, name, value or "") for name, value in attrs]
+
+    def handle_endtag(self, tag: str) -> None:
+        self._inside = ""
+
+    def handle_data(self, data: str) -> None:
+        target = {"script": self.scripts, "style": self.styles}.get(self._inside, self.words)
+        target.append(data)
+
+    @property
+    def text(self) -> str:
+        return " ".join(" ".join(self.words).split())
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = make_run(tmp_path_factory.mktemp("runs") / "run")
+    write_report(folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def page(run: Path) -> Page:
+    return Page((run / "report.html").read_text(encoding="utf-8"))
+
+
+def test_the_page_tells_the_outcome_and_what_led_to_it(page: Page) -> None:
+    assert "Evader captured by pursuer 3 after 12.3 s" in page.text
+    for told in (
+        "capture radius R",
+        "vehicle 2 is lost",  # the alert
+        "decision clipped: pitch",  # the event
+        "1 confirmed in 0.25 s",  # the command's legs
+        "smallest distance, by the referee",
+        "p50 ms",  # timing.json
+        "sent 5, lost 0",  # summary.json
+    ):
+        assert told in page.text, told
+    ids = [value for _, name, value in page.attributes if name == "id"]
+    assert [i for i in ids if i.startswith("figure-")] == [f"figure-{name}" for name in FIGURES]
+    links = {value[1:] for _, name, value in page.attributes if name == "href" and value.startswith("#")}
+    assert links <= set(ids)
+
+
+def test_the_page_refers_to_nothing_outside_itself(page: Page) -> None:
+    fetching = {"src", "srcset", "href", "data", "action", "poster", "background", "xlink:href", "formaction"}
+    for tag, name, value in page.attributes:
+        if name in fetching:
+            assert value.startswith("#") or value == "data:,", (tag, name, value)
+    for style in page.styles:
+        assert not re.search(r"url\(|@import", style)
+    policy = next(value for _, name, value in page.attributes if name == "content" and "default-src" in value)
+    assert policy.startswith("default-src 'none'")
+    assert "http" not in policy
+    own = page.scripts[-1]
+    assert "Plotly.newPlot" in own
+    assert not re.search(r"https?:|//[a-z]", own)
+
+
+def test_the_figures_are_pictures_with_something_in_them(run: Path) -> None:
+    pictures = sorted(p.name for p in (run / "figures").iterdir())
+    assert pictures == [
+        f"{n}.png" for n in ("distances", "links", "plan", "rules", "space", "speeds", "wind")
+    ]
+    for picture in (run / "figures").iterdir():
+        pixels = matplotlib.image.imread(picture)
+        assert pixels.shape[1] == 1170
+        assert len(np.unique(pixels[::3, ::3].reshape(-1, pixels.shape[2]), axis=0)) > 25, picture
+
+
+def test_distances_are_those_that_were_flown(run: Path) -> None:
+    values = read_run(run)
+    assert values.outcome is not None
+    nearest = {gap.id: gap.distance.min() for gap in values.gaps()}
+    assert min(nearest.values()) == pytest.approx(values.outcome.smallest_distance, abs=0.2)
+    gap = values.gaps()[0]
+    assert gap.distance[0] == pytest.approx(260.2, abs=0.5)
+    assert values.span == pytest.approx((-2.02, 21.93), abs=0.05)
+
+
+def test_rules_are_bands_in_order_without_gaps(run: Path) -> None:
+    bands = read_run(run).rules[3]
+    assert {band.rule for band in bands} == {"intercept", "close_in"}
+    assert all(
+        a.end == pytest.approx(b.start) and a.rule != b.rule for a, b in itertools.pairwise(bands)
+    )
+    silent = read_run(run).rules[2]
+    breaks = [(a.end, b.start) for a, b in itertools.pairwise(silent) if b.start - a.end > 1.0]
+    assert breaks == [(pytest.approx(5.9, abs=0.2), pytest.approx(9.0, abs=0.2))], "silence is not a rule"
+
+
+def test_the_same_run_gives_the_same_report(run: Path, tmp_path: Path) -> None:
+    before = {p.name: p.read_bytes() for p in (run / "figures").iterdir()}
+    html = (run / "report.html").read_bytes()
+    write_report(run)
+    assert (run / "report.html").read_bytes() == html
+    assert {p.name: p.read_bytes() for p in (run / "figures").iterdir()} == before
+
+
+def test_without_a_recording_the_logs_and_the_scenario_speak(tmp_path: Path) -> None:
+    folder = make_tlogs(make_run(tmp_path / "run", recording=False))
+    with_recording = read_run(make_run(tmp_path / "whole"))
+    written = write_report(folder)
+    assert any("no such file" in note for note in written.notes)
+    assert any("no decisions" in note for note in written.notes)
+    values = read_run(folder)
+    assert [figure.name for figure in figures(values)] == ["space", "plan", "distances", "speeds", "heights"]
+    assert values.capture_radius == 5.0
+    assert values.target == (400.0, 100.0, -60.0)
+    for vehicle, flown in values.flown.items():
+        known = with_recording.flown[vehicle]
+        assert flown.role is known.role
+        assert np.abs(flown.position - known.position).max() < 0.05
+    text = Page((folder / "report.html").read_text(encoding="utf-8")).text
+    assert "Outcome: captured" in text, "summary.json still tells it"
+    assert "Please note" in text
+
+
+def test_a_cut_recording_is_reported_up_to_the_cut(tmp_path: Path) -> None:
+    folder = make_run(tmp_path / "run")
+    data = (folder / "recording.mcap").read_bytes()
+    (folder / "recording.mcap").write_bytes(data[: len(data) // 3])
+    written = write_report(folder)
+    assert len(written.notes) == 1
+    assert "cut in the record at byte" in written.notes[0]
+    assert 3.0 < read_run(folder).span[1] < 20.0
+
+
+def test_a_recording_alone_is_enough(tmp_path: Path) -> None:
+    folder = make_run(tmp_path / "run")
+    for name in ("scenario.toml", "summary.json", "timing.json"):
+        (folder / name).unlink()
+    assert write_report(folder / "recording.mcap").page == folder / "report.html"
+
+
+def test_an_evader_known_by_tracks_alone_still_has_distances(tmp_path: Path) -> None:
+    unseen = [item for item in flight() if not item.key.endswith("vehicles/1/state")]
+    values = read_run(make_run(tmp_path / "run", unseen))
+    assert values.evader is not None
+    assert values.evader.source == "track"
+    assert min(gap.distance.min() for gap in values.gaps()) < 5.0
+
+
+def test_bad_files_beside_it_are_notes(tmp_path: Path) -> None:
+    folder = make_run(tmp_path / "run")
+    (folder / "summary.json").write_text("{", encoding="utf-8")
+    (folder / "scenario.toml").write_text("name = 3", encoding="utf-8")
+    notes = write_report(folder).notes
+    assert len(notes) == 2
+    assert "summary.json: not valid JSON" in "\n".join(notes)
+    assert "scenario.toml: " in "\n".join(notes)
+
+
+@pytest.mark.parametrize(
+    ("contents", "said"),
+    [
+        (None, "no such file"),
+        (b"", "empty"),
+        (b"PK12345678", "no MCAP file"),
+        (b"\x89MCAP", "without a message"),
+    ],
+)
+def test_a_folder_with_nothing_to_tell_is_refused_in_one_line(
+    tmp_path: Path, contents: bytes | None, said: str
+) -> None:
+    if contents is not None:
+        (tmp_path / "recording.mcap").write_bytes(contents)
+    with pytest.raises(ConfigError, match=said) as caught:
+        write_report(tmp_path)
+    assert "\n" not in str(caught.value)
+    with pytest.raises(ConfigError, match="no such run"):
+        write_report(tmp_path / "missing")
+
+
+def test_words_from_the_network_cannot_become_markup(tmp_path: Path) -> None:
+    evil = "</script><img src=http://x/y onerror=alert(1)>"
+    event = swarm.Event(2, 1, EPOCH_NS, swarm.Severity.ERROR, evil, evil)
+    report = swarm.DecisionReport(
+        2, EPOCH_NS, 0.0, evil, evil, evil, evil, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0, 0.0
+    )
+    items = [
+        *flight(3.0),
+        Item(topics.key("field", topics.EVENTS, 2), swarm.EVENT.encode(event), EPOCH_NS + 4 * 10**9),
+        Item(
+            topics.key("field", topics.DECISION, 2), swarm.DECISION.encode(report), EPOCH_NS + 4 * 10**9 + 1
+        ),
+    ]
+    folder = make_run(tmp_path / "run", items)
+    (folder / "summary.json").write_text(json.dumps({evil: evil}), encoding="utf-8")
+    write_report(folder)
+    found = Page((folder / "report.html").read_text(encoding="utf-8"))
+    assert "onerror" in found.text, "it is shown as text"
+    assert not [a for a in found.attributes if a[0] == "img"]
+    assert len(found.scripts) == 2 or "".join(found.scripts).count("Plotly.newPlot") == len(FIGURES)
+
+
+def test_a_recording_of_states_alone_and_one_of_commands_alone_work(tmp_path: Path) -> None:
+    states = [item for item in flight(3.0) if item.key.endswith("/state")]
+    values = read_run(make_run(tmp_path / "states", states))
+    assert [figure.name for figure in figures(values)] == [
+        "space", "plan", "distances", "speeds", "heights", "wind", "latencies",
+    ]  # fmt: skip
+    journal = [item for item in flight() if "/gcs/" in item.key]
+    written = write_report(make_run(tmp_path / "journal", journal))
+    assert any("no state and no track" in note for note in written.notes)
+
+
+def test_a_long_flight_is_thinned(tmp_path: Path) -> None:
+    payloads = [item for item in flight(3.0) if item.key.endswith("vehicles/1/state")]
+    state = swarm.STATE.decode(payloads[0].payload, {})  # type: ignore[arg-type]
+    assert state is not None
+    recorder = Recorder(tmp_path / "recording.mcap", "field")
+    for step in range(9000):
+        stamp_ns = EPOCH_NS + step * 50_000_000
+        later = msgspec.structs.replace(state, stamp_ns=stamp_ns, position=(float(step), 0.0, -50.0))
+        recorder.record(payloads[0].key, swarm.STATE.encode(later), stamp_ns)
+    recorder.close()
+    flown = read_run(tmp_path).flown[1]
+    assert len(flown.t) == 4000
+    assert flown.position[-1, 0] == 8999.0

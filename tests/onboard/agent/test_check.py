@@ -1,0 +1,94 @@
+"""The preflight check: a table a person can act on."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+from onboard.agent.config import AgentConfig
+from onboard.agent.preflight import Mark, Row, Sight, judge, table
+from onboard.autopilot.base import Telemetry
+from onboard.wire.mavlink.modes import Kind
+
+GOOD = Sight(
+    now=10.0,
+    link="udpin://127.0.0.1:14541",
+    datagrams=500,
+    kind=Kind.ARDUCOPTER.value,
+    version="4.5.6",
+    telemetry=Telemetry(
+        kind=Kind.ARDUCOPTER, mode="LOITER", battery=0.9, battery_at=9.0, gps_fix=3, satellites=12,
+        gps_at=9.0, ekf_ok=True, ekf_at=9.0,
+    ),
+    position_rate=20.0,
+    parameters={"FS_GCS_ENABLE": 1.0, "SYSID_MYGCS": 2.0, "FENCE_ENABLE": 1.0, "GUID_TIMEOUT": 1.0},
+    connected=True,
+    bus="tcp/127.0.0.1:7447",
+    master=True,
+    offset_s=0.004,
+)  # fmt: skip
+
+
+WATCHED = GOOD.parameters or {}
+
+
+def row(seen: Sight, name: str, config: AgentConfig | None = None) -> Row:
+    """One row of the table."""
+    return next(row for row in judge(config or AgentConfig(), seen) if row.name == name)
+
+
+def test_all_in_order_is_all_pass() -> None:
+    rows = judge(AgentConfig(), GOOD)
+    assert {row.mark for row in rows} == {Mark.PASS}
+    assert len(rows) >= 10
+    assert all("→" not in line for line in table(rows))
+
+
+@pytest.mark.parametrize(
+    ("change", "name", "mark", "said"),
+    [
+        ({"link_trouble": "port in use"}, "link", Mark.FAIL, "port in use"),
+        ({"datagrams": 0}, "link", Mark.FAIL, "nothing arrives"),
+        ({"bad_frames": {"bad_crc": 3}}, "link", Mark.WARN, "bad_crc 3"),
+        ({"kind": "", "other_systems": (1, 7)}, "autopilot", Mark.FAIL, "but system 1, 7"),
+        ({"refusal": "PX4 fixed wing ignores"}, "autopilot", Mark.FAIL, "PX4 fixed wing"),
+        ({"position_rate": 4.0}, "rates", Mark.FAIL, "4.0 Hz of 20"),
+        ({"telemetry": GOOD.telemetry._replace(gps_fix=1)}, "GPS", Mark.FAIL, "fix type 1"),
+        ({"telemetry": GOOD.telemetry._replace(ekf_ok=False)}, "estimate", Mark.FAIL, "not healthy"),
+        ({"telemetry": GOOD.telemetry._replace(battery=0.3)}, "battery", Mark.FAIL, "30%"),
+        ({"telemetry": GOOD.telemetry._replace(battery=-1.0)}, "battery", Mark.WARN, "not reported"),
+        ({"parameters": {**WATCHED, "FS_GCS_ENABLE": 0.0}}, "parameter FS_GCS_ENABLE", Mark.FAIL, "0"),
+        ({"parameters": {**WATCHED, "FENCE_ENABLE": 0.0}}, "parameter FENCE_ENABLE", Mark.WARN, "off"),
+        ({"connected": False}, "bus", Mark.FAIL, "nobody"),
+        ({"bus_trouble": "no such file"}, "bus", Mark.FAIL, "no such file"),
+        ({"master": False}, "clock", Mark.WARN, "no master"),
+        ({"offset_s": 0.1}, "clock", Mark.WARN, "+100 ms"),
+        ({"offset_s": -0.4}, "clock", Mark.FAIL, "-400 ms"),
+        ({"key_trouble": "found mode 0644"}, "signing key", Mark.FAIL, "0644"),
+        ({"free_bytes": 1e6}, "disk", Mark.WARN, "0.0 GB"),
+        ({"bytecode": False}, "bytecode", Mark.WARN, "not compiled"),
+    ],
+)
+def test_each_trouble_has_its_row_with_what_to_do(
+    change: dict[str, object], name: str, mark: Mark, said: str
+) -> None:
+    found = row(GOOD._replace(**change), name)  # type: ignore[arg-type]
+    assert (found.mark, said in found.found, bool(found.remedy)) == (mark, True, True)
+    assert "→" in table([found])[0]
+
+
+def test_in_the_field_an_unsigned_link_is_a_warning() -> None:
+    assert row(GOOD, "signing key", AgentConfig(field=True)).mark is Mark.WARN
+
+
+@pytest.mark.real
+def test_alone_on_a_machine_it_fails_with_a_table_and_exit_code_1() -> None:
+    command = [sys.executable, "-m", "onboard.cli", "check", "--link", "udpin://127.0.0.1:0",
+               "--bus", "tcp/127.0.0.1:1", "--seconds", "0.5"]  # fmt: skip
+    run = subprocess.run(command, capture_output=True, text=True, timeout=30, check=False)
+    assert run.returncode == 1, run.stderr
+    assert "FAIL  link" in run.stdout
+    assert "FAIL  bus" in run.stdout
+    assert run.stdout.strip().splitlines()[-1].startswith("not ready: ")

@@ -1,0 +1,109 @@
+"""The adapter that fits the heartbeat, or a refusal that says why."""
+
+from __future__ import annotations
+
+from math import radians
+
+import pytest
+
+from onboard.autopilot.base import Envelope, Refusal
+from onboard.autopilot.choose import adapter_for
+from onboard.autopilot.parameters import envelope_from, findings, gcs_failsafe
+from onboard.wire.mavlink.commands import Target
+from onboard.wire.mavlink.frames import dialect
+from onboard.wire.mavlink.modes import Kind
+from onboard.wire.mavlink.telemetry import decode
+from onboard.wire.mavlink.values import Heartbeat
+
+WATCHED = {"FS_GCS_ENABL": 1.0, "SYSID_MYGCS": 2.0, "FS_LONG_ACTN": 1.0}
+
+
+def heartbeat(autopilot: int, vehicle: int) -> Heartbeat:
+    value = decode(dialect.MAVLink_heartbeat_message(vehicle, autopilot, 0, 0, 4, 3))
+    assert isinstance(value, Heartbeat)
+    return value
+
+
+@pytest.mark.parametrize(
+    ("autopilot", "vehicle", "name", "mode", "airspeed"),
+    [
+        (12, 2, "velocity", "OFFBOARD", False),
+        (3, 2, "velocity", "GUIDED", False),
+        (3, 1, "arduplane", "GUIDED", True),
+    ],
+)
+def test_each_autopilot_gets_its_own(
+    autopilot: int, vehicle: int, name: str, mode: str, airspeed: bool
+) -> None:
+    adapter = adapter_for(heartbeat(autopilot, vehicle), Target(2))
+    assert not isinstance(adapter, Refusal)
+    assert (adapter.name, adapter.guided_mode, adapter.holds_airspeed) == (name, mode, airspeed)
+
+
+@pytest.mark.parametrize(
+    ("autopilot", "vehicle", "scheme", "reason"),
+    [
+        (12, 1, "auto", "PX4 fixed wing ignores velocity targets"),
+        (12, 22, "auto", "PX4 VTOL"),
+        (3, 22, "auto", "ArduPlane VTOL"),
+        (3, 10, "auto", "unknown autopilot (autopilot 3, vehicle type 10)"),
+        (8, 6, "auto", "unknown autopilot"),
+        (3, 1, "velocity", "ArduPlane cannot be flown by velocity: expected auto, arduplane, ardu"),
+        (12, 2, "arduplane", "PX4 multicopter cannot be flown by arduplane"),
+        (3, 1, "mavsdk", "ArduPlane cannot be flown by mavsdk"),
+        (3, 2, "mavsdk", "mavsdk needs a connection of its own"),
+        (3, 2, "teleport", "ArduCopter cannot be flown by teleport"),
+    ],
+)
+def test_what_cannot_be_flown_is_refused_with_the_reason(
+    autopilot: int, vehicle: int, scheme: str, reason: str
+) -> None:
+    refusal = adapter_for(heartbeat(autopilot, vehicle), Target(2), scheme=scheme)
+    assert isinstance(refusal, Refusal)
+    assert reason in refusal.reason
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        ({"FS_GCS_ENABL": None}, "FS_GCS_ENABL is not known"),
+        ({"FS_GCS_ENABL": 0.0}, "no GCS failsafe"),
+        ({"SYSID_MYGCS": 255.0}, "SYSID_MYGCS is 255: the failsafe does not watch this agent"),
+        ({"FS_LONG_ACTN": 0.0}, "in GUIDED the plane flies on"),
+    ],
+)
+def test_the_plain_variant_needs_a_failsafe_that_watches_the_agent(
+    change: dict[str, float | None], reason: str
+) -> None:
+    plane = heartbeat(3, 1)
+    good = adapter_for(plane, Target(2), scheme="arduplane-plain", parameters=WATCHED)
+    assert not isinstance(good, Refusal)
+    assert good.name == "arduplane-plain"
+    parameters = {k: v for k, v in {**WATCHED, **change}.items() if v is not None}
+    refusal = adapter_for(plane, Target(2), scheme="arduplane-plain", parameters=parameters)
+    assert isinstance(refusal, Refusal)
+    assert reason in refusal.reason
+
+
+def test_parameters_that_defeat_a_failsafe_are_found() -> None:
+    assert gcs_failsafe(Kind.ARDUPLANE, WATCHED, 2) is None
+    names = {finding.name for finding in findings(Kind.ARDUCOPTER, {"FS_GCS_ENABLE": 0.0}, 2)}
+    assert names == {"FS_GCS_ENABLE", "FENCE_ENABLE"}
+    px4 = {"COM_OF_LOSS_T": 30.0, "COM_OBL_RC_ACT": 7.0, "GF_ACTION": 3.0}
+    assert [finding.name for finding in findings(Kind.PX4_MULTICOPTER, px4, 2)] == [
+        "COM_OF_LOSS_T",
+        "COM_OBL_RC_ACT",
+    ]
+    assert findings(Kind.PX4_MULTICOPTER, {"COM_OF_LOSS_T": 1.0, "GF_ACTION": 2.0}, 2) == ()
+
+
+def test_the_envelope_is_the_tighter_of_what_is_declared_and_what_the_autopilot_does() -> None:
+    declared = Envelope(speed_min=10.0, speed_max=50.0, bank_max=radians(60))
+    plane = {"AIRSPEED_MIN": 9.0, "AIRSPEED_MAX": 22.0, "ROLL_LIMIT_DEG": 45.0, "TECS_CLMB_MAX": 5.0}
+    envelope = envelope_from(Kind.ARDUPLANE, plane, declared)
+    assert (envelope.speed_min, envelope.speed_max) == (10.0, 22.0)
+    assert envelope.bank_max == pytest.approx(radians(45))
+    assert envelope.climb_max == 3.0
+    older = envelope_from(Kind.ARDUPLANE, {"LIM_ROLL_CD": 4500.0}, declared)
+    assert older.bank_max == pytest.approx(radians(45))
+    assert envelope_from(Kind.ARDUCOPTER, {}, declared) == declared

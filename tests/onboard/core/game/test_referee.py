@@ -1,0 +1,91 @@
+"""Capture, safety distance and arrival are judged over the whole step."""
+
+from __future__ import annotations
+
+from math import sqrt
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from onboard.core.game.referee import Score, Verdict, judge, opening, passage
+from onboard.core.math.vectors import ZERO, Vec
+from tests.support.situations import points
+
+FRESH = Score(Verdict.RUNNING, 0.0, -1, 1e300, 0.0)
+
+
+def step(e0, e1, before, after, R=2.0, rho=4.0, target=None, start=0.0, dt=1.0, horizon=100.0, score=FRESH):
+    goal = ZERO if target is None else target
+    return judge(score, start, dt, e0, e1, before, after, R, rho, target is not None, goal, 1.0, horizon)
+
+
+@settings(max_examples=500, deadline=None)
+@given(points(), points(), points(), points(), st.floats(0.1, 200.0))
+def test_passage_against_dense_sampling(a0, a1, b0, b1, radius):
+    seen = passage(a0, a1, b0, b1, radius)
+    share = np.linspace(0.0, 1.0, 4001)[:, None]
+    gap = np.array(a0) - np.array(b0) + share * (np.array(a1) - a0 - np.array(b1) + b0)
+    far = np.sqrt((gap**2).sum(axis=1))
+    assert seen.smallest <= far.min() + 1e-9
+    assert seen.smallest >= far.min() - 1.0  # samples lie at most half a metre apart
+    assert seen.enters == (seen.smallest <= radius) or abs(seen.smallest - radius) < 1e-6
+    if seen.enters and far[0] > radius:
+        index = min(int(seen.entry * 4000), 4000)
+        assert far[: max(index - 1, 0)].min(initial=1e9) > radius - 1e-6
+        at_entry = np.array(a0) - np.array(b0) + seen.entry * (np.array(a1) - a0 - np.array(b1) + b0)
+        assert sqrt(float((at_entry**2).sum())) == pytest.approx(radius, rel=1e-6, abs=1e-5)
+
+
+def test_a_capture_between_the_ends_of_a_step_counts():
+    score = step(ZERO, Vec(10.0, 0.0, 0.0), (Vec(5.0, 10.0, 0.0),), (Vec(5.0, -10.0, 0.0),))
+    assert score.verdict == Verdict.CAPTURED
+    assert 0.3 < score.time < 0.5
+    assert score.smallest == pytest.approx(2.0)
+
+
+def test_an_arrival_between_the_ends_of_a_step_counts():
+    far = (Vec(99.0, 0.0, 0.0),)
+    score = step(Vec(-10.0, 0.5, 0.0), Vec(10.0, 0.5, 0.0), far, far, target=ZERO)
+    assert score.verdict == Verdict.ARRIVED
+    assert score.time == pytest.approx((10.0 - sqrt(0.75)) / 20.0)
+
+
+@pytest.mark.parametrize(("place", "verdict"), [(4.0, Verdict.CAPTURED), (9.0, Verdict.ARRIVED)])
+def test_whatever_comes_first_in_a_step_decides(place, verdict):
+    guard = (Vec(place, 0.0, 0.0),)
+    score = step(ZERO, Vec(20.0, 0.0, 0.0), guard, guard, R=0.5, target=Vec(7.0, 0.0, 0.0))
+    assert score.verdict == verdict
+
+
+def test_the_first_captor_of_a_step_is_named():
+    team = (Vec(15.0, 0.0, 0.0), Vec(10.0, 0.0, 0.0))
+    assert step(ZERO, Vec(20.0, 0.0, 0.0), team, team).captor == 1
+
+
+def test_the_safety_distance_is_watched_over_the_whole_step():
+    guard = (Vec(5.0, 3.0, 0.0),)
+    assert step(ZERO, Vec(10.0, 0.0, 0.0), guard, guard).unsafe == 1.0
+    assert step(ZERO, Vec(10.0, 0.0, 0.0), (Vec(5.0, 4.1, 0.0),), (Vec(5.0, 4.1, 0.0),)).unsafe == 0.0
+
+
+def test_at_the_horizon_the_evader_has_escaped_and_later_captures_do_not_count():
+    guard = (Vec(8.0, 0.0, 0.0),)
+    score = step(ZERO, Vec(10.0, 0.0, 0.0), guard, guard, R=0.5, start=99.6, horizon=100.0)
+    assert (score.verdict, score.time) == (Verdict.ESCAPED, 100.0)
+
+
+def test_a_verdict_stands():
+    done = Score(Verdict.ARRIVED, 3.0, -1, 7.0, 0.0)
+    guard = (ZERO,)
+    assert step(ZERO, ZERO, guard, guard, score=done) == done
+
+
+def test_the_opening_knows_the_smallest_distance():
+    assert opening(ZERO, (Vec(3.0, 4.0, 0.0), Vec(9.0, 0.0, 0.0))).smallest == pytest.approx(5.0)
+
+
+def test_players_in_one_place_at_the_start_are_captured_at_once():
+    score = step(ZERO, Vec(10.0, 0.0, 0.0), (ZERO,), (ZERO,))
+    assert (score.verdict, score.time) == (Verdict.CAPTURED, 0.0)

@@ -1,0 +1,122 @@
+"""Whatever comes in, including what is not a number: no setpoint leaves outside limits or fence."""
+
+from __future__ import annotations
+
+from math import atan2, cos, isfinite, pi, sin
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from onboard.core.math.vectors import Vec
+from onboard.core.safety.fence import fits, inside, outside_by
+from onboard.core.safety.health import Demand
+from onboard.core.safety.policy import Action, Cause, Fence, Mate, Seen
+from onboard.core.safety.supervisor import Watch, advance, supervise
+from tests.support.supervised import COPTER, FIELD, PLANE, Flight, assert_within
+
+anything = st.floats(allow_nan=True, allow_infinity=True)
+any_vec = st.builds(Vec, anything, anything, anything)
+sane = st.floats(-60.0, 60.0)
+sane_vec = st.builds(Vec, sane, sane, sane)
+vecs = st.one_of(any_vec, sane_vec)
+mates = st.lists(st.builds(Mate, st.integers(1, 9), vecs, vecs, anything), max_size=3).map(tuple)
+seens = st.builds(
+    Seen,
+    now=st.floats(0.0, 1e6),
+    id=st.integers(1, 9),
+    position=vecs,
+    velocity=vecs,
+    wind=vecs,
+    mates=mates,
+    telemetry_age=st.one_of(anything, st.floats(0.0, 0.5)),
+    track_sigma=st.one_of(anything, st.just(0.0)),
+    battery=st.one_of(anything, st.just(-1.0)),
+    clock_jump_age=st.one_of(anything, st.just(1e9)),
+    strategy_age=st.one_of(anything, st.floats(0.0, 0.3)),
+)
+
+
+@settings(max_examples=1500, deadline=None)
+@given(wanted=vecs, seen=seens, copter=st.booleans(), before=vecs, gap=anything)
+def test_no_setpoint_leaves_that_is_not_a_number_or_outside_the_limits(
+    wanted: Vec, seen: Seen, copter: bool, before: Vec, gap: float
+) -> None:
+    policy = (COPTER if copter else PLANE)._replace(separation=10.0)
+    demand = before if all(map(isfinite, before)) else Vec(1.0, 0.0, 0.0)
+    watch = Watch(demand=demand, stamp=seen.now - abs(gap))
+    verdict = supervise(wanted, seen, policy, watch)
+    assert all(map(isfinite, (*verdict.ground, *verdict.air)))
+    if verdict.stream:
+        assert_within(verdict, policy)
+        assert seen.strategy_age <= policy.strategy_age
+    else:
+        assert verdict.ground == (0.0, 0.0, 0.0)
+
+
+L_SHAPE = Fence(
+    ((-120.0, -120.0), (120.0, -120.0), (120.0, 0.0), (0.0, 0.0), (0.0, 120.0), (-120.0, 120.0)), 5.0, 80.0
+)
+starts = st.tuples(st.floats(-90.0, -20.0), st.floats(-90.0, -20.0), st.floats(-60.0, -20.0))
+wishes = st.lists(st.one_of(sane_vec, any_vec), min_size=1, max_size=8)
+
+
+@settings(max_examples=60, deadline=None)
+@given(wishes=wishes, start=starts)
+def test_no_multicopter_leaves_its_fence_whatever_its_strategy_wants(
+    wishes: list[Vec], start: tuple[float, float, float]
+) -> None:
+    flight = Flight(COPTER._replace(fences=(L_SHAPE,)), Vec(*start))
+    for n in range(1200):
+        flight.step(wishes[(n // 40) % len(wishes)])
+        assert outside_by(flight.seen.position, L_SHAPE) == 0.0
+        assert inside(flight.seen.position.x, flight.seen.position.y, L_SHAPE.polygon)
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    wishes=st.lists(sane_vec, min_size=1, max_size=8),
+    heading=st.floats(-pi, pi),
+    wind=st.builds(Vec, st.floats(-5.0, 5.0), st.floats(-5.0, 5.0), st.just(0.0)),
+    outwards=st.booleans(),
+)
+def test_no_plane_leaves_its_fence_in_wind_whatever_its_strategy_wants(
+    wishes: list[Vec], heading: float, wind: Vec, outwards: bool
+) -> None:
+    start = Vec(20.0 * cos(heading) + wind.x, 20.0 * sin(heading) + wind.y, 0.0)
+    flight = Flight(PLANE, Vec(0.0, 0.0, -150.0), start, wind)
+    for n in range(3000):
+        at = flight.seen.position
+        away = atan2(at.y, at.x) + wishes[0].x / 60.0
+        wish = Vec(25.0 * cos(away), 25.0 * sin(away), 0.0) if outwards else wishes[(n // 100) % len(wishes)]
+        verdict = flight.step(wish)
+        assert verdict.stream
+        assert outside_by(flight.seen.position, FIELD) == 0.0
+
+
+demands = st.builds(
+    lambda action, cause, latched: Demand(action, cause, latched and action >= Action.HOLD),
+    st.sampled_from(Action), st.sampled_from(Cause), st.booleans(),
+)
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.lists(demands, min_size=1, max_size=40))
+def test_nothing_milder_than_the_demand_is_ever_in_force_and_latches_hold(story: list[Demand]) -> None:
+    watch = Watch()
+    now = 0.0
+    floor = Action.PASS
+    for demand in story:
+        now += 0.05
+        watch = advance(watch, demand, False, now, 1.0)
+        floor = max(floor, demand.action) if demand.latched else floor
+        assert watch.action >= demand.action
+        assert watch.action >= floor
+    calm = advance(watch, Demand(Action.PASS, Cause.NONE, False), True, now + 0.05, 1.0)
+    assert calm.action == Action.PASS
+
+
+def test_a_fence_too_small_for_a_planes_circle_is_known_before_flight() -> None:
+    small = Fence(((0.0, 0.0), (150.0, 0.0), (150.0, 150.0), (0.0, 150.0)), 10.0, 100.0)
+    assert fits(FIELD, PLANE.envelope, 20.0, 5.0)
+    assert not fits(small, PLANE.envelope, 20.0, 0.0)
+    assert fits(small, COPTER.envelope, 20.0, 0.0)

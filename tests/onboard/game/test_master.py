@@ -1,0 +1,336 @@
+"""The master as flight stories: it stages, starts, judges and ends; it never shares its chair."""
+
+from __future__ import annotations
+
+from collections import Counter
+from itertools import pairwise
+from typing import Any
+
+import pytest
+
+from onboard.core.math.vectors import Vec
+from onboard.game.master import GameMaster, Publication, Standing, Timing
+from onboard.wire.bus import messages as swarm
+from onboard.wire.bus.messages import (
+    EvaderBrief,
+    Health,
+    Master,
+    Member,
+    Origin,
+    Outcome,
+    Phase,
+    PhaseChange,
+    Role,
+    Setup,
+)
+from onboard.wire.bus.topics import EVADER_BRIEF, SETUP
+
+NS = 1_000_000_000
+WALL0 = 1_767_225_600 * NS
+STEP = 10_000_000
+
+
+def setup(**changes: object) -> Setup:
+    """Evader 1 against pursuers 2 and 3, R = 5 m, horizon 30 s."""
+    members = (
+        Member(1, Role.EVADER, 4.0, (0.0, 0.0, -50.0)),
+        Member(2, Role.PURSUER, 5.0, (100.0, 0.0, -50.0)),
+        Member(3, Role.PURSUER, 5.0, (0.0, 200.0, -50.0)),
+    )
+    fields: dict[str, object] = dict(
+        game="g", scenario="story", scenario_hash="0" * 16, master="bridge", origin=Origin(47.0, 8.0, 400.0),
+        roster=members, capture_radius=5.0, safety_distance=10.0, lambda_=100.0, beta=1.0, epsilon_min=1.0,
+        horizon=30.0,
+    )  # fmt: skip
+    return Setup(**(fields | changes))  # type: ignore[arg-type]
+
+
+def health(id: int, stage: str = "ready", nonce: int = 0, lacks: tuple[str, ...] = ()) -> Health:
+    role = Role.EVADER if id == 1 else Role.PURSUER
+    return Health(
+        id, role, 0, stage, lacks, "arducopter", "GUIDED", True, 1.0, 1.0, 20.0, 20.0, 0.0, 3, True, "ok",
+        "0", {}, nonce=nonce or 100 + id,
+    )  # fmt: skip
+
+
+class Range:
+    """A master, a clock, and agents that send their heartbeat twice a second."""
+
+    def __init__(self, target: Vec | None = None, timing: Timing | None = None, **changes: object) -> None:
+        patience = timing or Timing(ready_s=2.0, timeout_s=20.0)
+        self.master = GameMaster(setup(**changes), target, "bridge", 50, patience)
+        self.now = 0
+        self.agents: dict[int, Health] = {}
+        self.places = {1: Vec(0, 0, -50), 2: Vec(100, 0, -50), 3: Vec(0, 200, -50)}
+        self.speeds = {1: Vec(0, 0, 0), 2: Vec(0, 0, 0), 3: Vec(0, 0, 0)}
+        self.said: list[Publication] = []
+        self.news: list[str] = []
+
+    def fly(self, seconds: float) -> None:
+        for _ in range(round(seconds * NS / STEP)):
+            self.now += STEP
+            if self.now % (NS // 2) == 0:
+                for agent in self.agents.values():
+                    self.master.heard_health(agent, self.now)
+            for id, v in self.speeds.items():
+                p, dt = self.places[id], STEP / NS
+                self.places[id] = Vec(p.x + v.x * dt, p.y + v.y * dt, p.z + v.z * dt)
+            self.master.tick(WALL0 + self.now, self.now)
+            self.master.observe(WALL0 + self.now, self.now, self.places)
+            self.said += self.master.outgoing()
+            self.news += self.master.news()
+
+    def crew(self) -> None:
+        self.agents = {id: health(id) for id in (1, 2, 3)}
+
+    def begin(self) -> None:
+        """Until just after t₀."""
+        self.crew()
+        self.fly(5.0)
+        assert self.master.phase is Phase.RUNNING
+
+    def phases(self) -> list[PhaseChange]:
+        return [m for _, m in self.said if isinstance(m, PhaseChange)]
+
+    def outcome(self) -> Outcome:
+        outcomes = [m for _, m in self.said if isinstance(m, Outcome)]
+        assert len(outcomes) == 1
+        return outcomes[0]
+
+
+def test_it_listens_then_stages_then_waits_for_everybody() -> None:
+    field = Range(target=Vec(500, 0, -50))
+    field.fly(1.1)
+    assert field.said == []  # somebody else might be the master
+    field.fly(0.2)
+    assert [p.topic for p in field.said[:2]] == [SETUP, EVADER_BRIEF]
+    brief = field.said[1].message
+    assert isinstance(brief, EvaderBrief)
+    assert brief.target == (500.0, 0.0, -50.0)
+    assert "500" not in str(field.said[0].message)  # the setup keeps the evader's secret
+    field.agents = {1: health(1), 2: health(2, "waiting", lacks=("autopilot",))}
+    field.fly(5.0)
+    assert field.master.phase is Phase.STAGING
+    assert field.master.lacking(field.now) == {2: "waiting: autopilot", 3: "no agent heard"}
+    field.crew()
+    field.fly(1.0)
+    ready = field.phases()[-1]
+    assert ready.phase is Phase.READY
+    assert ready.t0_ns == ready.stamp_ns + 2 * NS
+    field.fly(2.5)
+    running = field.phases()[-1]
+    assert running.phase is Phase.RUNNING
+    assert running.t0_ns == ready.t0_ns
+    assert 0 <= running.stamp_ns - running.t0_ns <= STEP
+
+
+def test_the_lease_is_renewed_twice_a_second() -> None:
+    field = Range()
+    field.fly(11.2)
+    leases = [m for _, m in field.said if isinstance(m, Master)]
+    assert len(leases) == 20  # the first 1.2 s it listened
+    assert {b.stamp_ns - a.stamp_ns for a, b in pairwise(leases)} == {NS // 2}
+    assert {(m.name, m.nonce, m.lease_s) for m in leases} == {("bridge", 50, 2.0)}
+
+
+def test_a_capture_is_judged_at_its_instant_between_two_steps() -> None:
+    field = Range()
+    field.begin()
+    t0 = field.phases()[-1].t0_ns
+    elapsed = (WALL0 + field.now - t0) / NS
+    field.places[2] = Vec(100.0, 0, -50)
+    field.speeds[2] = Vec(-30.0, 0, 0)
+    field.fly(8.0)
+    outcome = field.outcome()
+    assert (outcome.verdict, outcome.captor) == ("captured", 2)
+    assert outcome.time == pytest.approx(elapsed + 95.0 / 30.0, abs=1e-6)
+    assert outcome.smallest_distance == pytest.approx(5.0)
+    assert field.master.nearest[2] == pytest.approx(5.0)
+    assert field.master.nearest[3] == pytest.approx(200.0)
+    assert [p.phase for p in field.phases()][-2:] == [Phase.ENDED, Phase.RECOVERY]
+
+
+def test_a_pursuer_that_flies_through_between_two_steps_has_captured() -> None:
+    field = Range()
+    field.begin()
+    field.places[2] = Vec(100.0, 0, -50)
+    field.fly(0.01)
+    field.places[2] = Vec(-100.0, 0, -50)  # 200 m in one step
+    field.fly(0.01)
+    assert field.outcome().captor == 2
+
+
+def test_an_evader_at_its_target_has_arrived() -> None:
+    field = Range(target=Vec(0, -50, -50))
+    field.begin()
+    field.speeds[1] = Vec(0, -10, 0)
+    field.fly(6.0)
+    assert field.outcome().verdict == "arrived"
+    assert field.outcome().captor == 0
+
+
+def test_an_evader_that_nobody_catches_has_escaped_at_the_horizon() -> None:
+    field = Range()
+    field.begin()
+    field.fly(40.0)
+    assert field.outcome().verdict == "escaped"
+    assert field.outcome().time == 30.0
+
+
+@pytest.mark.parametrize(("changes", "verdict"), [({}, "escaped"), ({"planar": True}, "captured"),
+                                                  ({"field_profile": True}, "captured")])  # fmt: skip
+def test_plane_games_and_altitude_layers_are_judged_level(changes: dict[str, bool], verdict: str) -> None:
+    field = Range(**changes)
+    field.begin()
+    field.places[3] = Vec(1.0, 1.0, -90.0)  # 40 m above the evader
+    field.fly(40.0)
+    assert field.outcome().verdict == verdict
+
+
+def test_who_is_not_ready_in_time_is_named() -> None:
+    field = Range()
+    field.agents = {1: health(1), 2: health(2)}
+    field.fly(25.0)
+    outcome = field.outcome()
+    assert outcome.verdict == "aborted"
+    assert outcome.reason == "not ready in time: vehicle 3: no agent heard"
+    assert field.phases()[-1].phase is Phase.RECOVERY
+
+
+def test_an_agent_lost_in_the_countdown_takes_everybody_back_to_staging() -> None:
+    field = Range(timing=Timing(ready_s=5.0))
+    field.crew()
+    field.fly(2.0)
+    assert field.master.phase is Phase.READY
+    del field.agents[3]
+    field.fly(4.0)
+    assert field.phases()[-1].phase is Phase.STAGING
+    assert field.phases()[-1].t0_ns == 0
+    assert field.phases()[-1].reason == "vehicle 3: agent silent"
+    field.crew()
+    field.fly(8.0)
+    assert field.master.phase is Phase.RUNNING
+
+
+def test_a_restarted_agent_acts_again_only_with_the_masters_word() -> None:
+    field = Range()
+    field.begin()
+    del field.agents[3]
+    field.fly(4.0)
+    assert field.news[-1] == "agent 3 is silent"
+    field.agents[3] = health(3, "waiting", nonce=999, lacks=("the master's word",))
+    field.fly(1.0)
+    assert field.phases()[-1].resume == (3,)
+    assert field.phases()[-1].phase is Phase.RUNNING
+    field.agents[3] = health(3, "acting", nonce=999)
+    field.fly(1.0)
+    assert field.phases()[-1].resume == ()  # said once: a third process must ask again
+    assert len([p for p in field.phases() if p.resume]) == 1
+
+
+def test_a_restart_within_one_heartbeat_is_a_restart_and_not_a_double() -> None:
+    field = Range()
+    field.begin()
+    field.agents[3] = health(3, "waiting", nonce=999)
+    field.fly(1.0)
+    assert field.phases()[-1].resume == ()  # the old process might still be alive
+    field.fly(2.0)
+    assert field.phases()[-1].resume == (3,)
+    assert not any("two agents" in line for line in field.news)
+
+
+def test_two_agents_with_one_id_are_named_and_neither_is_resumed() -> None:
+    field = Range()
+    field.begin()
+    for _ in range(6):
+        field.fly(0.25)
+        field.master.heard_health(health(3, "waiting", nonce=999), field.now)
+    field.fly(0.5)
+    assert "two agents speak as vehicle 3: stop one" in field.news
+    assert all(p.resume == () for p in field.phases())
+
+
+def test_two_agents_with_one_id_keep_the_game_from_starting() -> None:
+    field = Range()
+    field.crew()
+    for _ in range(12):
+        field.fly(0.25)
+        field.master.heard_health(health(2, nonce=777), field.now)
+    assert field.master.phase is Phase.STAGING
+    assert field.master.lacking(field.now) == {2: "two agents with this id"}
+
+
+def test_who_hears_another_master_yields_and_says_nothing() -> None:
+    field = Range()
+    field.master.heard_master(Master("gcs", WALL0, nonce=1), 0)
+    field.crew()
+    field.fly(10.0)
+    assert field.master.standing is Standing.YIELDED
+    assert field.said == []
+    assert field.news == ["another master is at work: gcs; this one yields and publishes no game"]
+
+
+def test_of_two_that_began_at_once_exactly_one_stays() -> None:
+    low, high = Range(), Range()
+    high.master.nonce = 60
+    for _ in range(30):
+        low.fly(0.1)
+        high.fly(0.1)
+        for speaker, hearer in ((low, high), (high, low)):
+            for _, message in speaker.said:
+                if isinstance(message, Master):
+                    hearer.master.heard_master(message, hearer.now)
+    assert low.master.standing is Standing.HOLDING
+    assert high.master.standing is Standing.YIELDED
+    assert any("second master" in line for line in low.news)
+
+
+def test_its_own_echo_is_no_second_master() -> None:
+    field = Range()
+    field.fly(2.0)
+    field.master.heard_master(Master("bridge", WALL0, nonce=50), field.now)
+    assert field.master.standing is Standing.HOLDING
+
+
+def test_an_abort_ends_the_game_with_its_reason() -> None:
+    field = Range()
+    field.begin()
+    field.master.abort(WALL0 + field.now, field.now, "range is hot")
+    field.fly(0.1)
+    assert field.outcome().verdict == "aborted"
+    assert field.outcome().time > 0
+    assert field.phases()[-1].reason == "range is hot"
+
+
+def test_a_game_without_auto_start_waits_for_the_word() -> None:
+    field = Range(timing=Timing(ready_s=1.0, auto_start=False))
+    field.crew()
+    field.fly(10.0)
+    assert field.master.phase is Phase.STAGING
+    field.master.start()
+    field.fly(2.0)
+    assert field.master.phase is Phase.RUNNING
+
+
+def test_strangers_are_reported_once_and_ignored() -> None:
+    field = Range()
+    for _ in range(5):
+        field.master.heard_health(health(9), field.now)
+    field.begin()
+    assert field.news.count("vehicle 9 is not in the roster: ignored") == 1
+
+
+def test_everything_it_says_passes_the_wire() -> None:
+    field = Range(target=Vec(500, 0, -50))
+    field.begin()
+    codecs: dict[type, swarm.Codec[Any]] = {
+        Setup: swarm.SETUP,
+        PhaseChange: swarm.PHASE,
+        Master: swarm.MASTER,
+        EvaderBrief: swarm.EVADER_BRIEF,
+    }
+    drops = Counter[str]()
+    for _, message in field.said:
+        codec = codecs[type(message)]
+        assert codec.decode(codec.encode(message), drops) == message
+    assert not drops

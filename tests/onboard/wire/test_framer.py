@@ -1,0 +1,117 @@
+"""Frames arrive torn, forged, foreign and doubled: what is good passes, what is bad is counted."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from onboard.core.math.vectors import Vec
+from onboard.wire.mavlink import commands
+from onboard.wire.mavlink.commands import Target
+from onboard.wire.mavlink.frames import CAUSES, Framer, Sender, dialect
+
+AUTOPILOT = Target(1)
+
+
+def frames(count: int) -> list[bytes]:
+    sender = Sender(1, 191)
+    targets = [commands.velocity_target(AUTOPILOT, k * 0.05, Vec(1.0 + k, -2.0, 0.5)) for k in range(count)]
+    return [sender.pack(target) for target in targets]
+
+
+def test_a_truncated_datagram_does_not_take_the_next_one_with_it() -> None:
+    first, second, third = frames(3)
+    framer = Framer()
+    assert len(framer.feed(first)) == 1
+    assert framer.feed(second[:20]) == []
+    assert [packet.raw for packet in framer.feed(third)] == [third]
+    assert framer.causes == {"truncated": 1}
+
+
+def test_a_torn_frame_in_a_byte_stream_does_not_take_the_next_one_with_it() -> None:
+    first, second, third = frames(3)
+    framer = Framer(stream=True)
+    got = framer.feed(first[:31] + second) + framer.feed(third) + framer.feed(frames(1)[0])
+    assert [packet.raw for packet in got] == [second, third, first]
+    assert framer.causes["bad_crc"] == 1
+
+
+def test_each_bad_frame_counts_once_by_its_cause() -> None:
+    good = frames(1)[0]
+    flipped = good[:15] + bytes([good[15] ^ 4]) + good[16:]
+    unknown = good[:7] + b"\xff\xff\x7f" + good[10:]
+    incompatible = good[:2] + b"\x02" + good[3:]
+    key = Sender(1, 191).pack(dialect.MAVLink_setup_signing_message(1, 1, [7] * 32, 99))
+    framer = Framer()
+    for bad in (flipped, unknown, incompatible, key, b"noise", good[:-1]):
+        assert framer.feed(bad) == []
+    assert framer.causes == {
+        "bad_crc": 1,
+        "unknown_id": 1,
+        "incompatible": 1,
+        "setup_signing": 1,
+        "garbage_bytes": 5,
+        "truncated": 1,
+    }
+    assert len(framer.feed(flipped + good + unknown + good + b"xx" + good)) == 3
+
+
+def test_a_key_sent_over_the_network_is_never_taken() -> None:
+    key = Sender(255, 190).pack(dialect.MAVLink_setup_signing_message(1, 1, [7] * 32, 99))
+    for stream in (False, True):
+        framer = Framer(stream=stream)
+        assert framer.feed(key) == []
+        assert framer.causes == {"setup_signing": 1}
+
+
+def test_mavlink_1_is_read_too() -> None:
+    mav = dialect.MAVLink(None, srcSystem=51, srcComponent=68)
+    raw = dialect.MAVLink_radio_status_message(180, 170, 88, 40, 41, 3, 0).pack(mav, force_mavlink1=True)
+    (packet,) = Framer().feed(raw)
+    assert (packet.system, packet.component, packet.message.txbuf) == (51, 68, 88)
+
+
+def test_sender_counts_its_frames_and_wraps() -> None:
+    sender, framer = Sender(3, 191), Framer()
+    packets = [framer.feed(sender.pack(commands.heartbeat()))[0] for _ in range(300)]
+    assert [packet.sequence for packet in packets] == [k % 256 for k in range(300)]
+    assert {(packet.system, packet.component) for packet in packets} == {(3, 191)}
+    assert {packet.raw[0] for packet in packets} == {0xFD}
+
+
+def test_messages_with_arrays_and_texts_come_back_as_they_went() -> None:
+    sender, framer = Sender(1, 1), Framer()
+    battery = dialect.MAVLink_battery_status_message(1, 2, 3, 400, [4000 + k for k in range(10)], 7, 8, 9, 55)
+    (packet,) = framer.feed(sender.pack(battery))
+    assert packet.message.voltages == [4000 + k for k in range(10)]
+    assert packet.message.battery_remaining == 55
+    (packet,) = framer.feed(sender.pack(commands.status_text(4, "x" * 80)))
+    assert packet.message.text == "x" * 50
+
+
+@settings(max_examples=300, deadline=None)
+@given(data=st.binary(max_size=700), stream=st.booleans())
+def test_any_bytes_are_taken_without_an_exception(data: bytes, stream: bool) -> None:
+    framer = Framer(stream=stream)
+    framer.feed(data)
+    assert set(framer.causes) <= set(CAUSES)
+
+
+@settings(max_examples=200, deadline=None)
+@given(
+    junk=st.lists(st.binary(max_size=40), min_size=4, max_size=4),
+    cuts=st.lists(st.integers(1, 200), min_size=1, max_size=12),
+)
+def test_good_frames_survive_any_junk_between_them_in_a_stream(junk: list[bytes], cuts: list[int]) -> None:
+    """Junk may claim a frame of at most 280 bytes: what follows it is late by that much, never lost."""
+    good = frames(4)
+    data = b"".join(bad + frame for bad, frame in zip(junk, good, strict=True)) + bytes(300)
+    framer, got, at = Framer(stream=True), [], 0
+    for step in (cuts * (len(data) + 1))[: len(data)]:
+        got += [packet.raw for packet in framer.feed(data[at : at + step])]
+        at += step
+        if at >= len(data):
+            break
+    assert Counter(got) == Counter(good)

@@ -1,0 +1,45 @@
+"""No number of a swarm message is NaN or infinite, however deep it lies."""
+
+from __future__ import annotations
+
+from collections import Counter
+from math import inf, nan
+
+import msgspec
+import pytest
+
+from onboard.wire.bus import messages as swarm
+from onboard.wire.bus.messages import Fence, Member, Origin, Role, Setup
+
+
+def setup(latitude: float = 47.0, start: float = 1.0, corner: float = 2.0) -> Setup:
+    return Setup(
+        game="g",
+        scenario="s",
+        scenario_hash="0",
+        master="m",
+        origin=Origin(latitude, 8.0, 400.0),
+        roster=(Member(1, Role.EVADER, 4.0, (0.0, 0.0, 0.0)), Member(2, Role.PURSUER, 5.0, (0.0, start, 0))),
+        capture_radius=2.0,
+        safety_distance=4.0,
+        lambda_=100.0,
+        beta=1.0,
+        epsilon_min=1.0,
+        horizon=60.0,
+        fence=Fence(((0.0, 0.0), (corner, 0.0), (0.0, 9.0)), 0.0, 100.0),
+    )
+
+
+def test_a_good_message_passes() -> None:
+    drops: Counter[str] = Counter()
+    assert swarm.SETUP.decode(swarm.SETUP.encode(setup()), drops) == setup()
+    assert not drops
+
+
+@pytest.mark.parametrize("bad", [nan, inf, -inf])
+@pytest.mark.parametrize("place", ["latitude", "start", "corner"])
+def test_a_number_that_is_none_is_dropped_and_counted(place: str, bad: float) -> None:
+    drops: Counter[str] = Counter()
+    payload = msgspec.msgpack.encode((swarm.SCHEMA, setup(**{place: bad})))
+    assert swarm.SETUP.decode(payload, drops) is None
+    assert drops == {"not_finite": 1}

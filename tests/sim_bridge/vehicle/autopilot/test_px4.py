@@ -1,0 +1,154 @@
+"""PX4 in OFFBOARD: the stream before, the stream during, and what happens when it ends."""
+
+from __future__ import annotations
+
+import pytest
+
+from onboard.core.math.vectors import ZERO, Vec, norm, sub
+from onboard.game.scenario import Kind, VehicleSpec
+from onboard.wire.mavlink.frames import Sender, dialect
+from tests.support.flown import ORIGIN, Flown
+
+GCS = dialect.MAVLink_heartbeat_message(6, 8, 0, 0, 4, 3)
+
+
+def stream(flown: Flown, v: Vec, seconds: float, every_s: float = 0.05, **more: int) -> Flown:
+    return flown.fly(seconds, every_s=every_s, send=lambda: flown.velocity_target(v, **more))
+
+
+def offboard(**more: object) -> Flown:
+    flown = stream(Flown(Kind.PX4, **more), ZERO, 1.2)  # type: ignore[arg-type]
+    assert flown.mode_to("OFFBOARD") == 0
+    return flown
+
+
+def test_offboard_is_refused_without_a_stream() -> None:
+    flown = Flown(Kind.PX4)
+    assert flown.mode_to("OFFBOARD") == 1
+    assert flown.mode == "HOLD"
+    stream(flown, ZERO, 0.8)
+    assert flown.mode_to("OFFBOARD") == 1  # not for long enough
+    stream(flown, ZERO, 0.4)
+    assert flown.mode_to("OFFBOARD") == 0
+    assert flown.last("HEARTBEAT").custom_mode == 6 << 16
+
+
+def test_a_stream_below_two_hertz_is_none() -> None:
+    assert stream(Flown(Kind.PX4), ZERO, 6.0, every_s=0.6).mode_to("OFFBOARD") == 1
+    assert stream(Flown(Kind.PX4), ZERO, 6.0, every_s=0.4).mode_to("OFFBOARD") == 0
+
+
+def test_a_stream_that_has_ended_does_not_count() -> None:
+    flown = stream(Flown(Kind.PX4), ZERO, 3.0).fly(0.7)
+    assert flown.mode_to("OFFBOARD") == 1
+
+
+@pytest.mark.parametrize(("frame", "mask"), [(2, 0x9C7), (7, 0x9C7), (1, 0xFFF), (1, 0x9FF)])
+def test_what_it_does_not_understand_is_no_stream(frame: int, mask: int) -> None:
+    flown = stream(Flown(Kind.PX4), ZERO, 3.0, frame=frame, mask=mask)
+    assert flown.mode_to("OFFBOARD") == 1
+
+
+def test_it_follows_a_velocity() -> None:
+    flown = stream(offboard(), Vec(3.0, 2.0, -1.0), 4.0)
+    assert norm(sub(flown.velocity, Vec(3.0, 2.0, -1.0))) < 1e-6
+
+
+def test_setpoints_do_nothing_in_hold() -> None:
+    assert norm(stream(Flown(Kind.PX4), Vec(5.0, 0.0, 0.0), 4.0).velocity) < 1e-6
+
+
+def test_the_loss_of_setpoints_is_seen_after_a_second_and_it_holds() -> None:
+    flown = stream(offboard(), Vec(5.0, 0.0, 0.0), 4.0)
+    flown.fly(0.9)
+    assert flown.mode == "OFFBOARD"
+    assert flown.velocity.x == pytest.approx(5.0)
+    flown.fly(0.2)
+    assert flown.mode == "HOLD"
+    assert flown.last("HEARTBEAT").custom_mode == 4 << 16 | 3 << 24
+    flown.fly(4.0)
+    where = flown.position
+    stream(flown, Vec(5.0, 0.0, 0.0), 3.0)  # they come again: it does not go back by itself
+    assert flown.mode == "HOLD"
+    assert norm(sub(flown.position, where)) < 0.5
+
+
+@pytest.mark.parametrize(("action", "mode"), [(3, "RTL"), (4, "LAND"), (0, "POSCTL"), (5, "HOLD")])
+def test_what_it_does_then_is_a_parameter(action: int, mode: str) -> None:
+    flown = stream(offboard(parameters={"COM_OBL_RC_ACT": action}), Vec(1.0, 0.0, 0.0), 1.0).fly(1.5)
+    assert flown.mode == mode
+
+
+def test_the_data_link_is_any_ground_station_and_by_default_not_missed() -> None:
+    for action, mode in ((0, "OFFBOARD"), (2, "RTL"), (3, "LAND"), (1, "HOLD")):
+        flown = offboard(parameters={"NAV_DLL_ACT": action, "COM_DL_LOSS_T": 3})
+        flown.send(GCS, Sender(77, 190))
+        stream(flown, ZERO, 2.5)
+        assert flown.mode == "OFFBOARD"
+        stream(flown, ZERO, 1.0)
+        assert flown.mode == mode
+        assert "Connection to ground station lost" in flown.texts()
+
+
+def test_a_companions_heartbeat_is_no_ground_station() -> None:
+    flown = offboard(parameters={"NAV_DLL_ACT": 2, "COM_DL_LOSS_T": 3})
+    flown.send(dialect.MAVLink_heartbeat_message(18, 8, 0, 0, 4, 3))
+    assert stream(flown, ZERO, 10.0).mode == "OFFBOARD"
+
+
+def test_a_critical_battery_acts_as_its_parameter_says() -> None:
+    for action, mode in ((0, "OFFBOARD"), (2, "LAND"), (3, "RTL")):
+        flown = offboard(parameters={"COM_LOW_BAT_ACT": action})
+        flown.autopilot.set_battery(0.05)
+        assert stream(flown, ZERO, 1.0).mode == mode
+
+
+@pytest.mark.parametrize("parts", [(1, 4, 4), (1, 9, 0), (0, 6, 0), (1, 4, 0), (float("nan"), 6, 0)])
+def test_modes_it_cannot_enter_are_refused_for_now(parts: tuple[float, ...]) -> None:
+    flown = stream(Flown(Kind.PX4), ZERO, 2.0)
+    assert flown.command(176, *parts) == 1
+    assert flown.mode == "HOLD"
+
+
+def test_the_pilots_switch_takes_it_out_of_offboard() -> None:
+    flown = offboard()
+    flown.autopilot.pilot_mode(flown.now_ns, "POSCTL")
+    stream(flown, Vec(3.0, 0.0, 0.0), 2.0)
+    assert flown.mode == "POSCTL"
+    assert norm(flown.velocity) < 0.3
+
+
+def test_it_repositions_in_hold() -> None:
+    flown = Flown(Kind.PX4)
+    place = ORIGIN.geodetic_from_ned(Vec(12.0, -9.0, 0.0))
+    x, y = round(place.latitude_deg * 1e7), round(place.longitude_deg * 1e7)
+    assert flown.command_int(192, -1, 1, 0, float("nan"), x, y, 488.0 + 40.0, 5) == 0
+    flown.fly(25.0)
+    assert norm(sub(flown.position, Vec(12.0, -9.0, -40.0))) < 0.5
+    assert flown.command_int(192, -1, 1, 0, 0, x, y, 40.0, 1) == 8
+    assert flown.command_int(192, -1, 1, 0, 0, 1_000_000_000, y, 40.0, 5) == 2
+
+
+def test_a_position_setpoint_is_of_its_own_frame() -> None:
+    flown = offboard(system=6).fly(0.5)
+    here = flown.last("LOCAL_POSITION_NED")
+    flown.fly(
+        12.0,
+        every_s=0.1,
+        send=lambda: dialect.MAVLink_set_position_target_local_ned_message(
+            0, 6, 1, 1, 0xDF8, here.x + 10.0, here.y, here.z, 0, 0, 0, 0, 0, 0, 0, 0
+        ),
+    )
+    assert norm(sub(flown.position, Vec(10.0, 0.0, -50.0))) < 0.5
+
+
+def test_velocities_are_clipped_at_its_parameters() -> None:
+    spec = VehicleSpec(position=(0.0, 0.0, 50.0), speed=20.0)
+    flown = stream(
+        offboard(spec=spec, parameters={"MPC_XY_VEL_MAX": 12, "MPC_Z_VEL_MAX_UP": 3}),
+        Vec(20.0, 0.0, -10.0),
+        8.0,
+    )
+    assert norm(sub(flown.velocity, Vec(12.0, 0.0, -3.0))) < 1e-6
+    faster = stream(offboard(spec=spec), Vec(20.0, 0.0, 0.0), 8.0)  # as delivered they fit its airframe
+    assert faster.velocity.x == pytest.approx(20.0)
