@@ -39,7 +39,7 @@ def sent_beside(scenario_file: Path, frames: Sequence[tuple[int, bytes]], after_
     The game goes on for `after_s` without a frame, and the agents end as at SIGTERM."""
     from onboard.runtime.links import memory_pair
     from onboard.runtime.loop import run_virtual, virtual_clock
-    from onboard.runtime.scenario import load
+    from onboard.game.scenario import load
     from sim_bridge.rehearsal import Rehearsal
 
     async def play() -> list[Sent]:
@@ -64,7 +64,7 @@ def sent_beside(scenario_file: Path, frames: Sequence[tuple[int, bytes]], after_
 
 def spatial_rows(name: str, seeds: Sequence[int]) -> dict[tuple[int, str], SpatialRow]:
     """The compiled games of a shipped spatial scenario: by seed and way of the evader's flying."""
-    from sim_bridge.campaign import games
+    from sim_bridge.campaign import spatial_campaign as games
 
     scenario = games.spatial(name)
     rows: dict[tuple[int, str], SpatialRow] = {}
