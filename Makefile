@@ -9,7 +9,7 @@ export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
-.PHONY: help install demo test check bench bench-games bench-predictor check-aarch64 fuzz soak mavproxy clean lock
+.PHONY: help install demo test check bench bench-games bench-predictor check-aarch64 golden fuzz soak mavproxy clean lock
 
 help:
 	@echo "make install   the environment only"
@@ -18,6 +18,7 @@ help:
 	@echo "make check     ruff, mypy strict, import contracts, closed locks"
 	@echo "make bench     benchmarks; results go to benchmarks/results/"
 	@echo "make bench-games, bench-predictor   the long comparisons"
+	@echo "make golden    what whole games, agents and campaigns do, against what was recorded of them"
 	@echo "make fuzz      ten million frames and more into the parsers; resumable"
 	@echo "make soak      hours of simulated flight with random faults; resumable"
 	@echo "make mavproxy  MAVProxy in an environment of its own (1.2 GB), for its client test"
@@ -76,6 +77,9 @@ $(TORCH)/.installed: locks/bench-predictor.in $(STAMP)
 bench-predictor: install $(TORCH)/.installed
 	$(TORCH)/bin/python -m tests.benchmarks.predictor
 
+golden: install
+	$(BIN)/python -m tests.golden
+
 fuzz: install
 	$(BIN)/python -m tests.fuzz.framing --count 10000000 --seed 1 --resume .fuzz-framing.json
 	$(BIN)/python -m tests.fuzz.signing --count 1000000 --seed 1 --resume .fuzz-signing.json
@@ -98,4 +102,4 @@ lock:
 	uv run --no-project --with packaging python locks/closed.py --write
 
 clean:
-	rm -rf $(VENV) build dist figures runs
+	rm -rf $(VENV) build dist figures runs .golden
