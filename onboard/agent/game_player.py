@@ -23,7 +23,7 @@ from onboard.core.safety.supervisor import Verdict, Watch, supervise
 from onboard.core.safety.words import ACTIONS, CAUSES
 from onboard.core.strategy.registry import EVADERS, PURSUERS
 from onboard.pilot.memory import Memory
-from onboard.pilot.pilot import Pilot, Thought
+from onboard.pilot.pilot import Pilot, PilotDecision
 from onboard.pilot.setup import GameSetup, Own, Side, TrackSample
 from onboard.runtime.plugins import evader_strategy, pursuer_strategy
 from onboard.runtime.protocols import Clock
@@ -56,7 +56,7 @@ class Acting:
         self.policy = limits.policy_of(config, None, True)
         self.flying: Flying | None = None
         self.why_not = ""  # why the setup at hand was refused
-        self.thought: Thought | None = None
+        self.thought: PilotDecision | None = None
         self.verdict: Verdict | None = None
         self.setpoint = ZERO  # [m/s; ground] let through in this step
         self.failures = 0  # of the strategy
@@ -259,7 +259,7 @@ class Acting:
 
     # ------------------------------------------------------------------ think, supervise, send
 
-    def _decide(self, now: float, wall_ns: int, own: Own, wind: Vec) -> Thought | None:
+    def _decide(self, now: float, wall_ns: int, own: Own, wind: Vec) -> PilotDecision | None:
         """Ask the pilot."""
         flying, table = self.flying, self._table
         if flying is None:

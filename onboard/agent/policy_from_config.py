@@ -6,7 +6,7 @@ from math import asin, pi, radians, sin, tan
 
 from onboard.agent.config import AgentConfig
 from onboard.autopilot import base
-from onboard.core.math.states import Limits
+from onboard.core.math.states import VehicleLimits
 from onboard.core.math.vectors import Vec
 from onboard.core.safety.fence import fits
 from onboard.core.safety.field_profile import capture_in_space_refused, field_policy, layers
@@ -157,7 +157,7 @@ def game_setup(config: AgentConfig, setup: Setup, target: Vec | None, hovers: bo
             high = min(high, asin(min(1.0, envelope.climb_max / member.speed_max)))
             low = max(low, -asin(min(1.0, envelope.sink_max / member.speed_max)))
         side = Side.EVADER if member.role is Role.EVADER else Side.PURSUER
-        limits = Limits(member.speed_min, member.speed_max, low, high)
+        limits = VehicleLimits(member.speed_min, member.speed_max, low, high)
         height = -member.start[2]
         if config.may_arm and height < 1.0:  # a ground start
             height = config.take_off_height

@@ -20,7 +20,7 @@ from onboard.config.strict import ConfigError
 from onboard.core.math.vectors import Vec
 from onboard.core.route.choice import TrackMemory
 from onboard.game.route_file import load_route
-from onboard.pilot.pilot import Thought
+from onboard.pilot.pilot import PilotDecision
 from onboard.pilot.route_pilot import ORDERS, TrackPilot
 from onboard.pilot.setup import Own
 from onboard.runtime.protocols import Clock
@@ -113,7 +113,7 @@ class Tracking(Acting):
             self._journal.info("route", f"{self.route.name} begins")
         return True
 
-    def _decide(self, now: float, wall_ns: int, own: Own, wind: Vec) -> Thought | None:
+    def _decide(self, now: float, wall_ns: int, own: Own, wind: Vec) -> PilotDecision | None:
         leg = self._track.leg if self._track is not None else 1
         time = self.game_time(wall_ns)
         thought, self._track, finished = self._pilot_of_route.step(time, own, wind, self._track)

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from enum import Enum
 from typing import NamedTuple
 
-from onboard.core.game.referee import Score, Verdict, judge, opening, passage
+from onboard.core.game.referee import GameResult, Score, judge, opening, passage
 from onboard.core.math.vectors import ZERO, Vec, along, sub
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus.messages import (
@@ -35,7 +35,7 @@ LISTEN_NS = 12 * NS // 10  # a master that holds the lease speaks twice in this 
 HEALTH_NS = 3 * NS  # an agent silent for longer is not there: six heartbeats lost in a row
 SUPERSEDED_NS = 15 * NS // 10  # an agent's earlier process counts as gone after this silence
 READY_STAGES = ("ready", "acting")
-_WORDS = {Verdict.CAPTURED: "captured", Verdict.ARRIVED: "arrived", Verdict.ESCAPED: "escaped"}
+_WORDS = {GameResult.CAPTURED: "captured", GameResult.ARRIVED: "arrived", GameResult.ESCAPED: "escaped"}
 
 
 class Standing(Enum):
@@ -276,9 +276,9 @@ class GameMaster:
         for id, p0, p1 in zip(ids, before, after, strict=True):
             seen = passage(p0, _part(p0, p1, played), self._before[evader], end, 0.0).smallest
             self.nearest[id] = min(self.nearest.get(id, seen), seen)
-        if score.verdict != Verdict.RUNNING:
+        if score.verdict != GameResult.RUNNING:
             captor = ids[score.captor] if score.captor >= 0 else 0
-            self._end(_WORDS[Verdict(score.verdict)], score.time, captor, wall_ns, now_ns, "")
+            self._end(_WORDS[GameResult(score.verdict)], score.time, captor, wall_ns, now_ns, "")
 
     def _judged(self, position: Vec) -> Vec:
         """Plane games and field profiles are judged horizontally."""

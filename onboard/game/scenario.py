@@ -17,7 +17,7 @@ import msgspec
 
 from onboard.config import strict as config
 from onboard.config.strict import ConfigError
-from onboard.core.math.states import Limits
+from onboard.core.math.states import VehicleLimits
 from onboard.core.math.vectors import Vec
 from onboard.pilot.predictor_choice import Predicting
 
@@ -82,9 +82,9 @@ class VehicleSpec(Part, frozen=True):
         """Start in the game frame."""
         return vec(self.position)
 
-    def limits(self) -> Limits:
+    def limits(self) -> VehicleLimits:
         """(2)–(3) for the core [rad]."""
-        return Limits(
+        return VehicleLimits(
             self.speed_min,
             self.speed if self.speed_max is None else self.speed_max,
             radians(self.pitch_min_deg),

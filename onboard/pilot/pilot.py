@@ -31,7 +31,7 @@ CLIMB_SHARE = 0.3  # and the share of the speed it may use
 Quad = tuple[float, float, float, float]
 
 
-class Thought(NamedTuple):
+class PilotDecision(NamedTuple):
     """One decision, and everything a person needs to see why."""
 
     decides: bool  # False: something is missing, `lacks` says what
@@ -51,7 +51,7 @@ class Thought(NamedTuple):
     rho: float
 
 
-def drawing(thought: Thought, side: Side) -> tuple[tuple[Quad, ...], tuple[Quad, ...]]:
+def drawing(thought: PilotDecision, side: Side) -> tuple[tuple[Quad, ...], tuple[Quad, ...]]:
     """Blocked cones (axis, half-angle) and Apollonius spheres (centre, radius) of a thought, for pictures."""
     cones: list[Quad] = []
     circles: list[Quad] = []
@@ -107,7 +107,7 @@ class Pilot:
         setup: GameSetup,
         wind: Vec,
         memory: Memory,
-    ) -> tuple[Thought, Memory]:
+    ) -> tuple[PilotDecision, Memory]:
         """Decide at instant `now` [s]. `tracks` are the measurements since the last step, `wind` is ZERO
         for multicopters [m/s; where the air moves to]. The memory is moved on and given back."""
         memory.take(tracks)
@@ -134,7 +134,7 @@ class Pilot:
             decision = self._as_evader(self_, me, others, setup, air)
         else:
             decision = self._as_pursuer(now, self_, me, others[0], known[0][0], mates, setup, air, memory)
-        thought = Thought(
+        thought = PilotDecision(
             decides=True,
             velocity=self._steered(decision, own, me, setup),
             level=Level.TACTICAL.name.lower(),
@@ -230,9 +230,9 @@ class Pilot:
         down = clamp(-HEIGHT_GAIN * (me.height + own.position.z), -most, most)
         return add(_flat(velocity), Vec(0.0, 0.0, down))
 
-    def _silent(self, own: Own, lacks: tuple[str, ...], sigma: float) -> Thought:
+    def _silent(self, own: Own, lacks: tuple[str, ...], sigma: float) -> PilotDecision:
         here = Vehicle(own.position, own.velocity, 0.0)
-        return Thought(
+        return PilotDecision(
             False, ZERO, Level.TACTICAL.name.lower(), "", self.strategy, "none", own.position, 0.0, 0.0,
             sigma, PredictorKind.NOTHING.name.lower(), lacks, here, (), 0.0,
         )

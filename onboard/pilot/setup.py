@@ -5,7 +5,7 @@ from __future__ import annotations
 from enum import Enum
 from typing import NamedTuple
 
-from onboard.core.math.states import Limits
+from onboard.core.math.states import VehicleLimits
 from onboard.core.math.vectors import ZERO, Vec
 from onboard.pilot.track_filter import Variance
 
@@ -23,7 +23,7 @@ class Player(NamedTuple):
     id: int
     side: Side
     speed: float  # [m/s; air] declared maximum; 0 = not declared
-    limits: Limits = Limits()
+    limits: VehicleLimits = VehicleLimits()
     height: float = 0.0  # of its staging place above the origin [m]; plane games are flown there
 
 

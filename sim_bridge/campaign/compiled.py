@@ -25,10 +25,10 @@ from numba.extending import overload, register_jitable
 from numpy.typing import NDArray
 
 from onboard.core.game.advance import EvaderStrategy, Game, Params, PursuerStrategy, advance, begin
-from onboard.core.game.referee import Verdict
+from onboard.core.game.referee import GameResult
 from onboard.core.math import each as each_module
 from onboard.core.math.each import each
-from onboard.core.math.states import Limits, Vehicle
+from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import Vec
 
 KERNELS = (
@@ -109,14 +109,14 @@ class Starts(NamedTuple):
     positions: Array  # (games, players, 3)
     velocities: Array  # (games, players, 3)
     speeds: Array  # (games, players)
-    limits: Array  # (games, players, 6), in the order of `Limits`
+    limits: Array  # (games, players, 6), in the order of `VehicleLimits`
     targets: Array  # (games, 3), unused where the parameters say that there is no target
 
 
 class Ends(NamedTuple):
     """How they ended."""
 
-    verdicts: NDArray[np.int64]  # (games,) of `Verdict`
+    verdicts: NDArray[np.int64]  # (games,) of `GameResult`
     times: Array  # (games,) of the verdict [s]
     captors: NDArray[np.int64]  # (games,) index of the pursuer, −1 = none
     smallest: Array  # (games,) smallest distance [m]
@@ -156,10 +156,10 @@ def _vehicle(player: int, _index: int, table: _Table) -> Vehicle:
     )
 
 
-def _limits(player: int, _index: int, table: _Table) -> Limits:
+def _limits(player: int, _index: int, table: _Table) -> VehicleLimits:
     """What that player may do (for `each`)."""
     a = table.starts.limits[table.game, player]
-    return Limits(float(a[0]), float(a[1]), float(a[2]), float(a[3]), float(a[4]), float(a[5]))
+    return VehicleLimits(float(a[0]), float(a[1]), float(a[2]), float(a[3]), float(a[4]), float(a[5]))
 
 
 def _begin(table: _Table, pursuers: tuple[int, ...]) -> Game:
@@ -211,7 +211,7 @@ def _player(
             steps = 0
             if kept > 0:
                 _note(game, ends.trace[number, 0])
-            while game.score.verdict == Verdict.RUNNING:
+            while game.score.verdict == GameResult.RUNNING:
                 game = advance(game, mine, decide_evader, decide_pursuer)
                 steps += 1
                 if steps < kept:

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from onboard.core.game.advance import Game, Params, begin
-from onboard.core.game.referee import Verdict
+from onboard.core.game.referee import GameResult
 from onboard.core.math.states import Vehicle
 from onboard.core.math.vectors import ZERO, Vec, scale, sub, unit, yaw_of
 from onboard.game.scenario import Scenario, load
@@ -51,7 +51,7 @@ Array = NDArray[np.float64]
 class Played(NamedTuple):
     """One game of the campaign."""
 
-    verdict: Verdict
+    verdict: GameResult
     time: float  # [s]
     smallest: float  # distance of any pursuer [m]
     reversals: int  # of the evader's flown course
@@ -170,7 +170,7 @@ def play_seed(scenario: Scenario, seed: int, brave: bool, compiled: bool = True)
     log = log[: found.steps]
     span = round(WITHIN / d.params.dt)
     return Played(
-        Verdict(found.game.score.verdict),
+        GameResult(found.game.score.verdict),
         found.game.score.time,
         found.game.score.smallest,
         reversals(log[:, 0, 3], span),
@@ -222,14 +222,14 @@ class Tally(NamedTuple):
 def tally(way: str, games: list[Played]) -> Tally:
     """Counts of one way of flying."""
     verdicts = [g.verdict for g in games]
-    arrivals = [g.time for g in games if g.verdict == Verdict.ARRIVED]
+    arrivals = [g.time for g in games if g.verdict == GameResult.ARRIVED]
     reach = [g.play.envelope for g in games]
     return Tally(
         way,
         len(games),
-        verdicts.count(Verdict.CAPTURED),
-        verdicts.count(Verdict.ARRIVED),
-        verdicts.count(Verdict.ESCAPED),
+        verdicts.count(GameResult.CAPTURED),
+        verdicts.count(GameResult.ARRIVED),
+        verdicts.count(GameResult.ESCAPED),
         float(np.mean(arrivals)) if arrivals else float("nan"),
         float(np.median([g.smallest for g in games])),
         sum(g.reversals for g in games),
@@ -257,7 +257,7 @@ def contest(scenario: Scenario, seeds: range, compiled: bool = True) -> Contest:
     with_it = [play_seed(scenario, seed, False, compiled) for seed in seeds]
     straight = [play_seed(scenario, seed, True, compiled) for seed in seeds]
     pairs = [
-        (a.verdict == Verdict.CAPTURED, b.verdict == Verdict.CAPTURED)
+        (a.verdict == GameResult.CAPTURED, b.verdict == GameResult.CAPTURED)
         for a, b in zip(with_it, straight, strict=True)
     ]
     saved = sum(b and not a for a, b in pairs)

@@ -14,11 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from onboard.core.game.advance import Field, Game, Params, decide_one, judged, seats
-from onboard.core.game.referee import Verdict
+from onboard.core.game.referee import GameResult
 from onboard.core.geometry.apollonius import intercept
 from onboard.core.geometry.cones import blocked_cones
 from onboard.core.math.each import each
-from onboard.core.math.states import Limits, Vehicle
+from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import TINY, Vec, clamp, norm, scale
 from onboard.core.strategy.evasion import EvaderView, evader, straight
 from onboard.core.strategy.knowledge import Decision
@@ -66,12 +66,12 @@ class Envelope(NamedTuple):
     surface: float  # largest share of a servo's stroke
 
 
-def banded(limits: Limits, height: float, band: Band) -> Limits:
+def banded(limits: VehicleLimits, height: float, band: Band) -> VehicleLimits:
     """Limits (2)–(3) at `height` [m]: no descent at the band's lower edge, no climb at its upper one,
     and beyond them back into it."""
     down = clamp((height - band.low) / MARGIN, BACK, 1.0)
     up = clamp((band.high - height) / MARGIN, BACK, 1.0)
-    return Limits(
+    return VehicleLimits(
         limits.speed_min,
         limits.speed_max,
         limits.pitch_min * down,
@@ -88,7 +88,7 @@ class Heights(NamedTuple):
     band: Band
 
 
-def banded_pursuer(limits: Limits, index: int, heights: Heights) -> Limits:
+def banded_pursuer(limits: VehicleLimits, index: int, heights: Heights) -> VehicleLimits:
     """Pursuer `index`'s limits where it is (for `each`)."""
     return banded(limits, -heights.states[index + 1, 2], heights.band)
 
@@ -253,7 +253,7 @@ def play(
         note(states, i, players[i])
     steps = 0
     sample = 0
-    while game.score.verdict == Verdict.RUNNING:
+    while game.score.verdict == GameResult.RUNNING:
         noise = tracks[steps]
         exact = Sight(states, climate, noise, 0.0, 0.0)
         noisy = Sight(states, climate, noise, sensor.position, sensor.velocity)

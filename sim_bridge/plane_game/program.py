@@ -18,7 +18,7 @@ from onboard.core.game.advance import (
     advance,
     decide,
 )
-from onboard.core.game.referee import Verdict
+from onboard.core.game.referee import GameResult
 from onboard.core.math.vectors import Vec
 from onboard.game.scenario import Scenario, load
 from onboard.runtime.plugins import evader_strategy, pursuer_strategy
@@ -46,7 +46,7 @@ class Played(NamedTuple):
     final: Game  # at the instant of the verdict
 
     @property
-    def verdict(self) -> Verdict:
+    def verdict(self) -> GameResult:
         """How it ended."""
         return self.final.score.verdict
 
@@ -77,7 +77,7 @@ def play(scenario: Scenario, strategy: str, dt: float | None = None, keep: bool 
     game = game_of(scenario)
     frames = []
     before = game
-    while game.score.verdict == Verdict.RUNNING:
+    while game.score.verdict == GameResult.RUNNING:
         if keep:
             frames.append(Frame(game, decide(game, params, decide_evader, decide_pursuer)))
         before = game
@@ -117,8 +117,8 @@ def result(played: Played) -> Result:
         played.scenario.name,
         played.strategy,
         score.verdict.name.lower(),
-        score.verdict != Verdict.CAPTURED,
-        score.verdict == Verdict.ARRIVED if played.params.has_target else None,
+        score.verdict != GameResult.CAPTURED,
+        score.verdict == GameResult.ARRIVED if played.params.has_target else None,
         round(score.time, 6),
         score.captor + 1,
         round(score.smallest, 6),

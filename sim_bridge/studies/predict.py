@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from onboard.config.strict import ConfigError
 from onboard.core.game.advance import advance
-from onboard.core.game.referee import Verdict
+from onboard.core.game.referee import GameResult
 from onboard.core.math.vectors import ZERO, Vec, along, distance
 from onboard.game.scenario import Scenario, load
 from onboard.pilot.predictor import PredictorKind, TrackPredictor, Trainer
@@ -237,7 +237,7 @@ def simulate(scenario: Scenario, seed: int = 0) -> Recording:
     flee, chase = evader_strategy(scenario.evader.strategy), pursuer_strategy("")
     game = game_of(scenario)
     times, states = [0.0], [game.evader]
-    while game.score.verdict == Verdict.RUNNING:
+    while game.score.verdict == GameResult.RUNNING:
         game = advance(game, params, flee, chase)
         times.append(game.time)
         states.append(game.evader)

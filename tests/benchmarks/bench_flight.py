@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from onboard.core.geometry.cones import blocked_cones
-from onboard.core.math.states import Limits, Vehicle
+from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import ZERO, Vec
 from onboard.core.strategy.evasion import EvaderView, evader
 from sim_bridge.campaign.spatial_campaign import _list, compiled_play, draw, spatial
@@ -35,7 +35,7 @@ def decision() -> Any:
     own = Vehicle(ZERO, Vec(50.0, 0.0, 0.0), 50.0)
     places = [(2000, 100, 50), (2500, 900, -100), (1800, -900, 30), (2200, 300, 400), (2600, -300, -300)]
     others = tuple(Vehicle(Vec(*map(float, p)), Vec(-40.0, 0.0, 0.0), 40.0) for p in places)
-    limits = Limits(40.0, 50.0, radians(-20), radians(20))
+    limits = VehicleLimits(40.0, 50.0, radians(-20), radians(20))
     target = Vec(6000.0, 0.0, 0.0)
 
     def work() -> object:

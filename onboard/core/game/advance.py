@@ -13,7 +13,7 @@ from typing import NamedTuple
 from onboard.core.game.referee import Score, judge, opening
 from onboard.core.geometry.cones import blocked_cones
 from onboard.core.math.each import each, each_pair
-from onboard.core.math.states import Limits, Vehicle
+from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import Vec, along, scale
 from onboard.core.strategy.evasion import EvaderView
 from onboard.core.strategy.knowledge import Decision
@@ -43,8 +43,8 @@ class Game(NamedTuple):
     time: float  # since the start [s]
     evader: Vehicle
     pursuers: tuple[Vehicle, ...]
-    evader_limits: Limits
-    pursuer_limits: tuple[Limits, ...]
+    evader_limits: VehicleLimits
+    pursuer_limits: tuple[VehicleLimits, ...]
     score: Score
 
 
@@ -59,7 +59,7 @@ class Seat(NamedTuple):
     """One pursuer with what belongs to it."""
 
     own: Vehicle
-    limits: Limits
+    limits: VehicleLimits
     has_mate: bool
     mate: Vec  # place of the nearest team mate [m]
 
@@ -88,7 +88,7 @@ def positions(vehicles: tuple[Vehicle, ...]) -> tuple[Vec, ...]:
 
 
 def begin(
-    evader: Vehicle, pursuers: tuple[Vehicle, ...], evader_limits: Limits, pursuer_limits: tuple[Limits, ...]
+    evader: Vehicle, pursuers: tuple[Vehicle, ...], evader_limits: VehicleLimits, pursuer_limits: tuple[VehicleLimits, ...]
 ) -> Game:
     """A game before its first step."""
     return Game(
@@ -112,7 +112,7 @@ def evader_view(game: Game, params: Params) -> EvaderView:
     )
 
 
-def alone(own: Vehicle, limits: Limits, _shared: float) -> Seat:
+def alone(own: Vehicle, limits: VehicleLimits, _shared: float) -> Seat:
     """A pursuer that need not look for team mates (for `each_pair`)."""
     return Seat(own, limits, False, own.position)
 
@@ -219,4 +219,4 @@ def advance(
     return judged(game, evader, pursuers, params)
 
 
-FREE = Limits(0.0, 1e9, -pi / 2, pi / 2, -pi, pi)
+FREE = VehicleLimits(0.0, 1e9, -pi / 2, pi / 2, -pi, pi)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from onboard.core.math.vectors import TINY, Vec, sub
 
 
-class Verdict(IntEnum):
+class GameResult(IntEnum):
     """How a game stands."""
 
     RUNNING = 0
@@ -52,7 +52,7 @@ def passage(a0: Vec, a1: Vec, b0: Vec, b1: Vec, radius: float) -> Passage:
 class Score(NamedTuple):
     """What the referee has seen so far."""
 
-    verdict: Verdict
+    verdict: GameResult
     time: float  # of the verdict, or now [s]
     captor: int  # index of the pursuer that captured, −1 = none
     smallest: float  # smallest distance of any pursuer so far [m]
@@ -66,7 +66,7 @@ def opening(e: Vec, pursuers: tuple[Vec, ...]) -> Score:
         line = sub(p, e)
         d = sqrt(line.x * line.x + line.y * line.y + line.z * line.z)
         smallest = min(smallest, d)
-    return Score(Verdict.RUNNING, 0.0, -1, smallest, 0.0)
+    return Score(GameResult.RUNNING, 0.0, -1, smallest, 0.0)
 
 
 def judge(
@@ -89,7 +89,7 @@ def judge(
     Whatever comes first within the step decides: capture (6), arrival (5), the horizon. On a
     tie capture stands. `rho` is the safety distance ρ of (4) [m].
     """
-    if score.verdict != Verdict.RUNNING:
+    if score.verdict != GameResult.RUNNING:
         return score
     smallest = score.smallest
     near = False
@@ -108,15 +108,15 @@ def judge(
         arrival = passage(target, target, e0, e1, epsilon)
         if not has_target or not arrival.enters or capture <= arrival.entry:
             smallest = min(score.smallest, _nearest(capture, e0, e1, before, after))
-            return Score(Verdict.CAPTURED, start + capture * dt, captor, smallest, unsafe)
+            return Score(GameResult.CAPTURED, start + capture * dt, captor, smallest, unsafe)
     if has_target:
         arrival = passage(target, target, e0, e1, epsilon)
         if arrival.enters and arrival.entry <= share:
             smallest = min(score.smallest, _nearest(arrival.entry, e0, e1, before, after))
-            return Score(Verdict.ARRIVED, start + arrival.entry * dt, -1, smallest, unsafe)
+            return Score(GameResult.ARRIVED, start + arrival.entry * dt, -1, smallest, unsafe)
     if share <= 1.0 + 1e-9:
-        return Score(Verdict.ESCAPED, horizon, -1, smallest, unsafe)
-    return Score(Verdict.RUNNING, start + dt, -1, smallest, unsafe)
+        return Score(GameResult.ESCAPED, horizon, -1, smallest, unsafe)
+    return Score(GameResult.RUNNING, start + dt, -1, smallest, unsafe)
 
 
 def _part(a: Vec, b: Vec, share: float) -> Vec:

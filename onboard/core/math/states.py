@@ -8,7 +8,7 @@ from typing import NamedTuple
 from onboard.core.math.vectors import Vec
 
 
-class Limits(NamedTuple):
+class VehicleLimits(NamedTuple):
     """What a vehicle may do: (2)–(3). Angles in radians, pitch up positive."""
 
     speed_min: float = 0.0  # [m/s; air]

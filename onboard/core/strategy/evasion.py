@@ -10,7 +10,7 @@ from math import sqrt
 from typing import NamedTuple
 
 from onboard.core.geometry.cones import Cone, Ray, free_ray_limited, within
-from onboard.core.math.states import Limits, Vehicle
+from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import NORTH, TINY, Vec, along, distance, sub, unit
 from onboard.core.strategy.knowledge import Decision, Module, Rule, RuleId, fold, silent
 
@@ -19,7 +19,7 @@ class EvaderView(NamedTuple):
     """A situation as the evader sees it. Pursuers and target move in the same air mass."""
 
     own: Vehicle
-    limits: Limits
+    limits: VehicleLimits
     pursuers: tuple[Vehicle, ...]
     cones: tuple[Cone, ...]  # of the pursuers, from `blocked_cones`
     has_target: bool

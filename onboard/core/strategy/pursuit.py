@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from onboard.core.geometry.apollonius import closest_approach, intercept
 from onboard.core.geometry.cones import within
-from onboard.core.math.states import Limits, Vehicle
+from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import NORTH, TINY, Vec, add, along, cross, distance, dot, scale, sub, unit
 from onboard.core.strategy.knowledge import Decision, Module, Rule, RuleId, fold, silent
 
@@ -21,7 +21,7 @@ class PursuerView(NamedTuple):
     """A situation as a pursuer sees it, in the moving air mass."""
 
     own: Vehicle
-    limits: Limits
+    limits: VehicleLimits
     evader: Vehicle
     heading: Vec  # ê, unit vector of the evader's velocity
     has_mate: bool

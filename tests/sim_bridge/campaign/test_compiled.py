@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from onboard.core.game.advance import FREE, Game, Params, begin, evader_view
-from onboard.core.game.referee import Verdict
+from onboard.core.game.referee import GameResult
 from onboard.core.geometry import cones as cone_room
-from onboard.core.math.states import Limits, Vehicle
+from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import NORTH, ZERO, Vec, angle_between, dot, scale, sub, unit
 from onboard.core.strategy.pursuit import heading_at
 from onboard.core.strategy.registry import EVADERS, PURSUERS
@@ -46,7 +46,7 @@ def table() -> tuple[list[Game], list[Vec], list[Params]]:
     return [game_of(s) for s in scenarios], [p.target for p in params], params
 
 
-def random_game(rng: np.random.Generator, planar: bool, limits: Limits = FREE) -> Game:
+def random_game(rng: np.random.Generator, planar: bool, limits: VehicleLimits = FREE) -> Game:
     def place(far: float) -> Vec:
         yaw, z = rng.uniform(-np.pi, np.pi), 0.0 if planar else rng.uniform(-1.0, 1.0)
         r = np.sqrt(1.0 - z * z)
@@ -143,7 +143,7 @@ def test_table_1_agrees_in_every_step(compiled: Play, interpreted: Play) -> None
         verdicts += list(mine.verdicts)
         # Not only close: the same to the last bit.
         np.testing.assert_array_equal(mine.trace, theirs.trace)
-    assert sorted(set(verdicts)) == [Verdict.CAPTURED, Verdict.ARRIVED, Verdict.ESCAPED]
+    assert sorted(set(verdicts)) == [GameResult.CAPTURED, GameResult.ARRIVED, GameResult.ESCAPED]
 
 
 @pytest.mark.parametrize("planar", [True, False])
@@ -156,7 +156,7 @@ def test_random_games_agree_in_every_step(planar: bool, compiled: Play, interpre
 
 
 def test_games_within_a_pitch_band_agree_and_keep_it(compiled: Play, interpreted: Play) -> None:
-    band = Limits(pitch_min=radians(-20.0), pitch_max=radians(20.0))
+    band = VehicleLimits(pitch_min=radians(-20.0), pitch_max=radians(20.0))
     rng = np.random.default_rng(6)
     games = [random_game(rng, False, band) for _ in range(10)]
     targets = [Vec(100.0, float(y), -60.0) for y in rng.uniform(-80.0, 80.0, 10)]

@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from onboard.core.game.referee import Verdict
-from onboard.core.math.states import Limits
+from onboard.core.game.referee import GameResult
+from onboard.core.math.states import VehicleLimits
 from onboard.game.scenario import Scenario, load
 from onboard.runtime.resources import configs
 from sim_bridge.campaign.figures import draw_stages
@@ -57,9 +57,9 @@ def test_the_strategy_survives_where_straight_flight_is_captured(
 ) -> None:
     ours = [played(seed, False).verdict for seed in range(12)]
     straight = [played(seed, True).verdict for seed in range(12)]
-    assert straight.count(Verdict.CAPTURED) >= 3
-    assert ours.count(Verdict.CAPTURED) < straight.count(Verdict.CAPTURED)
-    assert Verdict.ARRIVED in ours
+    assert straight.count(GameResult.CAPTURED) >= 3
+    assert ours.count(GameResult.CAPTURED) < straight.count(GameResult.CAPTURED)
+    assert GameResult.ARRIVED in ours
 
 
 def test_no_aircraft_leaves_its_limits(played: Callable[[int, bool], Played]) -> None:
@@ -130,7 +130,7 @@ def test_a_reversal_is_a_turn_and_its_return() -> None:
 
 
 def test_the_pitch_limits_close_at_the_band_s_edges() -> None:
-    limits = Limits(40.0, 50.0, radians(-20.0), radians(20.0))
+    limits = VehicleLimits(40.0, 50.0, radians(-20.0), radians(20.0))
     band = Band(300.0, 3000.0)
     middle = banded(limits, 1500.0, band)
     assert (middle.pitch_min, middle.pitch_max) == (limits.pitch_min, limits.pitch_max)

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from onboard.core.math.states import Limits
+from onboard.core.math.states import VehicleLimits
 from onboard.core.math.vectors import ZERO, Vec, add, distance, dot, norm, pitch_of, scale, sub, unit
 from onboard.core.route.choice import (
     CHOICE,
@@ -38,7 +38,7 @@ ROUTE = (
     Waypoint(Vec(2000.0, 0.0, -100.0), 50.0),
     Waypoint(Vec(2000.0, 2000.0, -140.0), 100.0),
 )
-LIMITS = Limits(25.0, 55.0, radians(-20.0), radians(20.0))
+LIMITS = VehicleLimits(25.0, 55.0, radians(-20.0), radians(20.0))
 SETTING = Setting(LIMITS, 40.0, 6.0, Strategy.CHOOSE)
 
 

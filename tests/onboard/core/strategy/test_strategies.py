@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from onboard.core.game.advance import FREE
 from onboard.core.geometry.cones import blocked_cones
-from onboard.core.math.states import Limits, Vehicle
+from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import (
     NORTH,
     ZERO,
@@ -115,7 +115,7 @@ class TestEvader:
     @settings(max_examples=300, deadline=None)
     @given(pursuers(), points(), st.floats(-60.0, 0.0), st.floats(0.0, 60.0))
     def test_keeps_its_pitch_band_whichever_rule_fires(self, team, target, low, high):
-        limits = Limits(pitch_min=radians(low), pitch_max=radians(high))
+        limits = VehicleLimits(pitch_min=radians(low), pitch_max=radians(high))
         decision = evader(seen_by_evader(team, target, limits, planar=False))
         assert limits.pitch_min - 2e-9 <= pitch_of(decision.direction) <= limits.pitch_max + 2e-9
         assert norm(decision.direction) == pytest.approx(1.0, abs=1e-9)
@@ -164,7 +164,7 @@ class TestPursuer:
     @settings(max_examples=300, deadline=None)
     @given(points(), headings(), st.floats(-40, 0), st.floats(0, 40), st.sampled_from(sorted(PURSUERS)))
     def test_every_strategy_keeps_the_pitch_band(self, place, heading, low, high, name):
-        limits = Limits(pitch_min=radians(low), pitch_max=radians(high))
+        limits = VehicleLimits(pitch_min=radians(low), pitch_max=radians(high))
         view = seen_by_pursuer(place, heading, limits=limits, prediction=Vec(1.0, 2.0, 300.0), planar=False)
         decision = PURSUERS[name].decide(view)
         assert limits.pitch_min - 2e-9 <= pitch_of(decision.direction) <= limits.pitch_max + 2e-9
