@@ -36,7 +36,13 @@ def state_of(id: int, role: Role, stamp_ns: int, t: Telemetry, nonce: int) -> St
 
 
 def decision_of(
-    id: int, side: Side, stamp_ns: int, game_time: float, thought: PilotDecision, verdict: Verdict, setpoint: Vec
+    id: int,
+    side: Side,
+    stamp_ns: int,
+    game_time: float,
+    thought: PilotDecision,
+    verdict: Verdict,
+    setpoint: Vec,
 ) -> DecisionReport:
     """`vehicles/<id>/decision`: with the pictures of what was decided, and what became of it."""
     cones, circles = drawing(thought, side)

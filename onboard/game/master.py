@@ -12,7 +12,8 @@ from collections.abc import Mapping
 from enum import Enum
 from typing import NamedTuple
 
-from onboard.core.game.referee import GameResult, Score, judge, opening, passage
+from onboard.core.game.referee import GameResult, Score, Step, judge, opening, passage
+from onboard.core.game.rules import Target
 from onboard.core.math.vectors import ZERO, Vec, along, sub
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus.messages import (
@@ -88,7 +89,7 @@ class GameMaster:
         self.nearest: dict[int, float] = {}  # smallest distance of each pursuer to the evader so far [m]
         self._timing = timing
         self._target = target
-        self._flat = setup.planar or setup.field_profile
+        self._rules = setup.rules.core()
         self._agents = {member.id: _Agent() for member in setup.roster}
         self._evader = next(member.id for member in setup.roster if member.role is Role.EVADER)
         self._pursuers = tuple(member.id for member in setup.roster if member.role is Role.PURSUER)
@@ -260,17 +261,15 @@ class GameMaster:
 
     def _judge(self, wall_ns: int, now_ns: int, here: dict[int, Vec]) -> None:
         assert self.score is not None
-        setup, evader = self.setup, self._evader
+        evader = self._evader
         start, dt = (self._before_ns - self.t0_ns) / NS, (wall_ns - self._before_ns) / NS
         ids = tuple(id for id in self._pursuers if id in self._before and id in here)
         before = tuple(self._before[id] for id in ids)
         after = tuple(here[id] for id in ids)
         target = ZERO if self._target is None else self._judged(self._target)
-        self.score = score = judge(
-            self.score, start, dt, self._before[evader], here[evader], before, after,
-            setup.capture_radius, setup.safety_distance, self._target is not None, target,
-            setup.epsilon_min, setup.horizon,
-        )  # fmt: skip
+        step = Step(start, dt, self._before[evader], here[evader], before, after)
+        goal = Target(self._target is not None, target)
+        self.score = score = judge(self.score, step, self._rules, goal)
         played = min(1.0, (score.time - start) / dt)  # a game ends within a step
         end = _part(self._before[evader], here[evader], played)
         for id, p0, p1 in zip(ids, before, after, strict=True):
@@ -282,7 +281,7 @@ class GameMaster:
 
     def _judged(self, position: Vec) -> Vec:
         """Plane games and field profiles are judged horizontally."""
-        return Vec(position.x, position.y, 0.0) if self._flat else position
+        return Vec(position.x, position.y, 0.0) if self.setup.flat else position
 
     def _elapsed(self, wall_ns: int) -> float:
         return max(0.0, (wall_ns - self.t0_ns) / NS) if self.phase is Phase.RUNNING else 0.0

@@ -273,7 +273,7 @@ def _in_wedge(
 
 def within(preferred: Vec, limits: VehicleLimits, planar: bool) -> Vec:
     """The direction nearest to `preferred` that the limits (2)–(3) allow (`preferred` if none is)."""
-    _slow, _fast, pitch_min, pitch_max, yaw_min, yaw_max = limits
+    _slow, _fast, pitch_min, pitch_max, yaw_min, yaw_max, _turn = limits
     if yaw_max - yaw_min >= 2.0 * pi and (planar or (pitch_min <= -pi / 2 and pitch_max >= pi / 2)):
         return preferred
     ray = free_ray_limited(preferred, (NOTHING,), limits, planar)

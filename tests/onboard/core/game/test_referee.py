@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from onboard.core.game.referee import GameResult, Score, judge, opening, passage
+from onboard.core.game.referee import GameResult, Score, Step, judge, opening, passage
+from onboard.core.game.rules import Rules, Target
 from onboard.core.math.vectors import ZERO, Vec
 from tests.support.situations import points
 
@@ -18,7 +19,8 @@ FRESH = Score(GameResult.RUNNING, 0.0, -1, 1e300, 0.0)
 
 def step(e0, e1, before, after, R=2.0, rho=4.0, target=None, start=0.0, dt=1.0, horizon=100.0, score=FRESH):
     goal = ZERO if target is None else target
-    return judge(score, start, dt, e0, e1, before, after, R, rho, target is not None, goal, 1.0, horizon)
+    rules = Rules(R, rho, horizon=horizon)
+    return judge(score, Step(start, dt, e0, e1, before, after), rules, Target(target is not None, goal))
 
 
 @settings(max_examples=500, deadline=None)

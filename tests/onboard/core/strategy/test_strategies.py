@@ -8,9 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from onboard.core.game.advance import FREE
+from onboard.core.game.rules import Control, Rules, Target
+from onboard.core.game.views import EvaderView, Nearest, PursuerView
 from onboard.core.geometry.cones import blocked_cones
-from onboard.core.math.states import Vehicle, VehicleLimits
+from onboard.core.math.states import FREE, Vehicle, VehicleLimits
 from onboard.core.math.vectors import (
     NORTH,
     ZERO,
@@ -26,12 +27,11 @@ from onboard.core.math.vectors import (
     sub,
     unit,
 )
-from onboard.core.strategy.evasion import EVADER, EvaderView, evader, resultant_force, straight
+from onboard.core.strategy.evasion import EVADER, evader, resultant_force, straight
 from onboard.core.strategy.knowledge import Rule, RuleId
 from onboard.core.strategy.pursuit import (
     PURSUER,
     PURSUER_EARLIER,
-    PursuerView,
     pursuer,
     pursuer_bearing,
     pursuer_earlier,
@@ -49,15 +49,17 @@ def seen_by_evader(team, target=None, limits=FREE, planar=True):
     own = Vehicle(ZERO, scale(NORTH, 5.0), 5.0)
     cones = blocked_cones(own, team, 4.0)
     goal = ZERO if target is None else target
-    return EvaderView(own, limits, team, cones, target is not None, goal, 2.0, 100.0, 1.0, planar)
+    rules = Rules(2.0, 4.0, planar=planar)
+    return EvaderView(own, limits, team, cones, Target(target is not None, goal), rules)
 
 
 def seen_by_pursuer(place, heading=NORTH, speed=4.0, limits=FREE, mate=None, separation=0.0,
                     prediction=None, planar=True, velocity=ZERO):
     return PursuerView(
         Vehicle(place, velocity, speed), limits, Vehicle(ZERO, scale(heading, 5.0), 5.0), heading,
-        mate is not None, ZERO if mate is None else mate, separation,
-        prediction is not None, ZERO if prediction is None else prediction, 2.0, 0.05, planar,
+        prediction is not None, ZERO if prediction is None else prediction,
+        Nearest(mate is not None, ZERO if mate is None else mate), Control(0.05, 2.0),
+        Rules(2.0, 4.0, separation=separation, planar=planar),
     )  # fmt: skip
 
 
