@@ -170,10 +170,15 @@ class WindSpec(Part, frozen=True):
     recorded: str = ""  # CSV file in place of the model
 
 
+Polygon = Annotated[
+    tuple[tuple[Coordinate, Coordinate], ...], msgspec.Meta(min_length=3, description="three or more corners")
+]
+
+
 class FenceSpec(Part, frozen=True):
     """Geofence: polygon of [north, east] and a height band [m]."""
 
-    polygon: Annotated[tuple[tuple[Coordinate, Coordinate], ...], msgspec.Meta(min_length=3, description="three or more corners")]
+    polygon: Polygon
     height_min: Coordinate
     height_max: Coordinate
 
@@ -205,12 +210,17 @@ class Expect(Part, frozen=True):
     reaches: bool | None = None  # None: no target
 
 
+Pursuers = Annotated[
+    tuple[VehicleSpec, ...], msgspec.Meta(min_length=1, description="at least one pursuer")
+]
+
+
 class Scenario(Part, frozen=True):
     """A whole scenario."""
 
     name: str
     evader: VehicleSpec
-    pursuers: Annotated[tuple[VehicleSpec, ...], msgspec.Meta(min_length=1, description="at least one pursuer")]
+    pursuers: Pursuers
     description: str = ""
     seed: Seed = 0
     parameters: Parameters = Parameters()
