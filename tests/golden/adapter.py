@@ -37,9 +37,9 @@ def sent_beside(scenario_file: Path, frames: Sequence[tuple[int, bytes]], after_
     """What the evader's agent sends to its autopilot in a game on virtual time in which that autopilot is
     a recording: `frames` are (time since the game's beginning [ns], frame). The other vehicles are simulated.
     The game goes on for `after_s` without a frame, and the agents end as at SIGTERM."""
+    from onboard.game.scenario import load
     from onboard.runtime.links import memory_pair
     from onboard.runtime.loop import run_virtual, virtual_clock
-    from onboard.game.scenario import load
     from sim_bridge.rehearsal import Rehearsal
 
     async def play() -> list[Sent]:
@@ -64,14 +64,15 @@ def sent_beside(scenario_file: Path, frames: Sequence[tuple[int, bytes]], after_
 
 def spatial_rows(name: str, seeds: Sequence[int]) -> dict[tuple[int, str], SpatialRow]:
     """The compiled games of a shipped spatial scenario: by seed and way of the evader's flying."""
-    from sim_bridge.campaign import spatial_campaign as games
+    from sim_bridge.campaign.spatial_campaign import play_seed, spatial
+    from sim_bridge.campaign.spatial_game import Evasion
 
-    scenario = games.spatial(name)
+    scenario = spatial(name)
     rows: dict[tuple[int, str], SpatialRow] = {}
     for seed in seeds:
-        for way, brave in (("strategy", False), ("straight", True)):
-            p = games.play_seed(scenario, seed, brave)
-            rows[seed, way] = SpatialRow(
+        for evasion in Evasion:
+            p = play_seed(scenario, seed, evasion)
+            rows[seed, evasion.name.lower()] = SpatialRow(
                 p.verdict.name.lower(), float(p.time), float(p.smallest), p.reversals, p.decided_reversals,
                 float(p.play.envelope.lowest),
             )  # fmt: skip
