@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from onboard.core.game.referee import GameResult
-from onboard.core.math.vectors import Vec, add, yaw_of
+from onboard.core.math.vectors import NORTH, Vec, add, sub, unit, yaw_of
 from onboard.game.scenario import Scenario, load
 from onboard.runtime.resources import configs
 from sim_bridge.campaign.compiled import KERNELS as CORE
@@ -90,7 +90,10 @@ def draw(scenario: Scenario, seed: int) -> Draw:
     game = game_of(scenario, places)
     players: list[Flown] = []
     for index, vehicle in enumerate((game.evader, *game.pursuers)):
-        start, yaw = vehicle.position, yaw_of(vehicle.velocity)
+        start = vehicle.position
+        aim = places[0] if index else conditions.target.position
+        spec = scenario.vehicles[index]
+        yaw = yaw_of(unit(sub(aim, start), NORTH)) if spec.heading_deg is None else radians(spec.heading_deg)
         model = fleet.pursuer if index else fleet.evader
         plane = trimmed(start_state(start, yaw, vehicle.speed, wind_at(climate, start)), model)
         players.append(launched(plane, GustNoise(*map(float, gusts[0, index]))))
