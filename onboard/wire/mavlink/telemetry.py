@@ -12,7 +12,7 @@ from struct import Struct, error
 from typing import Any
 
 from onboard.core.math.vectors import Vec
-from onboard.wire.mavlink.frames import MavMessage, dialect
+from onboard.wire.mavlink.dialect import MavMessage, dialect
 from onboard.wire.mavlink.modes import kind_of, mode_name
 from onboard.wire.mavlink.values import (
     UNKNOWN,
