@@ -11,12 +11,12 @@ from math import asin, atan2, cos, sin, sqrt
 from typing import NamedTuple
 
 from gcs.picture import journal
+from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import CommandKind, Phase, Role, Severity, Triple
 
-NS = 1_000_000_000
-EPOCH_NS = 1_760_000_000 * NS
+EPOCH_NS = 1_760_000_000 * NS_PER_S
 TARGET = (400.0, 100.0, -60.0)
 
 
@@ -68,7 +68,7 @@ def chase(
     def item(topic: topics.Topic, vehicle: int | None, payload: bytes, at_ns: int) -> Item:
         return Item(topics.key(game, topic, vehicle), payload, at_ns)
 
-    t0_ns = EPOCH_NS + 2 * NS
+    t0_ns = EPOCH_NS + 2 * NS_PER_S
     if not state_only:
         yield item(topics.SETUP, None, swarm.SETUP.encode(plan), EPOCH_NS)
         yield item(
@@ -90,7 +90,7 @@ def chase(
     for step in range(steps):
         now_ns = EPOCH_NS + 10_000 + step * 50_000_000
         running = now_ns >= t0_ns and not captured
-        time = (now_ns - t0_ns) / NS
+        time = (now_ns - t0_ns) / NS_PER_S
         if not state_only:
             if step == 20:
                 yield item(

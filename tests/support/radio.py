@@ -8,12 +8,12 @@ from gcs.picture import journal
 from gcs.picture.alert_rules import Thresholds
 from gcs.picture.values import Picture, VehicleView
 from gcs.picture.watch import Watch
+from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import Codec, Message, Phase, Role
 
-NS = 1_000_000_000
-START_NS = 1_700_000_000 * NS
+START_NS = 1_700_000_000 * NS_PER_S
 GAME = "test"
 
 TOPIC: dict[type[Message], tuple[topics.Topic, Codec]] = {  # type: ignore[type-arg]
@@ -126,7 +126,7 @@ class Tower:
 
     def wait(self, seconds: float) -> None:
         """Let time pass in silence."""
-        self.now_ns += round(seconds * NS)
+        self.now_ns += round(seconds * NS_PER_S)
         self.watch.tick(self.now_ns)
 
     def fly(self, seconds: float, *ids: int, state_hz: int = 20, **changes: object) -> None:

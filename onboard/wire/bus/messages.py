@@ -10,9 +10,11 @@ from __future__ import annotations
 
 from collections import Counter
 from enum import Enum
-from typing import Any, Generic, TypeVar
+from typing import Generic, TypeVar
 
 import msgspec
+
+from onboard.wire.finite import all_finite
 
 SCHEMA = 1
 
@@ -283,7 +285,7 @@ class Codec(Generic[M]):
         if version != SCHEMA:
             drops["schema"] += 1
             return None
-        if not _finite(msgspec.structs.astuple(message)):
+        if not all_finite(msgspec.structs.astuple(message)):
             drops["not_finite"] += 1
             return None
         return message
@@ -294,21 +296,6 @@ class Codec(Generic[M]):
         except (msgspec.DecodeError, UnicodeDecodeError, RecursionError):
             return False
         return version != SCHEMA
-
-
-def _finite(items: tuple[Any, ...]) -> bool:
-    """msgspec lets NaN and infinity pass: one walk rejects them. Every message passes it, so it is lean."""
-    for item in items:
-        kind = type(item)
-        if kind is float:
-            if item - item != 0.0:  # NaN for both
-                return False
-        elif kind is tuple:
-            if item and not _finite(item):
-                return False
-        elif isinstance(item, Message) and not _finite(msgspec.structs.astuple(item)):
-            return False
-    return True
 
 
 SETUP = Codec(Setup)

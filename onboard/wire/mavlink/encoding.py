@@ -10,6 +10,7 @@ from collections.abc import Callable
 from math import cos, isfinite, sin
 from typing import Any
 
+from onboard.core.math.vectors import is_finite
 from onboard.wire.mavlink.commands import (
     CommandInt,
     CommandLong,
@@ -65,7 +66,7 @@ def _command_int(m: CommandInt) -> MavMessage:
 
 
 def _velocity_target(m: VelocityTarget) -> MavMessage:
-    assert isfinite(m.velocity.x + m.velocity.y + m.velocity.z), m
+    assert is_finite(m.velocity), m
     return _new(
         dialect.MAVLink_set_position_target_local_ned_message,
         time_boot_ms=_boot_ms(m.time_boot_s),
