@@ -122,7 +122,7 @@ def test_options_alone_are_laid_over_the_defaults() -> None:
     assert strict.load(None, Outer, {}) == Outer()
     assert strict.load(None, Outer, {"inner.high": 3.0}).inner.high == 3.0
     for options, told in (
-        ({"seed": -7}, "options: seed: found -7, expected zero"),
+        ({"seed": -7}, "options: seed: found -7, expected a whole number"),
         ({"unknown": 1}, "options: unknown: unknown key"),
     ):
         with pytest.raises(ConfigError) as error:
