@@ -16,7 +16,7 @@ from onboard.config import strict as config
 from onboard.config.bounds import Coordinate, Duration, PositiveSpeed
 from onboard.config.names import Title
 from onboard.config.strict import StrictConfig, demand
-from onboard.core.math.states import Limits
+from onboard.core.math.states import VehicleLimits
 from onboard.core.math.vectors import Vec, clamp, distance
 from onboard.core.route.tracking import Waypoint
 
@@ -86,7 +86,7 @@ class Route(NamedTuple):
     name: str  # title of the file
     waypoints: tuple[Waypoint, ...]  # in the order of their times
     nominal: float  # [m/s; air]
-    limits: Limits  # of the vehicle
+    limits: VehicleLimits  # of the vehicle
 
 
 def load_route(path: Path) -> Route:
@@ -97,7 +97,7 @@ def load_route(path: Path) -> Route:
 def route_of(spec: RouteSpec) -> Route:
     """The route that a file's contents describe."""
     pitch_min, pitch_max = radians(spec.pitch_min_deg), radians(spec.pitch_max_deg)
-    limits = Limits(spec.speed_min, spec.speed_max, pitch_min, pitch_max)
+    limits = VehicleLimits(spec.speed_min, spec.speed_max, pitch_min, pitch_max)
     return Route(spec.name, tuple(Waypoint(vec(p), p.time) for p in spec.waypoints), spec.nominal, limits)
 
 
