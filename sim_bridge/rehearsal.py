@@ -24,7 +24,7 @@ from onboard.runtime.protocols import Bus, Clock, Link, Sample
 from onboard.wire.bus.messages import Event, Health, Outcome, Phase, Role
 from onboard.wire.bus.topics import everything
 from onboard.wire.mavlink.tlog import TlogWriter
-from sim_bridge.programs.summary import Summary
+from sim_bridge.world.summary import Summary
 from sim_bridge.world.bridge import Bridge, mute
 from sim_bridge.world.run_observer import Observer
 from sim_bridge.world.staging import generator

@@ -21,7 +21,7 @@ from onboard.runtime.loop import run_virtual, virtual_clock
 from onboard.runtime.plugins import evader_strategy, pursuer_strategy
 from onboard.runtime.run_folder import new_run
 from sim_bridge.programs import run_folder
-from sim_bridge.programs.summary import Summary
+from sim_bridge.world.summary import Summary
 
 REPORT_S = 120.0
 ROOMS = ("flight", "spatial")  # below configs/scenarios/: what is known by its bare name

@@ -29,7 +29,7 @@ from onboard.wire.bus.topics import DECISION, DEFAULT_GAME, key
 from sim_bridge.programs import run_folder
 from sim_bridge.programs.serve import Options as ServeOptions
 from sim_bridge.programs.serve import serve_scenario
-from sim_bridge.programs.summary import Summary
+from sim_bridge.world.summary import Summary
 from sim_bridge.rehearsal import BusRecorder
 from sim_bridge.world.bridge import Bridge
 from sim_bridge.world.run_observer import Observer

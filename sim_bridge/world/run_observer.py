@@ -11,7 +11,7 @@ from onboard.runtime.protocols import Bus, Link, Sample
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus.messages import Event, Health, Outcome
 from onboard.wire.bus.topics import EVENTS, HEALTH, key
-from sim_bridge.programs.summary import Summary, VehicleSummary, kept, reached
+from sim_bridge.world.summary import Summary, VehicleSummary, kept, reached
 from sim_bridge.world.sensor import Sensor
 
 EVENTS_MAX = 100_000
