@@ -24,10 +24,10 @@ from onboard.runtime.protocols import Bus, Clock, Link, Sample
 from onboard.wire.bus.messages import Event, Health, Outcome, Phase, Role
 from onboard.wire.bus.topics import everything
 from onboard.wire.mavlink.tlog import TlogWriter
-from sim_bridge.world.summary import Summary
 from sim_bridge.world.bridge import Bridge, mute
 from sim_bridge.world.run_observer import Observer
 from sim_bridge.world.staging import generator
+from sim_bridge.world.summary import Summary
 
 GAME = "rehearsal"
 TOLD_MAX = 100_000

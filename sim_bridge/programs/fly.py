@@ -61,8 +61,10 @@ def fly(path: Path, options: Options, say: Callable[[str], None] = print) -> Flo
             summary, timing = _fast(scenario, options, folder, path.parent, tell)
         else:
             from sim_bridge.programs.fly_real import fly_real
+            from sim_bridge.programs.serve import Options as ServeOptions
 
-            summary, timing = asyncio.run(fly_real(scenario, options, folder, path.parent, tell))
+            server = ServeOptions(bus=options.bus, listen=True, once=True, seed=options.seed)
+            summary, timing = asyncio.run(fly_real(scenario, server, folder, path.parent, tell))
     except ConfigError:
         run_folder.discard(folder)
         raise
