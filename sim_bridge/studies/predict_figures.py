@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from onboard.pilot.predictor.activation import SParabola
-from sim_bridge.studies.predict import FIGURE4_TRAINED, FLYING, LAST, PAPER, STEADY, Drawn, Figure4
+from sim_bridge.studies.comparison import FLYING, LAST, PAPER, STEADY, Drawn
+from sim_bridge.studies.paper_example import FIGURE4_TRAINED, Figure4
 
 COLOURS = {LAST: "#888888", STEADY: "#1f77b4", FLYING: "#d62728", PAPER: "#9467bd"}
 
