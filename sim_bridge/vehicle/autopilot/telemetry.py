@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import atan2, cos, degrees, nan, sin, sqrt
-from typing import TYPE_CHECKING
 
 from onboard.core.math.vectors import Vec, clamp
 from onboard.wire.mavlink.frames import MavMessage, dialect
 from sim_bridge.vehicle.autopilot import health
-
-if TYPE_CHECKING:
-    from sim_bridge.vehicle.autopilot.autopilot import Autopilot
+from sim_bridge.vehicle.autopilot.state import AutopilotState
 
 PX4: int = dialect.MAV_AUTOPILOT_PX4
 MAVLINK_VERSION = 3
@@ -34,7 +31,7 @@ def _e7(angle_deg: float) -> int:
     return _i32(angle_deg * 1e7)
 
 
-def heartbeat(ap: Autopilot, now_ns: int) -> MavMessage:
+def heartbeat(ap: AutopilotState, now_ns: int) -> MavMessage:
     mode: int = dialect.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED
     if ap.armed:
         mode |= dialect.MAV_MODE_FLAG_SAFETY_ARMED
@@ -50,7 +47,7 @@ def heartbeat(ap: Autopilot, now_ns: int) -> MavMessage:
     return message
 
 
-def attitude(ap: Autopilot, now_ns: int) -> MavMessage:
+def attitude(ap: AutopilotState, now_ns: int) -> MavMessage:
     m = ap.motion
     message: MavMessage = dialect.MAVLink_attitude_message(
         ap.boot_ms(now_ns), m.roll, m.pitch, m.yaw, m.rates.x, m.rates.y, m.rates.z
@@ -58,7 +55,7 @@ def attitude(ap: Autopilot, now_ns: int) -> MavMessage:
     return message
 
 
-def global_position(ap: Autopilot, now_ns: int) -> MavMessage | None:
+def global_position(ap: AutopilotState, now_ns: int) -> MavMessage | None:
     if not ap.positioned(now_ns):
         return None
     place, v = ap.place, ap.motion.velocity
@@ -77,7 +74,7 @@ def global_position(ap: Autopilot, now_ns: int) -> MavMessage | None:
     return message
 
 
-def local_position(ap: Autopilot, now_ns: int) -> MavMessage | None:
+def local_position(ap: AutopilotState, now_ns: int) -> MavMessage | None:
     if not ap.positioned(now_ns):
         return None
     p, v = ap.local.ned_from_geodetic(*ap.place), ap.motion.velocity
@@ -87,7 +84,7 @@ def local_position(ap: Autopilot, now_ns: int) -> MavMessage | None:
     return message
 
 
-def vfr_hud(ap: Autopilot, now_ns: int) -> MavMessage:
+def vfr_hud(ap: AutopilotState, now_ns: int) -> MavMessage:
     m = ap.motion
     ground = sqrt(m.velocity.x * m.velocity.x + m.velocity.y * m.velocity.y)
     throttle = 0 if ap.landed else 50
@@ -97,7 +94,7 @@ def vfr_hud(ap: Autopilot, now_ns: int) -> MavMessage:
     return message
 
 
-def sys_status(ap: Autopilot, now_ns: int) -> MavMessage:
+def sys_status(ap: AutopilotState, now_ns: int) -> MavMessage:
     h = ap.health
     good = h.sensor_health(ap.gps_fixed(now_ns), ap.positioned(now_ns), ap.healthy(now_ns))
     current = health.CURRENT_IDLE if ap.landed else health.CURRENT_FLYING
@@ -119,7 +116,7 @@ def sys_status(ap: Autopilot, now_ns: int) -> MavMessage:
     return message
 
 
-def battery_status(ap: Autopilot, now_ns: int) -> MavMessage:
+def battery_status(ap: AutopilotState, now_ns: int) -> MavMessage:
     h = ap.health
     cells = [_u16(h.voltage / health.CELLS * 1e3)] * health.CELLS + [UNKNOWN_U16] * (10 - health.CELLS)
     current = health.CURRENT_IDLE if ap.landed else health.CURRENT_FLYING
@@ -138,7 +135,7 @@ def battery_status(ap: Autopilot, now_ns: int) -> MavMessage:
     return message
 
 
-def gps_raw(ap: Autopilot, now_ns: int) -> MavMessage:
+def gps_raw(ap: AutopilotState, now_ns: int) -> MavMessage:
     place, v = ap.place, ap.motion.velocity
     fixed = ap.gps_fixed(now_ns)
     fix = dialect.GPS_FIX_TYPE_3D_FIX if fixed else dialect.GPS_FIX_TYPE_NO_FIX
@@ -158,13 +155,13 @@ def gps_raw(ap: Autopilot, now_ns: int) -> MavMessage:
     return message
 
 
-def extended_state(ap: Autopilot, now_ns: int) -> MavMessage:
+def extended_state(ap: AutopilotState, now_ns: int) -> MavMessage:
     landed = dialect.MAV_LANDED_STATE_ON_GROUND if ap.landed else dialect.MAV_LANDED_STATE_IN_AIR
     message: MavMessage = dialect.MAVLink_extended_sys_state_message(dialect.MAV_VTOL_STATE_UNDEFINED, landed)
     return message
 
 
-def ekf_status(ap: Autopilot, now_ns: int) -> MavMessage:
+def ekf_status(ap: AutopilotState, now_ns: int) -> MavMessage:
     positioned = ap.positioned(now_ns)
     ratio = 0.05 if positioned else 1.5
     message: MavMessage = dialect.MAVLink_ekf_status_report_message(
@@ -173,7 +170,7 @@ def ekf_status(ap: Autopilot, now_ns: int) -> MavMessage:
     return message
 
 
-def estimator_status(ap: Autopilot, now_ns: int) -> MavMessage:
+def estimator_status(ap: AutopilotState, now_ns: int) -> MavMessage:
     positioned = ap.positioned(now_ns)
     ratio = 0.05 if positioned else 1.5
     message: MavMessage = dialect.MAVLink_estimator_status_message(
@@ -191,7 +188,7 @@ def estimator_status(ap: Autopilot, now_ns: int) -> MavMessage:
     return message
 
 
-def wind(ap: Autopilot, now_ns: int) -> MavMessage:
+def wind(ap: AutopilotState, now_ns: int) -> MavMessage:
     """ArduPilot: the direction the wind comes from [degrees] and its speed."""
     w = ap.air.wind
     message: MavMessage = dialect.MAVLink_wind_message(
@@ -200,7 +197,7 @@ def wind(ap: Autopilot, now_ns: int) -> MavMessage:
     return message
 
 
-def wind_cov(ap: Autopilot, now_ns: int) -> MavMessage:
+def wind_cov(ap: AutopilotState, now_ns: int) -> MavMessage:
     """PX4: where the wind blows to, as velocity."""
     w = ap.air.wind
     message: MavMessage = dialect.MAVLink_wind_cov_message(
@@ -209,13 +206,13 @@ def wind_cov(ap: Autopilot, now_ns: int) -> MavMessage:
     return message
 
 
-def system_time(ap: Autopilot, now_ns: int) -> MavMessage:
+def system_time(ap: AutopilotState, now_ns: int) -> MavMessage:
     wall_us = (ap.setup.epoch_ns + now_ns) // 1000 if ap.gps_fixed(now_ns) else 0
     message: MavMessage = dialect.MAVLink_system_time_message(wall_us, ap.boot_ms(now_ns))
     return message
 
 
-def home_position(ap: Autopilot, now_ns: int) -> MavMessage | None:
+def home_position(ap: AutopilotState, now_ns: int) -> MavMessage | None:
     if not ap.home_known:
         return None
     p: Vec = ap.local.ned_from_geodetic(*ap.home)
@@ -236,7 +233,7 @@ def home_position(ap: Autopilot, now_ns: int) -> MavMessage | None:
     return message
 
 
-def global_origin(ap: Autopilot, now_ns: int) -> MavMessage | None:
+def global_origin(ap: AutopilotState, now_ns: int) -> MavMessage | None:
     if not ap.home_known:
         return None
     o = ap.local.origin
@@ -246,7 +243,7 @@ def global_origin(ap: Autopilot, now_ns: int) -> MavMessage | None:
     return message
 
 
-def attitude_quaternion(ap: Autopilot, now_ns: int) -> MavMessage:
+def attitude_quaternion(ap: AutopilotState, now_ns: int) -> MavMessage:
     m = ap.motion
     cr, sr = cos(0.5 * m.roll), sin(0.5 * m.roll)
     cp, sp = cos(0.5 * m.pitch), sin(0.5 * m.pitch)
@@ -264,7 +261,7 @@ def attitude_quaternion(ap: Autopilot, now_ns: int) -> MavMessage:
     return message
 
 
-def altitude(ap: Autopilot, now_ns: int) -> MavMessage:
+def altitude(ap: AutopilotState, now_ns: int) -> MavMessage:
     amsl = ap.place.altitude_m
     local = amsl - ap.local.origin.altitude_m
     message: MavMessage = dialect.MAVLink_altitude_message(
@@ -273,12 +270,12 @@ def altitude(ap: Autopilot, now_ns: int) -> MavMessage:
     return message
 
 
-def mission_current(ap: Autopilot, now_ns: int) -> MavMessage:
+def mission_current(ap: AutopilotState, now_ns: int) -> MavMessage:
     message: MavMessage = dialect.MAVLink_mission_current_message(0)
     return message
 
 
-def autopilot_version(ap: Autopilot, now_ns: int) -> MavMessage:
+def autopilot_version(ap: AutopilotState, now_ns: int) -> MavMessage:
     """Capabilities name what is truly there: no file transfer, no missions."""
     capabilities = (
         dialect.MAV_PROTOCOL_CAPABILITY_COMMAND_INT
@@ -298,7 +295,7 @@ def autopilot_version(ap: Autopilot, now_ns: int) -> MavMessage:
     return message
 
 
-Builder = Callable[["Autopilot", int], MavMessage | None]
+Builder = Callable[[AutopilotState, int], MavMessage | None]
 
 COMMON: dict[int, Builder] = {
     dialect.MAVLINK_MSG_ID_HEARTBEAT: heartbeat,
@@ -340,15 +337,15 @@ DATA_STREAMS: dict[int, tuple[int, ...]] = {
 DATA_STREAMS[dialect.MAV_DATA_STREAM_ALL] = tuple(n for group in DATA_STREAMS.values() for n in group)
 
 
-def _builders(ap: Autopilot) -> dict[int, Builder]:
+def _builders(ap: AutopilotState) -> dict[int, Builder]:
     return OF_PX4 if ap.autopilot_type == PX4 else OF_ARDUPILOT
 
 
-def can_build(ap: Autopilot, number: int) -> bool:
+def can_build(ap: AutopilotState, number: int) -> bool:
     """Whether this kind sends such messages at all."""
     return number in _builders(ap)
 
 
-def build(ap: Autopilot, number: int, now_ns: int) -> MavMessage | None:
+def build(ap: AutopilotState, number: int, now_ns: int) -> MavMessage | None:
     """The message now; None where there is nothing to say (no position, no home)."""
     return _builders(ap)[number](ap, now_ns)
