@@ -79,17 +79,18 @@ def fly(path: Path, options: Options, say: Callable[[str], None] = print) -> Flo
 def _fast(
     scenario: Scenario, options: Options, folder: Path, home: Path, say: Callable[[str], None]
 ) -> tuple[Summary, dict[str, object]]:
+    from sim_bridge.rehearsal import Options as RehearsalOptions
     from sim_bridge.rehearsal import Rehearsal
 
-    seed = scenario.seed if options.seed is None else options.seed
     clock = RealClock()
 
     async def play() -> tuple[Summary, float]:
         virtual = virtual_clock()
-        async with Rehearsal(
-            scenario, virtual, seed=seed, folder=folder, scenario_folder=home, say=say,
+        chosen = RehearsalOptions(
+            seed=options.seed, folder=folder, scenario_folder=home, say=say,
             version=run_folder.versions().get("apollonius", ""),
-        ) as game:  # fmt: skip
+        )  # fmt: skip
+        async with Rehearsal(scenario, virtual, chosen) as game:
             run_folder.write(folder / "configuration.json", game.configuration())
             await game.until_ended()
             await game.land_agents()

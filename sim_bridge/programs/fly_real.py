@@ -114,7 +114,7 @@ class RealGame:
 
                 try:
                     return await serve_scenario(
-                        self._scenario, self._options, self._say, None, home, self._server_started, end_agents
+                        self._scenario, self._options, self._say, home, self._server_started, end_agents
                     )
                 finally:
                     self.agents.over.set()

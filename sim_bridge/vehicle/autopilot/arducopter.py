@@ -59,7 +59,7 @@ class ArduCopter(Multicopter, ArduPilot):
 
     def _new_parameters(self) -> Parameters:
         own = {"SYSID_THISMAV": self.system, "SCHED_LOOP_RATE": 400}
-        return Parameters(tables.ARDUCOPTER, own | dict(self.setup.parameters), bytewise=False)
+        return Parameters(tables.ARDUCOPTER, own | dict(self.setup.options.parameters), bytewise=False)
 
     def _message_handlers(self) -> dict[int, Callable[[int, Packet], None]]:
         return super()._message_handlers() | {

@@ -130,7 +130,7 @@ class ArduPilot(Autopilot):
         return FAILED if self.request_mode(now_ns, self.modes[name]) else ACCEPTED
 
     def _watch_prearm(self, now_ns: int) -> None:
-        if self.armed or self.up_s(now_ns) < 0.5 * self.setup.ready_s:
+        if self.armed or self.up_s(now_ns) < 0.5 * self.setup.options.ready_s:
             return
         reason = self.why_not_armable(now_ns)
         if reason and (self._prearm_ns < 0 or (now_ns - self._prearm_ns) * 1e-9 >= PREARM_EVERY_S):

@@ -75,7 +75,7 @@ class ArduPlane(ArduPilot):
             "TECS_SINK_MAX": max(5.0, s.speed_cruise * sin(radians(-s.pitch_min_deg))),
             "WP_LOITER_RAD": float(ceil(max(60.0, radius))),
         }
-        return Parameters(tables.ARDUPLANE, own | dict(s.parameters), bytewise=False)
+        return Parameters(tables.ARDUPLANE, own | dict(s.options.parameters), bytewise=False)
 
     def _message_handlers(self) -> dict[int, Callable[[int, Packet], None]]:
         return super()._message_handlers() | {

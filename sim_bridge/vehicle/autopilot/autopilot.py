@@ -49,9 +49,9 @@ class Autopilot(AutopilotState):
         if framer is None:
             while len(self._framers) >= PEERS_MAX:
                 self._framers.popitem(last=False)
-            framer = self._framers[peer] = Framer(signing=self.setup.signing, causes=self.counters)
+            framer = self._framers[peer] = Framer(signing=self.setup.options.signing, causes=self.counters)
         self._framers.move_to_end(peer)
-        for packet in framer.feed(data, self.setup.epoch_ns + now_ns):
+        for packet in framer.feed(data, self.setup.options.epoch_ns + now_ns):
             self._take(now_ns, packet)
 
     def step(self, now_ns: int, motion: Motion, air: Air) -> Demand:

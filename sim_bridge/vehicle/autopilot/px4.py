@@ -61,7 +61,7 @@ class Px4Multicopter(Multicopter):
             "MPC_Z_VEL_MAX_UP": max(3.0, fast),
             "MPC_Z_VEL_MAX_DN": max(1.5, fast),
         }
-        return Parameters(tables.PX4, own | dict(self.setup.parameters), bytewise=True)
+        return Parameters(tables.PX4, own | dict(self.setup.options.parameters), bytewise=True)
 
     def _message_handlers(self) -> dict[int, Callable[[int, Packet], None]]:
         return super()._message_handlers() | {

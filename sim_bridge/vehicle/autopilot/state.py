@@ -43,12 +43,12 @@ class AutopilotState(ABC):
         self.air = CALM
         self.home = setup.home
         self.local = Frame(*setup.origin)
-        self.health = Health(setup.battery_s)
+        self.health = Health(setup.options.battery_s)
         self.parameters = self._new_parameters()
         self.counters: Counter[str] = Counter()
-        self.armed = setup.airborne
-        self.landed = not setup.airborne
-        self._cold = not setup.airborne  # booted on the ground: the estimator needs time
+        self.armed = setup.options.airborne
+        self.landed = not setup.options.airborne
+        self._cold = not setup.options.airborne  # booted on the ground: the estimator needs time
         self.home_known = not self._cold
         self._names = {number: name for name, number in self.modes.items()}
         self.mode = self.first_mode
@@ -60,7 +60,7 @@ class AutopilotState(ABC):
     def _boot(self, now_ns: int) -> None:
         """Begin a life of the wire: sequence, time since boot and streams start anew."""
         self._boot_ns = now_ns
-        self._sender = Sender(self.system, COMPONENT, signing=self.setup.signing)
+        self._sender = Sender(self.system, COMPONENT, signing=self.setup.options.signing)
         self.streams = Streams(self.default_rates, now_ns)
 
     @property
@@ -78,7 +78,7 @@ class AutopilotState(ABC):
         """Queue one message; None: there is nothing to say."""
         if message is None:
             return
-        self._out.append(self._sender.pack(message, self._last_step_ns + self.setup.epoch_ns))
+        self._out.append(self._sender.pack(message, self._last_step_ns + self.setup.options.epoch_ns))
 
     def say(self, severity: int, text: str) -> None:
         """Queue a STATUSTEXT."""
@@ -132,17 +132,17 @@ class AutopilotState(ABC):
 
     def positioned(self, now_ns: int) -> bool:
         """Whether its estimator has a position."""
-        cold = self._cold and self.up_s(now_ns) < self.setup.ready_s
+        cold = self._cold and self.up_s(now_ns) < self.setup.options.ready_s
         return self.health.positioned and not cold
 
     def gps_fixed(self, now_ns: int) -> bool:
         """Whether its receiver has a fix: it comes before the estimator uses it."""
-        cold = self._cold and self.up_s(now_ns) < 0.5 * self.setup.ready_s
+        cold = self._cold and self.up_s(now_ns) < 0.5 * self.setup.options.ready_s
         return self.health.gps and not cold
 
     def healthy(self, now_ns: int) -> bool:
         """The pre-arm bit of SYS_STATUS: real ones set it before arming is accepted."""
-        cold = self._cold and self.up_s(now_ns) < self.setup.healthy_s
+        cold = self._cold and self.up_s(now_ns) < self.setup.options.healthy_s
         return self.health.positioned and not cold
 
     @property

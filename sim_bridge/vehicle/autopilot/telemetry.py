@@ -120,7 +120,7 @@ def battery_status(ap: AutopilotState, now_ns: int) -> MavMessage:
     h = ap.health
     cells = [_u16(h.voltage / health.CELLS * 1e3)] * health.CELLS + [UNKNOWN_U16] * (10 - health.CELLS)
     current = health.CURRENT_IDLE if ap.landed else health.CURRENT_FLYING
-    used = (1.0 - h.battery) * ap.setup.battery_s * health.CURRENT_FLYING / 3.6  # [mAh]
+    used = (1.0 - h.battery) * ap.setup.options.battery_s * health.CURRENT_FLYING / 3.6  # [mAh]
     message: MavMessage = dialect.MAVLink_battery_status_message(
         0,
         dialect.MAV_BATTERY_FUNCTION_ALL,
@@ -207,7 +207,7 @@ def wind_cov(ap: AutopilotState, now_ns: int) -> MavMessage:
 
 
 def system_time(ap: AutopilotState, now_ns: int) -> MavMessage:
-    wall_us = (ap.setup.epoch_ns + now_ns) // 1000 if ap.gps_fixed(now_ns) else 0
+    wall_us = (ap.setup.options.epoch_ns + now_ns) // 1000 if ap.gps_fixed(now_ns) else 0
     message: MavMessage = dialect.MAVLink_system_time_message(wall_us, ap.boot_ms(now_ns))
     return message
 
