@@ -54,7 +54,7 @@ class BusRecorder:
             await asyncio.sleep(0.2)
 
     def close(self) -> None:
-        """End the recording; idempotent."""
+        """End the recording; may be called again."""
         self._recorder.close()
 
     def _record(self, sample: Sample) -> None:
@@ -232,13 +232,13 @@ class Rehearsal:
 
     @property
     def master(self) -> GameMaster:
-        """The game's master."""
+        """The rules of the game's master."""
         assert self.bridge.master is not None
         return self.bridge.master.rules
 
     @property
     def phase(self) -> Phase:
-        """The game's phase."""
+        """Phase of the game now."""
         return self.master.phase
 
     @property
@@ -248,7 +248,7 @@ class Rehearsal:
 
     @property
     def events(self) -> list[Event]:
-        """All events so far."""
+        """All events of all vehicles so far, in order."""
         return self.observer.events
 
     @property

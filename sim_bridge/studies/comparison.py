@@ -22,7 +22,7 @@ LAST, STEADY, FLYING, PAPER = "last known", "constant velocity (filtered)", "s-p
 
 
 class Row(msgspec.Struct, frozen=True):
-    """Errors of one predictor."""
+    """Errors of one predictor on one track."""
 
     predictor: str
     mean_error: tuple[float, ...]  # by horizon [m]
@@ -31,7 +31,7 @@ class Row(msgspec.Struct, frozen=True):
 
 
 class Comparison(msgspec.Struct, frozen=True):
-    """What `sim-bridge predict` found."""
+    """Errors of all predictors on one track, as `sim-bridge predict` prints them."""
 
     track: str
     simulated: bool
@@ -128,7 +128,7 @@ def _predict(track: TrackPredictor, networks: list[PaperNetwork] | None, now: fl
 
 
 def table(comparison: Comparison) -> str:
-    """The comparison for people."""
+    """A comparison as lines for people."""
     of = "the true places" if comparison.simulated else "the places measured later (noise included)"
     lines = [
         f"{comparison.track}: {comparison.samples} samples, {comparison.instants} predictions; "

@@ -97,7 +97,7 @@ def bandwidth(axis: AxisModel, law: AxisLaw, dt: float) -> float:
 
 
 def figures(aircraft: Aircraft) -> tuple[AxisFigures, AxisFigures]:
-    """The pitch and the yaw axis."""
+    """Margins, bandwidth and step responses of the pitch and the yaw axis."""
     m = aircraft.model
     pitch = fly_step(aircraft, "pitch", 10.0, 12.0)
     return (
@@ -119,7 +119,7 @@ def figures(aircraft: Aircraft) -> tuple[AxisFigures, AxisFigures]:
 
 
 def report(aircraft: Aircraft) -> str:
-    """The figures as text."""
+    """Margins, bandwidth and step responses of an aircraft as lines for people."""
     spec = aircraft.spec
     lines = [
         f"{spec.name}: path model {spec.path}, stepped at {spec.rate_hz:g} Hz",

@@ -18,7 +18,7 @@ from sim_bridge.world.world import RATE_HZ, World
 
 
 def mute(line: str) -> None:
-    """Say nothing."""
+    """A `say` that tells nobody."""
 
 
 class Options(NamedTuple):

@@ -48,7 +48,7 @@ class Observer:
     def summary(
         self, master: GameMaster, outcome: Outcome | None, sensor: Sensor, links: Mapping[int, Link]
     ) -> Summary:
-        """The run in figures."""
+        """Everything that the game's summary tells; `links` give their counters, by vehicle id."""
         vehicles = []
         for id, spec in zip(self.scenario.ids, self.scenario.vehicles, strict=True):
             health = self.health.get(id)

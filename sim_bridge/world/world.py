@@ -79,7 +79,7 @@ class World:
 
     @property
     def elapsed_ns(self) -> int:
-        """Time simulated so far."""
+        """Time that has been simulated so far [ns]."""
         return self._done * self.step_ns
 
     @property

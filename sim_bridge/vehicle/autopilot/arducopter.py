@@ -50,7 +50,7 @@ CONTINUE_PILOTED = 16  # FS_OPTIONS: the ground station's silence does not end a
 
 
 class ArduCopter(Multicopter, ArduPilot):
-    """ArduCopter 4.5."""
+    """ArduCopter 4.5 on a quadrotor: modes, failsafes, targets and commands."""
 
     modes = M
     banner = ("ArduCopter V4.5.6 (simulated)", "Frame: QUAD/PLUS")
@@ -111,7 +111,7 @@ class ArduCopter(Multicopter, ArduPilot):
             self.fly(Leg.HOLD, now_ns)
 
     def taken_off(self, now_ns: int) -> None:
-        """GUIDED keeps the place."""
+        """GUIDED keeps the place that the take-off has reached."""
 
     def touched(self, now_ns: int) -> None:
         self.disarm(now_ns)

@@ -36,7 +36,7 @@ ALTITUDE_ONLY = 0xFFFB  # bits of a type_mask beside the altitude's
 
 
 class ArduPlane(ArduPilot):
-    """ArduPlane 4.5."""
+    """ArduPlane 4.5: modes, failsafes, guided roll, course, altitude and airspeed."""
 
     vehicle_type = dialect.MAV_TYPE_FIXED_WING
     modes = M

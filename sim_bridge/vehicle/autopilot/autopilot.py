@@ -73,7 +73,7 @@ class Autopilot(AutopilotState):
 
     @property
     def parked(self) -> bool:
-        """Whether it stands on the ground: the world then leaves the airframe where it is."""
+        """Whether the vehicle stands on the ground: the world then leaves the airframe where it is."""
         return self.landed
 
     # ------------------------------------------------------------------ faults
@@ -115,7 +115,7 @@ class Autopilot(AutopilotState):
 
     @abstractmethod
     def guide(self, now_ns: int, dt: float) -> Demand:
-        """What the mode asks of the airframe now."""
+        """The demand of the present mode on the airframe, `dt` seconds after the last one."""
 
     @abstractmethod
     def enter(self, now_ns: int, mode: int) -> None:
@@ -127,7 +127,7 @@ class Autopilot(AutopilotState):
 
     @abstractmethod
     def watch(self, now_ns: int) -> None:
-        """Failsafes."""
+        """Look for what triggers a failsafe, and act on it."""
 
     @abstractmethod
     def why_not_armable(self, now_ns: int) -> str:
@@ -135,7 +135,7 @@ class Autopilot(AutopilotState):
 
     @abstractmethod
     def set_mode_result(self, now_ns: int, command: Command) -> int:
-        """DO_SET_MODE."""
+        """MAV_RESULT of a MAV_CMD_DO_SET_MODE, which it obeys where it can."""
 
     @abstractmethod
     def watched_ground_station(self, packet: Packet) -> bool:
@@ -143,7 +143,7 @@ class Autopilot(AutopilotState):
 
     @abstractmethod
     def on_armed(self, now_ns: int) -> None:
-        """What else happens at arming."""
+        """Do what else this autopilot does at arming: set home, say so."""
 
     def _message_handlers(self) -> dict[int, Callable[[int, Packet], None]]:
         handlers: dict[int, Callable[[int, Packet], None]] = {
@@ -167,7 +167,7 @@ class Autopilot(AutopilotState):
     # ------------------------------------------------------------------ what personalities use
 
     def request_mode(self, now_ns: int, mode: int) -> str:
-        """Change the mode if it may be entered; why not otherwise."""
+        """Change the mode where it may be entered; gives the reason where it may not, else ""."""
         if mode == self.mode:
             return ""
         reason = self.allows(now_ns, mode)
@@ -176,20 +176,20 @@ class Autopilot(AutopilotState):
         return reason
 
     def ground_station_silence_s(self, now_ns: int) -> float:
-        """Since the watched ground station's last heartbeat [s]; 0 where it was never heard."""
+        """Time since the watched ground station's last heartbeat [s]; 0 where none was ever heard."""
         return 0.0 if self._ground_station_ns < 0 else (now_ns - self._ground_station_ns) * 1e-9
 
     def disarm(self, now_ns: int) -> None:
-        """Stop the motors."""
+        """Stop the motors, and tell it with a heartbeat."""
         self.armed = False
         self._heartbeat(now_ns)
 
     def touch_down(self) -> None:
-        """It has reached the ground."""
+        """The vehicle has reached the ground."""
         self.landed = True
 
     def lift_off(self) -> None:
-        """It leaves the ground."""
+        """The vehicle leaves the ground."""
         self.landed = False
         self._cold = False
 

@@ -30,7 +30,7 @@ class Command(NamedTuple):
 
 
 def from_long(packet: Packet) -> Command:
-    """Of a COMMAND_LONG."""
+    """The command of a COMMAND_LONG; its params 5 and 6 are taken for a place in degrees."""
     m = packet.message
     return Command(
         m.command,
@@ -48,7 +48,7 @@ def from_long(packet: Packet) -> Command:
 
 
 def from_int(packet: Packet) -> Command:
-    """Of a COMMAND_INT."""
+    """The command of a COMMAND_INT, whose place is in 1e-7 degrees."""
     m = packet.message
     return Command(
         m.command,

@@ -16,6 +16,7 @@ from sim_bridge.vehicle.autopilot.state import AutopilotState
 
 
 def set_interval(ap: AutopilotState, now_ns: int, command: Command) -> int:
+    """MAV_CMD_SET_MESSAGE_INTERVAL: send message p1 every p2 [µs]."""
     number = _whole(command.p1)
     if not telemetry.can_build(ap, number) or not isfinite(command.p2):
         return ap.unknown_interval
@@ -24,6 +25,7 @@ def set_interval(ap: AutopilotState, now_ns: int, command: Command) -> int:
 
 
 def get_interval(ap: AutopilotState, now_ns: int, command: Command) -> int:
+    """MAV_CMD_GET_MESSAGE_INTERVAL: answer with MESSAGE_INTERVAL of message p1."""
     number = _whole(command.p1)
     if not telemetry.can_build(ap, number):
         return ap.unknown_interval
@@ -32,6 +34,7 @@ def get_interval(ap: AutopilotState, now_ns: int, command: Command) -> int:
 
 
 def request_message(ap: AutopilotState, now_ns: int, command: Command) -> int:
+    """MAV_CMD_REQUEST_MESSAGE: send message p1 once."""
     number = _whole(command.p1)
     if not telemetry.can_build(ap, number):
         return ap.unknown_message
@@ -40,11 +43,13 @@ def request_message(ap: AutopilotState, now_ns: int, command: Command) -> int:
 
 
 def request_version(ap: AutopilotState, now_ns: int, command: Command) -> int:
+    """MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES: send AUTOPILOT_VERSION once."""
     ap.emit(telemetry.autopilot_version(ap, now_ns))
     return ACCEPTED
 
 
 def get_home(ap: AutopilotState, now_ns: int, command: Command) -> int:
+    """MAV_CMD_GET_HOME_POSITION: send HOME_POSITION once."""
     if not ap.home_known:
         return FAILED
     ap.emit(telemetry.home_position(ap, now_ns))
@@ -52,6 +57,7 @@ def get_home(ap: AutopilotState, now_ns: int, command: Command) -> int:
 
 
 def set_home(ap: AutopilotState, now_ns: int, command: Command) -> int:
+    """MAV_CMD_DO_SET_HOME: home becomes the present place (p1 = 1) or the one that the command gives."""
     if command.p1 == 1.0:
         if not ap.positioned(now_ns):
             return FAILED

@@ -14,34 +14,41 @@ from sim_bridge.vehicle.autopilot.state import AutopilotState
 
 
 def param_list(ap: AutopilotState, now_ns: int, packet: Packet) -> None:
+    """PARAM_REQUEST_LIST: begin to send all parameters, and say the banner."""
     ap.parameters.list_all()
     for line in ap.banner:
         ap.say(dialect.MAV_SEVERITY_INFO, line)
 
 
 def param_read(ap: AutopilotState, now_ns: int, packet: Packet) -> None:
+    """PARAM_REQUEST_READ: send one parameter, by name or by number."""
     ap.emit(ap.parameters.read(packet.message.param_id, packet.message.param_index))
 
 
 def param_set(ap: AutopilotState, now_ns: int, packet: Packet) -> None:
+    """PARAM_SET: change a parameter and send the value that it has now."""
     ap.emit(ap.parameters.write(packet.message.param_id, packet.message.param_value))
 
 
 def mission_list(ap: AutopilotState, now_ns: int, packet: Packet) -> None:
+    """MISSION_REQUEST_LIST: there are no items."""
     ap.emit(
         dialect.MAVLink_mission_count_message(packet.system, packet.component, 0, packet.message.mission_type)
     )
 
 
 def mission_request(ap: AutopilotState, now_ns: int, packet: Packet) -> None:
+    """MISSION_REQUEST and MISSION_REQUEST_INT: there is no such item."""
     _mission_ack(ap, packet, dialect.MAV_MISSION_INVALID_SEQUENCE)
 
 
 def mission_upload(ap: AutopilotState, now_ns: int, packet: Packet) -> None:
+    """MISSION_COUNT: no mission is taken, for there is no room for it."""
     _mission_ack(ap, packet, dialect.MAV_MISSION_NO_SPACE)
 
 
 def mission_clear(ap: AutopilotState, now_ns: int, packet: Packet) -> None:
+    """MISSION_CLEAR_ALL: accepted, for there is nothing to clear."""
     _mission_ack(ap, packet, dialect.MAV_MISSION_ACCEPTED)
 
 
@@ -54,22 +61,26 @@ def _mission_ack(ap: AutopilotState, packet: Packet, result: int) -> None:
 
 
 def file_transfer(ap: AutopilotState, now_ns: int, packet: Packet) -> None:
+    """FILE_TRANSFER_PROTOCOL: refused, so that clients fall back to the parameter protocol."""
     payload = refusal(bytes(packet.message.payload))
     ap.emit(dialect.MAVLink_file_transfer_protocol_message(0, packet.system, packet.component, payload))
 
 
 def timesync(ap: AutopilotState, now_ns: int, packet: Packet) -> None:
+    """TIMESYNC: answer a request with the time since boot [ns]."""
     if packet.message.tc1 == 0:
         ap.emit(dialect.MAVLink_timesync_message(ap.boot_elapsed_ns(now_ns), packet.message.ts1))
 
 
 def ping(ap: AutopilotState, now_ns: int, packet: Packet) -> None:
+    """PING: answer a ping to everybody."""
     m = packet.message
     if m.target_system == 0 and m.target_component == 0:
         ap.emit(dialect.MAVLink_ping_message(m.time_usec, m.seq, packet.system, packet.component))
 
 
 def data_stream(ap: AutopilotState, now_ns: int, packet: Packet) -> None:
+    """REQUEST_DATA_STREAM: set the rate of a group of messages."""
     m = packet.message
     for number in telemetry.DATA_STREAMS.get(m.req_stream_id, ()):
         if telemetry.can_build(ap, number):

@@ -26,7 +26,7 @@ LOW = 10.0  # [m] above the ground: the last part of a landing is slow
 
 
 class Leg(Enum):
-    """What is flown now."""
+    """Parts of a multicopter's flight, of which it flies one at a time."""
 
     HOLD = "hold"  # stop, then keep the place
     VELOCITY = "velocity"
@@ -39,7 +39,7 @@ class Leg(Enum):
 
 
 class Speeds(NamedTuple):
-    """Of what the autopilot flies by itself [m/s]."""
+    """Speeds with which an autopilot flies a leg by itself [m/s]."""
 
     level: float
     up: float
@@ -85,17 +85,17 @@ class Multicopter(Autopilot):
     @property
     @abstractmethod
     def speeds(self) -> Speeds:
-        """From its parameters."""
+        """Speeds of flying by itself, from the parameters [m/s]."""
 
     @property
     @abstractmethod
     def linger_s(self) -> float:
-        """Above home before it lands [s]."""
+        """Time above home before a return lands [s]."""
 
     @property
     @abstractmethod
     def idle_disarm_s(self) -> float:
-        """Armed on the ground for so long, it disarms itself; 0 = never."""
+        """Time armed on the ground after which it disarms itself [s]; 0 = never."""
 
     @abstractmethod
     def taken_off(self, now_ns: int) -> None:
@@ -108,7 +108,7 @@ class Multicopter(Autopilot):
     # ------------------------------------------------------------------ legs
 
     def fly(self, leg: Leg, now_ns: int, target: Vec = ZERO) -> None:
-        """Begin a leg."""
+        """Begin a leg to `target` [m; NED, frame of motion]."""
         self.leg = leg
         self.target = target
         self.feed_forward = ZERO
@@ -116,7 +116,7 @@ class Multicopter(Autopilot):
         self._since_ns = now_ns
 
     def fly_velocity(self, velocity: Vec, now_ns: int) -> None:
-        """Follow a ground velocity."""
+        """Follow a velocity over ground [m/s; NED]."""
         self.leg = Leg.VELOCITY
         self.velocity = velocity
         self._since_ns = now_ns

@@ -66,7 +66,7 @@ class AutopilotState(ABC):
     @property
     @abstractmethod
     def first_mode(self) -> int:
-        """The mode after boot."""
+        """custom_mode in which the autopilot boots."""
 
     @abstractmethod
     def _new_parameters(self) -> Parameters:
@@ -81,7 +81,7 @@ class AutopilotState(ABC):
         self._out.append(self._sender.pack(message, self._last_step_ns + self.setup.options.epoch_ns))
 
     def say(self, severity: int, text: str) -> None:
-        """Queue a STATUSTEXT."""
+        """Queue a STATUSTEXT of a MAV_SEVERITY; the text is cut to 50 bytes."""
         self.emit(dialect.MAVLink_statustext_message(severity, text.encode()[:50]))
 
     def outgoing(self) -> list[bytes]:
@@ -93,11 +93,11 @@ class AutopilotState(ABC):
     # ------------------------------------------------------------------ what it knows
 
     def boot_ms(self, now_ns: int) -> int:
-        """time_boot_ms."""
+        """Time since boot [ms], as time_boot_ms has it."""
         return (now_ns - self._boot_ns) // 1_000_000
 
     def boot_elapsed_ns(self, now_ns: int) -> int:
-        """Since boot [ns]."""
+        """Time since boot [ns]."""
         return now_ns - self._boot_ns
 
     def up_s(self, now_ns: int) -> float:
@@ -106,7 +106,7 @@ class AutopilotState(ABC):
 
     @property
     def place(self) -> Geodetic:
-        """Where it is."""
+        """Geodetic position of the vehicle."""
         position = self.motion.position
         if self._place is None or self._place[0] is not position:
             self._place = (position, self.setup.frame.geodetic_from_ned(position))
@@ -114,42 +114,42 @@ class AutopilotState(ABC):
 
     @property
     def height(self) -> float:
-        """Above home [m]."""
+        """Height of the vehicle above home [m]."""
         return self.setup.frame.origin.altitude_m - self.motion.position.z - self.home.altitude_m
 
     @property
     def above_ground(self) -> float:
-        """Above the ground of its start [m]: home may have been moved since."""
+        """Height above the ground of the start [m]: home may have been moved since."""
         return self.setup.frame.origin.altitude_m - self.motion.position.z - self.setup.home.altitude_m
 
     def game_position(self, latitude_deg: float, longitude_deg: float, altitude_m: float) -> Vec:
-        """In the frame in which motion is given [m; NED]."""
+        """A geodetic place in the frame in which motion is given [m; NED]."""
         return self.setup.frame.ned_from_geodetic(latitude_deg, longitude_deg, altitude_m)
 
     def game_from_local(self, position: Vec) -> Vec:
-        """From the autopilot's own local frame into that of its motion [m; NED]."""
+        """A position in the autopilot's own local frame [m; NED], in the frame of its motion [m; NED]."""
         return self.game_position(*self.local.geodetic_from_ned(position))
 
     def positioned(self, now_ns: int) -> bool:
-        """Whether its estimator has a position."""
+        """Whether the estimator has a position."""
         cold = self._cold and self.up_s(now_ns) < self.setup.options.ready_s
         return self.health.positioned and not cold
 
     def gps_fixed(self, now_ns: int) -> bool:
-        """Whether its receiver has a fix: it comes before the estimator uses it."""
+        """Whether the receiver has a fix; it has one before the estimator uses it."""
         cold = self._cold and self.up_s(now_ns) < 0.5 * self.setup.options.ready_s
         return self.health.gps and not cold
 
     def healthy(self, now_ns: int) -> bool:
-        """The pre-arm bit of SYS_STATUS: real ones set it before arming is accepted."""
+        """Whether SYS_STATUS says ready to arm: real autopilots say it before they accept arming."""
         cold = self._cold and self.up_s(now_ns) < self.setup.options.healthy_s
         return self.health.positioned and not cold
 
     @property
     def mode_name(self) -> str:
-        """The mode in the autopilot's own words."""
+        """The mode's name in the autopilot's own words."""
         return self._names.get(self.mode, f"mode {self.mode}")
 
     def is_mode(self, *names: str) -> bool:
-        """Whether it is in one of these modes."""
+        """Whether the autopilot is in one of these modes."""
         return self._names.get(self.mode) in names

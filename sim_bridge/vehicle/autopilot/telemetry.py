@@ -32,6 +32,7 @@ def _e7(angle_deg: float) -> int:
 
 
 def heartbeat(ap: AutopilotState, now_ns: int) -> MavMessage:
+    """HEARTBEAT: kind of autopilot and vehicle, mode, whether it is armed, and its condition."""
     mode: int = dialect.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED
     if ap.armed:
         mode |= dialect.MAV_MODE_FLAG_SAFETY_ARMED
@@ -48,6 +49,7 @@ def heartbeat(ap: AutopilotState, now_ns: int) -> MavMessage:
 
 
 def attitude(ap: AutopilotState, now_ns: int) -> MavMessage:
+    """ATTITUDE: roll, pitch and yaw [rad] with their rates [rad/s]."""
     m = ap.motion
     message: MavMessage = dialect.MAVLink_attitude_message(
         ap.boot_ms(now_ns), m.roll, m.pitch, m.yaw, m.rates.x, m.rates.y, m.rates.z
@@ -56,6 +58,7 @@ def attitude(ap: AutopilotState, now_ns: int) -> MavMessage:
 
 
 def global_position(ap: AutopilotState, now_ns: int) -> MavMessage | None:
+    """GLOBAL_POSITION_INT: geodetic position, height above home, ground velocity; None: no position."""
     if not ap.positioned(now_ns):
         return None
     place, v = ap.place, ap.motion.velocity
@@ -75,6 +78,7 @@ def global_position(ap: AutopilotState, now_ns: int) -> MavMessage | None:
 
 
 def local_position(ap: AutopilotState, now_ns: int) -> MavMessage | None:
+    """LOCAL_POSITION_NED in the autopilot's own local frame [m, m/s]; None without a position."""
     if not ap.positioned(now_ns):
         return None
     p, v = ap.local.ned_from_geodetic(*ap.place), ap.motion.velocity
@@ -85,6 +89,7 @@ def local_position(ap: AutopilotState, now_ns: int) -> MavMessage | None:
 
 
 def vfr_hud(ap: AutopilotState, now_ns: int) -> MavMessage:
+    """VFR_HUD: airspeed, ground speed, heading, altitude and climb rate."""
     m = ap.motion
     ground = sqrt(m.velocity.x * m.velocity.x + m.velocity.y * m.velocity.y)
     throttle = 0 if ap.landed else 50
@@ -95,6 +100,7 @@ def vfr_hud(ap: AutopilotState, now_ns: int) -> MavMessage:
 
 
 def sys_status(ap: AutopilotState, now_ns: int) -> MavMessage:
+    """SYS_STATUS: sensors present, enabled and healthy; voltage, current and charge of the battery."""
     h = ap.health
     good = h.sensor_health(ap.gps_fixed(now_ns), ap.positioned(now_ns), ap.healthy(now_ns))
     current = health.CURRENT_IDLE if ap.landed else health.CURRENT_FLYING
@@ -117,6 +123,7 @@ def sys_status(ap: AutopilotState, now_ns: int) -> MavMessage:
 
 
 def battery_status(ap: AutopilotState, now_ns: int) -> MavMessage:
+    """BATTERY_STATUS: cell voltages, current, charge used and charge left."""
     h = ap.health
     cells = [_u16(h.voltage / health.CELLS * 1e3)] * health.CELLS + [UNKNOWN_U16] * (10 - health.CELLS)
     current = health.CURRENT_IDLE if ap.landed else health.CURRENT_FLYING
@@ -136,6 +143,7 @@ def battery_status(ap: AutopilotState, now_ns: int) -> MavMessage:
 
 
 def gps_raw(ap: AutopilotState, now_ns: int) -> MavMessage:
+    """GPS_RAW_INT: fix, position, speed and course as the receiver has them."""
     place, v = ap.place, ap.motion.velocity
     fixed = ap.gps_fixed(now_ns)
     fix = dialect.GPS_FIX_TYPE_3D_FIX if fixed else dialect.GPS_FIX_TYPE_NO_FIX
@@ -156,12 +164,14 @@ def gps_raw(ap: AutopilotState, now_ns: int) -> MavMessage:
 
 
 def extended_state(ap: AutopilotState, now_ns: int) -> MavMessage:
+    """EXTENDED_SYS_STATE: on the ground or in the air."""
     landed = dialect.MAV_LANDED_STATE_ON_GROUND if ap.landed else dialect.MAV_LANDED_STATE_IN_AIR
     message: MavMessage = dialect.MAVLink_extended_sys_state_message(dialect.MAV_VTOL_STATE_UNDEFINED, landed)
     return message
 
 
 def ekf_status(ap: AutopilotState, now_ns: int) -> MavMessage:
+    """EKF_STATUS_REPORT: ArduPilot's estimator, its flags and innovation ratios."""
     positioned = ap.positioned(now_ns)
     ratio = 0.05 if positioned else 1.5
     message: MavMessage = dialect.MAVLink_ekf_status_report_message(
@@ -171,6 +181,7 @@ def ekf_status(ap: AutopilotState, now_ns: int) -> MavMessage:
 
 
 def estimator_status(ap: AutopilotState, now_ns: int) -> MavMessage:
+    """ESTIMATOR_STATUS: PX4's estimator, its flags, innovation ratios and accuracies."""
     positioned = ap.positioned(now_ns)
     ratio = 0.05 if positioned else 1.5
     message: MavMessage = dialect.MAVLink_estimator_status_message(
@@ -189,7 +200,7 @@ def estimator_status(ap: AutopilotState, now_ns: int) -> MavMessage:
 
 
 def wind(ap: AutopilotState, now_ns: int) -> MavMessage:
-    """ArduPilot: the direction the wind comes from [degrees] and its speed."""
+    """WIND of ArduPilot: the direction that the wind comes from [deg] and its speed [m/s]."""
     w = ap.air.wind
     message: MavMessage = dialect.MAVLink_wind_message(
         degrees(atan2(-w.y, -w.x)) % 360.0, sqrt(w.x * w.x + w.y * w.y), w.z
@@ -198,7 +209,7 @@ def wind(ap: AutopilotState, now_ns: int) -> MavMessage:
 
 
 def wind_cov(ap: AutopilotState, now_ns: int) -> MavMessage:
-    """PX4: where the wind blows to, as velocity."""
+    """WIND_COV of PX4: the velocity with which the air moves [m/s; NED]."""
     w = ap.air.wind
     message: MavMessage = dialect.MAVLink_wind_cov_message(
         ap.boot_ms(now_ns) * 1000, w.x, w.y, w.z, 0.1, 0.1, ap.place.altitude_m, 0.5, 0.5
@@ -207,12 +218,14 @@ def wind_cov(ap: AutopilotState, now_ns: int) -> MavMessage:
 
 
 def system_time(ap: AutopilotState, now_ns: int) -> MavMessage:
+    """SYSTEM_TIME: wall instant, 0 before the first fix, and time since boot."""
     wall_us = (ap.setup.options.epoch_ns + now_ns) // 1000 if ap.gps_fixed(now_ns) else 0
     message: MavMessage = dialect.MAVLink_system_time_message(wall_us, ap.boot_ms(now_ns))
     return message
 
 
 def home_position(ap: AutopilotState, now_ns: int) -> MavMessage | None:
+    """HOME_POSITION: home, geodetic and in the local frame; None while it is not known."""
     if not ap.home_known:
         return None
     p: Vec = ap.local.ned_from_geodetic(*ap.home)
@@ -234,6 +247,7 @@ def home_position(ap: AutopilotState, now_ns: int) -> MavMessage | None:
 
 
 def global_origin(ap: AutopilotState, now_ns: int) -> MavMessage | None:
+    """GPS_GLOBAL_ORIGIN: the geodetic origin of the local frame; None while it is not known."""
     if not ap.home_known:
         return None
     o = ap.local.origin
@@ -244,6 +258,7 @@ def global_origin(ap: AutopilotState, now_ns: int) -> MavMessage | None:
 
 
 def attitude_quaternion(ap: AutopilotState, now_ns: int) -> MavMessage:
+    """ATTITUDE_QUATERNION: the rotation from NED to the body (w, x, y, z) with its rates [rad/s]."""
     m = ap.motion
     cr, sr = cos(0.5 * m.roll), sin(0.5 * m.roll)
     cp, sp = cos(0.5 * m.pitch), sin(0.5 * m.pitch)
@@ -262,6 +277,7 @@ def attitude_quaternion(ap: AutopilotState, now_ns: int) -> MavMessage:
 
 
 def altitude(ap: AutopilotState, now_ns: int) -> MavMessage:
+    """ALTITUDE of PX4: above mean sea level, above the local origin and above home [m]."""
     amsl = ap.place.altitude_m
     local = amsl - ap.local.origin.altitude_m
     message: MavMessage = dialect.MAVLink_altitude_message(
@@ -271,12 +287,13 @@ def altitude(ap: AutopilotState, now_ns: int) -> MavMessage:
 
 
 def mission_current(ap: AutopilotState, now_ns: int) -> MavMessage:
+    """MISSION_CURRENT: always the first item, for there are no missions."""
     message: MavMessage = dialect.MAVLink_mission_current_message(0)
     return message
 
 
 def autopilot_version(ap: AutopilotState, now_ns: int) -> MavMessage:
-    """Capabilities name what is truly there: no file transfer, no missions."""
+    """AUTOPILOT_VERSION: capabilities truly there (no file transfer, no missions) and firmware."""
     capabilities = (
         dialect.MAV_PROTOCOL_CAPABILITY_COMMAND_INT
         | dialect.MAV_PROTOCOL_CAPABILITY_MAVLINK2
@@ -342,10 +359,10 @@ def _builders(ap: AutopilotState) -> dict[int, Builder]:
 
 
 def can_build(ap: AutopilotState, number: int) -> bool:
-    """Whether this kind sends such messages at all."""
+    """Whether this kind of autopilot sends messages of that number at all."""
     return number in _builders(ap)
 
 
 def build(ap: AutopilotState, number: int, now_ns: int) -> MavMessage | None:
-    """The message now; None where there is nothing to say (no position, no home)."""
+    """The message of that number as it is now; None where it cannot be told (no position, no home)."""
     return _builders(ap)[number](ap, now_ns)

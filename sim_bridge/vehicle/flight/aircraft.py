@@ -90,7 +90,7 @@ class FollowSpec(Part, frozen=True, kw_only=True):
 
 
 class LimitSpec(Part, frozen=True, kw_only=True):
-    """(2)–(3)."""
+    """Limits (2)–(3) of pitch [deg] and airspeed [m/s]."""
 
     pitch_min_deg: float = -25.0
     pitch_max_deg: float = 25.0
@@ -99,7 +99,7 @@ class LimitSpec(Part, frozen=True, kw_only=True):
 
 
 class Spec(Part, frozen=True, kw_only=True):
-    """An aircraft file."""
+    """Everything that an aircraft file says."""
 
     name: str
     path: str  # nose | slip | coordinated
@@ -129,13 +129,13 @@ PATHS = {path.name.lower(): path for path in PathModel}
 
 
 def pitch_transfer(spec: Spec) -> AxisTransfer:
-    """(36) of a file."""
+    """The pitch axis's transfer functions (36) of an aircraft file."""
     p = spec.pitch
     return AxisTransfer(p.denominator, p.elevator, p.wind_x, p.wind_y)
 
 
 def yaw_transfer(spec: Spec) -> AxisTransfer:
-    """(37) of a file."""
+    """The yaw axis's transfer functions (37) of an aircraft file."""
     y = spec.yaw
     return AxisTransfer(y.denominator, y.rudder, y.wind_z, (0.0,))
 

@@ -65,7 +65,7 @@ def check(transfer: AxisTransfer, name: str, keys: tuple[str, str, str, str]) ->
 
 
 def trim(polynomial: Sequence[float]) -> tuple[float, ...]:
-    """Without leading zeros."""
+    """A polynomial without its leading zeros, highest power first."""
     for index, value in enumerate(polynomial):
         if value != 0.0:
             return tuple(polynomial[index:])
