@@ -66,8 +66,7 @@ def compared(kind: Kind) -> Comparison:
     requests = [(t, p.message) for t, p in timed if p.component == COMPANION]
     real = Stream([(t, p.message) for t, p in timed if p.component == 1])
     ready, healthy = READY[kind]
-    flown = Flown(kind, airborne=False, ready_s=ready)
-    flown.autopilot.setup = flown.autopilot.setup._replace(healthy_s=healthy)
+    flown = Flown(kind, airborne=False, ready_s=ready, healthy_share=healthy / ready)
     for t, message in requests:
         flown.fly(t - flown.now_ns / NS_PER_S)
         flown.send(message)

@@ -12,6 +12,7 @@ from typing import ClassVar, NamedTuple
 
 from onboard.core.math.vectors import ZERO, Vec, norm, sub
 from onboard.wire.mavlink.frames import dialect
+from sim_bridge.vehicle.autopilot import telemetry
 from sim_bridge.vehicle.autopilot.autopilot import Autopilot
 from sim_bridge.vehicle.autopilot.setup import Setup
 from sim_bridge.vehicle.motion import Demand, Lateral
@@ -69,6 +70,7 @@ class Multicopter(Autopilot):
 
     vehicle_type = dialect.MAV_TYPE_QUADROTOR
     starts_by_velocity: ClassVar[bool]  # whether an upward velocity target takes it off the ground
+    armed_text: ClassVar[str]  # the STATUSTEXT that tells of an arming
 
     def __init__(self, setup: Setup, now_ns: int) -> None:
         self.leg = Leg.HOLD
@@ -101,9 +103,17 @@ class Multicopter(Autopilot):
     def taken_off(self, now_ns: int) -> None:
         """The height of take-off is reached."""
 
-    @abstractmethod
-    def touched(self, now_ns: int) -> None:
-        """It has landed by itself."""
+    def on_armed(self, now_ns: int) -> None:
+        """Make the place of arming home where it stands on the ground, and say that it is armed."""
+        if self.landed:
+            self.home = self.place
+            self.emit(telemetry.home_position(self, now_ns))
+        self.say(dialect.MAV_SEVERITY_INFO, self.armed_text)
+
+    def escape(self, now_ns: int, name: str) -> None:
+        """Enter the mode that a failsafe wants; land where that mode cannot be entered."""
+        if not self.is_mode("LAND") and self.request_mode(now_ns, self.modes[name]):
+            self.request_mode(now_ns, self.modes["LAND"])
 
     # ------------------------------------------------------------------ legs
 
@@ -182,7 +192,7 @@ class Multicopter(Autopilot):
         if above <= TOUCHED:
             self.touch_down()
             self.fly(Leg.HOLD, now_ns)
-            self.touched(now_ns)
+            self.disarm(now_ns)
             return REST
         speeds = self.speeds
         flat = towards(self.motion.position, self.target, speeds)

@@ -20,11 +20,12 @@ class Options(NamedTuple):
     battery_s: float = 1200.0  # from full to empty in flight [s]
     parameters: Mapping[str, float] = {}  # in place of the defaults
     signing: Signing | None = None  # of all frames sent; None: frames are not signed
+    healthy_share: float = 0.6  # of `ready_s`, after which the pre-arm bit is set: before arming is accepted
 
     @property
     def healthy_s(self) -> float:
-        """Time from boot until the pre-arm bit says healthy [s]: real ones say it before they can arm."""
-        return 0.6 * self.ready_s
+        """A ground start's time from boot until the pre-arm bit says healthy [s]."""
+        return self.healthy_share * self.ready_s
 
 
 class Setup(NamedTuple):

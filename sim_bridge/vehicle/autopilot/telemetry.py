@@ -105,20 +105,9 @@ def sys_status(ap: AutopilotState, now_ns: int) -> MavMessage:
     good = h.sensor_health(ap.gps_fixed(now_ns), ap.positioned(now_ns), ap.healthy(now_ns))
     current = health.CURRENT_IDLE if ap.landed else health.CURRENT_FLYING
     message: MavMessage = dialect.MAVLink_sys_status_message(
-        health.SENSORS,
-        health.SENSORS,
-        good,
-        250,
-        _u16(h.voltage * 1e3),
-        _i16(current * 1e2),
-        round(h.battery * 100.0),
-        0,
-        0,
-        0,
-        0,
-        0,
-        0,
-    )
+        health.SENSORS, health.SENSORS, good, 250, _u16(h.voltage * 1e3), _i16(current * 1e2),
+        round(h.battery * 100.0), 0, 0, 0, 0, 0, 0,
+    )  # fmt: skip
     return message
 
 
@@ -185,17 +174,9 @@ def estimator_status(ap: AutopilotState, now_ns: int) -> MavMessage:
     positioned = ap.positioned(now_ns)
     ratio = 0.05 if positioned else 1.5
     message: MavMessage = dialect.MAVLink_estimator_status_message(
-        ap.boot_ms(now_ns) * 1000,
-        ap.health.ekf_flags(positioned),
-        ratio,
-        ratio,
-        0.03,
-        0.02,
-        0.0,
-        0.0,
-        0.3,
-        0.4,
-    )
+        ap.boot_ms(now_ns) * 1000, ap.health.ekf_flags(positioned), ratio, ratio, 0.03, 0.02, 0.0, 0.0,
+        0.3, 0.4,
+    )  # fmt: skip
     return message
 
 
@@ -234,15 +215,9 @@ def home_position(ap: AutopilotState, now_ns: int) -> MavMessage | None:
         _e7(ap.home.latitude_deg),
         _e7(ap.home.longitude_deg),
         _i32(ap.home.altitude_m * 1e3),
-        p.x,
-        p.y,
-        p.z,
-        q,
-        0.0,
-        0.0,
-        0.0,
+        p.x, p.y, p.z, q, 0.0, 0.0, 0.0,
         ap.boot_ms(now_ns) * 1000,
-    )
+    )  # fmt: skip
     return message
 
 
