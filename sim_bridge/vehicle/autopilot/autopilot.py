@@ -13,7 +13,8 @@ from functools import partial
 
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import ZERO
-from onboard.wire.mavlink.frames import Framer, Packet, dialect
+from onboard.wire.mavlink.dialect import DialectPacket, dialect, dialect_packet
+from onboard.wire.mavlink.frames import Framer
 from sim_bridge.vehicle.autopilot import telemetry
 from sim_bridge.vehicle.autopilot.command import ACCEPTED, FAILED, UNSUPPORTED, Command, from_int, from_long
 from sim_bridge.vehicle.autopilot.commands import COMMANDS
@@ -34,7 +35,7 @@ class Autopilot(AutopilotState):
 
     def __init__(self, setup: Setup, now_ns: int) -> None:
         super().__init__(setup, now_ns)
-        self._handlers: dict[int, Callable[[int, Packet], None]] = self._message_handlers()
+        self._handlers: dict[int, Callable[[int, DialectPacket], None]] = self._message_handlers()
         self._commands: dict[int, Callable[[int, Command], int]] = self._command_handlers()
         self._framers: OrderedDict[Hashable, Framer] = OrderedDict()
         self._ground_station_ns = -1  # last heartbeat of the watched one; −1 = never
@@ -52,7 +53,7 @@ class Autopilot(AutopilotState):
             framer = self._framers[peer] = Framer(signing=self.setup.options.signing, causes=self.counters)
         self._framers.move_to_end(peer)
         for packet in framer.feed(data, self.setup.options.epoch_ns + now_ns):
-            self._take(now_ns, packet)
+            self._take(now_ns, dialect_packet(packet.raw))
 
     def step(self, now_ns: int, motion: Motion, air: Air) -> Demand:
         """Sense, keep time, send what is due, and say what the airframe shall do until the next step."""
@@ -138,15 +139,15 @@ class Autopilot(AutopilotState):
         """MAV_RESULT of a MAV_CMD_DO_SET_MODE, which it obeys where it can."""
 
     @abstractmethod
-    def watched_ground_station(self, packet: Packet) -> bool:
+    def watched_ground_station(self, packet: DialectPacket) -> bool:
         """Whether a heartbeat is that of the ground station whose silence counts."""
 
     @abstractmethod
     def on_armed(self, now_ns: int) -> None:
         """Do what else this autopilot does at arming: set home, say so."""
 
-    def _message_handlers(self) -> dict[int, Callable[[int, Packet], None]]:
-        handlers: dict[int, Callable[[int, Packet], None]] = {
+    def _message_handlers(self) -> dict[int, Callable[[int, DialectPacket], None]]:
+        handlers: dict[int, Callable[[int, DialectPacket], None]] = {
             number: partial(service, self) for number, service in SERVICES.items()
         }
         handlers[dialect.MAVLINK_MSG_ID_HEARTBEAT] = self._on_heartbeat
@@ -214,7 +215,7 @@ class Autopilot(AutopilotState):
         for message in self.parameters.due(PARAMETERS_A_STEP):
             self.emit(message)
 
-    def _take(self, now_ns: int, packet: Packet) -> None:
+    def _take(self, now_ns: int, packet: DialectPacket) -> None:
         message = packet.message
         if packet.system == self.system and packet.component == COMPONENT:
             self.counters["own_echo"] += 1
@@ -230,14 +231,14 @@ class Autopilot(AutopilotState):
             return
         handler(now_ns, packet)
 
-    def _on_heartbeat(self, now_ns: int, packet: Packet) -> None:
+    def _on_heartbeat(self, now_ns: int, packet: DialectPacket) -> None:
         if self.watched_ground_station(packet):
             self._ground_station_ns = now_ns
 
-    def _on_command_long(self, now_ns: int, packet: Packet) -> None:
+    def _on_command_long(self, now_ns: int, packet: DialectPacket) -> None:
         self._obey(now_ns, from_long(packet))
 
-    def _on_command_int(self, now_ns: int, packet: Packet) -> None:
+    def _on_command_int(self, now_ns: int, packet: DialectPacket) -> None:
         self._obey(now_ns, from_int(packet))
 
     def _obey(self, now_ns: int, command: Command) -> None:
@@ -249,7 +250,7 @@ class Autopilot(AutopilotState):
             )
         )
 
-    def _on_set_mode(self, now_ns: int, packet: Packet) -> None:
+    def _on_set_mode(self, now_ns: int, packet: DialectPacket) -> None:
         m = packet.message
         main, sub = m.custom_mode >> 16 & 0xFF, m.custom_mode >> 24
         px4 = self.autopilot_type == dialect.MAV_AUTOPILOT_PX4

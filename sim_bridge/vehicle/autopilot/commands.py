@@ -9,7 +9,7 @@ from collections.abc import Callable
 from math import isfinite
 
 from onboard.wire.geodesy import Geodetic
-from onboard.wire.mavlink.frames import dialect
+from onboard.wire.mavlink.dialect import dialect
 from sim_bridge.vehicle.autopilot import telemetry
 from sim_bridge.vehicle.autopilot.command import ACCEPTED, DENIED, FAILED, Command
 from sim_bridge.vehicle.autopilot.state import AutopilotState

@@ -12,7 +12,7 @@ from typing import ClassVar
 
 from onboard.core.math.vectors import Vec
 from onboard.wire.geodesy import Frame, Geodetic
-from onboard.wire.mavlink.frames import MavMessage, Sender, dialect
+from onboard.wire.mavlink.dialect import DialectSender, MavMessage, dialect
 from sim_bridge.vehicle.autopilot.health import Health
 from sim_bridge.vehicle.autopilot.parameters import Parameters
 from sim_bridge.vehicle.autopilot.setup import Setup
@@ -60,7 +60,7 @@ class AutopilotState(ABC):
     def _boot(self, now_ns: int) -> None:
         """Begin a life of the wire: sequence, time since boot and streams start anew."""
         self._boot_ns = now_ns
-        self._sender = Sender(self.system, COMPONENT, signing=self.setup.options.signing)
+        self._sender = DialectSender(self.system, COMPONENT, signing=self.setup.options.signing)
         self.streams = Streams(self.default_rates, now_ns)
 
     @property

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from math import atan2, cos, degrees, nan, sin, sqrt
 
 from onboard.core.math.vectors import Vec, clamp
-from onboard.wire.mavlink.frames import MavMessage, dialect
+from onboard.wire.mavlink.dialect import MavMessage, dialect
 from sim_bridge.vehicle.autopilot import health
 from sim_bridge.vehicle.autopilot.state import AutopilotState
 
