@@ -157,7 +157,7 @@ def speeds(run: Run) -> Drawing | None:
 def heights(run: Run) -> Drawing | None:
     """Height above the origin; none for a game in the plane where nobody climbs."""
     climbs = any(float(np.ptp(f.position[:, 2])) > 0.5 for f in run.flown.values())
-    if not run.flown or (run.setup is not None and run.setup.planar and not climbs):
+    if not run.flown or (run.setup is not None and run.setup.rules.planar and not climbs):
         return None
     figure, (axes,) = timed(run, ("height [m]",), 3.8)
     series = tuple(curve(axes, run, i, (f.t, -f.position[:, 2])) for i, f in sorted(run.flown.items()))

@@ -11,8 +11,9 @@ from collections.abc import Callable
 
 from onboard.agent.clocks import MasterClock
 from onboard.agent.journal import Journal
+from onboard.core.math.constants import NEVER, NS_PER_S
+from onboard.core.math.states import MateState
 from onboard.core.math.vectors import Vec
-from onboard.pilot.setup import MateState
 from onboard.runtime.protocols import Bus, Clock, Sample, Subscription
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus import topics
@@ -30,8 +31,6 @@ from onboard.wire.bus.messages import (
 
 MASTERS_MAX = 8
 SAY_AGAIN_S = 30.0  # a trouble that goes on is said again after this
-NEVER = -1e9
-_NS = 1_000_000_000
 
 
 class Heard:
@@ -116,7 +115,7 @@ class Table:
         return tuple(
             MateState(
                 heard.state.id,
-                (heard.state.stamp_ns - base_ns) / _NS,
+                (heard.state.stamp_ns - base_ns) / NS_PER_S,
                 Vec(*heard.state.position),
                 Vec(*heard.state.velocity),
             )
@@ -126,7 +125,7 @@ class Table:
     @property
     def now(self) -> float:
         """Monotonic time [s]."""
-        return self._clock.monotonic_ns() / _NS
+        return self._clock.monotonic_ns() / NS_PER_S
 
     def _take_setup(self, sample: Sample) -> None:
         setup = swarm.SETUP.decode(sample.payload, self.drops)

@@ -15,15 +15,18 @@ from onboard.agent.participation import Part
 from onboard.agent.readiness import lacking
 from onboard.agent.takeoff import TakeOff
 from onboard.agent.vehicle_link import Craft
-from onboard.autopilot.base import NEVER, Setpoint, Stage, Telemetry, Way
+from onboard.autopilot.base import Setpoint, Stage, Telemetry, Way
 from onboard.config.strict import ConfigError
+from onboard.core.game.rules import Target
+from onboard.core.math.constants import NEVER, NS_PER_S
+from onboard.core.math.states import Mate, carried
 from onboard.core.math.vectors import ZERO, Vec, along
-from onboard.core.safety.policy import Action, Cause, Mate, Seen
+from onboard.core.safety.policy import Action, Cause, Seen
 from onboard.core.safety.supervisor import Verdict, Watch, supervise
 from onboard.core.safety.words import ACTIONS, CAUSES
 from onboard.core.strategy.registry import EVADERS, PURSUERS
 from onboard.pilot.memory import Memory
-from onboard.pilot.pilot import Pilot, Thought
+from onboard.pilot.pilot import Pilot, PilotDecision
 from onboard.pilot.setup import GameSetup, Own, Side, TrackSample
 from onboard.runtime.plugins import evader_strategy, pursuer_strategy
 from onboard.runtime.protocols import Clock
@@ -34,7 +37,6 @@ SILENT_S = 1.0  # a link silent for longer explains that the autopilot changed t
 REGAIN_S = 6.0  # … for so long afterwards
 WIND_FRESH_S = 10.0
 TRAINING_SLICES = 2  # of about 1 ms, after each control step
-_NS = 1_000_000_000
 
 
 class Flying(NamedTuple):
@@ -56,7 +58,7 @@ class Acting:
         self.policy = limits.policy_of(config, None, True)
         self.flying: Flying | None = None
         self.why_not = ""  # why the setup at hand was refused
-        self.thought: Thought | None = None
+        self.thought: PilotDecision | None = None
         self.verdict: Verdict | None = None
         self.setpoint = ZERO  # [m/s; ground] let through in this step
         self.failures = 0  # of the strategy
@@ -127,16 +129,16 @@ class Acting:
 
     def measured(self, track: Track) -> None:
         """A measurement came: the predictor takes it now, so that no setpoint waits for that."""
-        at = (track.stamp_ns - self._base_ns) / _NS
+        at = (track.stamp_ns - self._base_ns) / NS_PER_S
         sample = TrackSample(track.id, at, Vec(*track.position), Vec(*track.velocity), track.covariance)
         self._memory.take((sample,))
         if self.thought is not None:  # in play: what the next step asks for is reckoned now
-            self._memory.predict(track.id, (self._clock.wall_ns() - self._base_ns) / _NS)
+            self._memory.predict(track.id, (self._clock.wall_ns() - self._base_ns) / NS_PER_S)
 
     def train(self, wall_ns: int) -> None:
         """Give the predictors a little time, after everything else is done."""
         if self.flying is not None:
-            self._memory.train((wall_ns - self._base_ns) / _NS, TRAINING_SLICES)
+            self._memory.train((wall_ns - self._base_ns) / NS_PER_S, TRAINING_SLICES)
 
     # ------------------------------------------------------------------ what the master says
 
@@ -259,19 +261,18 @@ class Acting:
 
     # ------------------------------------------------------------------ think, supervise, send
 
-    def _decide(self, now: float, wall_ns: int, own: Own, wind: Vec) -> Thought | None:
+    def _decide(self, now: float, wall_ns: int, own: Own) -> PilotDecision | None:
         """Ask the pilot."""
         flying, table = self.flying, self._table
         if flying is None:
             return None
         game = flying.game
-        if self.side is Side.EVADER and table.target is not None and game.target != table.target:
-            game = game._replace(has_target=True, target=table.target)
+        if self.side is Side.EVADER and table.target is not None and game.target.position != table.target:
+            game = game._replace(target=Target(True, table.target))
             self.flying = flying._replace(game=game)
-        at = (wall_ns - self._base_ns) / _NS
-        mates = table.mate_states(self._base_ns)
-        thought, self._memory = flying.pilot.step(at, own, (), mates, game, wind, self._memory)
-        return thought
+        at = (wall_ns - self._base_ns) / NS_PER_S
+        mates = tuple(carried(mate, at) for mate in table.mate_states(self._base_ns))
+        return flying.pilot.step(at, own, mates, game, self._memory)
 
     def _think(self, now: float, wall_ns: int, t: Telemetry, begun_ns: int) -> None:
         craft = self._craft
@@ -279,8 +280,8 @@ class Acting:
         wind = t.wind if not hovers and now - t.wind_at < WIND_FRESH_S else ZERO
         position = along(t.position, t.velocity, min(max(0.0, now - t.position_at), 0.5))
         try:
-            self.thought = self._decide(now, wall_ns, Own(position, t.velocity), wind)
-            self._alive_at = self._clock.monotonic_ns() / _NS
+            self.thought = self._decide(now, wall_ns, Own(position, t.velocity, wind))
+            self._alive_at = self._clock.monotonic_ns() / NS_PER_S
             self._failing = False
         except Exception as error:  # a strategy of another distribution may fail in any way
             self.failures += 1
@@ -288,7 +289,8 @@ class Acting:
                 self._journal.error("strategy", f"{type(error).__name__}: {error}")
             self._failing = True
         thought = self.thought
-        thinking = (self._clock.monotonic_ns() - begun_ns) / _NS  # a strategy that took too long has stalled
+        # A strategy that took too long has stalled.
+        thinking = (self._clock.monotonic_ns() - begun_ns) / NS_PER_S
         seen = Seen(
             now=now,
             id=self.config.id,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from datetime import UTC, datetime
 
+from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.protocols import Clock
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus.messages import Event, Severity
@@ -12,7 +13,6 @@ from onboard.wire.bus.topics import EVENTS, Delivery, key
 
 BURST = 20  # events of one kind within `WINDOW_S` before the rest are only counted
 WINDOW_S = 10.0
-_NS = 1_000_000_000
 
 
 class Journal:
@@ -53,7 +53,7 @@ class Journal:
     def say(self, severity: Severity, kind: str, text: str, level: str = "", module: str = "") -> None:
         """Publish and log one event; a flood of one kind is cut and counted."""
         now = self._clock.monotonic_ns()
-        recent = [at for at in self._recent.get(kind, ()) if now - at < WINDOW_S * _NS]
+        recent = [at for at in self._recent.get(kind, ()) if now - at < WINDOW_S * NS_PER_S]
         if len(recent) >= BURST:
             self._recent[kind] = recent
             self.suppressed += 1
@@ -67,5 +67,5 @@ class Journal:
             level=level, module=module, nonce=self._nonce,
         )  # fmt: skip
         self._publish(self._key, swarm.EVENT.encode(event), EVENTS.delivery)
-        when = datetime.fromtimestamp(stamp / _NS, UTC).strftime("%H:%M:%S.%f")[:-3]
+        when = datetime.fromtimestamp(stamp / NS_PER_S, UTC).strftime("%H:%M:%S.%f")[:-3]
         self._log(f"{when} {severity.value:7} vehicle {self._id} {kind}: {text}")
