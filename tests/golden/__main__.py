@@ -9,6 +9,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import shutil
 import sys
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
@@ -46,6 +47,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         work = partial(show, folder=options.write)
     else:
         work = partial(compare, found=FOUND)
+        shutil.rmtree(FOUND, ignore_errors=True)
         differs = same_arithmetic()
         if differs:
             print(f"not comparable bit by bit on this machine: {'; '.join(differs)}")

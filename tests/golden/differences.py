@@ -90,7 +90,10 @@ class Comparison:
     def _kind(self, stream: str, kind: str, second: int) -> list[str]:
         was = self._expected.seconds.get(stream, {}).get(kind, {}).get(str(second), f"0:{ABSENT}")
         now = self._found.seconds.get(stream, {}).get(kind, {}).get(str(second), f"0:{ABSENT}")
-        lines = [f"{kind}: expected {was.split(':')[0]} in second {second}, found {now.split(':')[0]}"]
+        expected_count, found_count = was.split(":")[0], now.split(":")[0]
+        alike = f"{found_count} in second {second}, as many as expected"
+        differ = f"expected {expected_count} in second {second}, found {found_count}"
+        lines = [f"{kind}: {alike if expected_count == found_count else differ}"]
         samples = self._expected.samples.get(stream, {}).get(kind, {})
         firsts = self._found.samples.get(stream, {}).get(kind, {})
         for at in sorted(map(int, samples)):

@@ -14,10 +14,10 @@ from pymavlink.dialects.v20 import all as dialect
 from tests.golden import adapter, capture, digests, translations
 from tests.golden.differences import Comparison, told, write_decoded
 from tests.golden.digests import Part
+from tests.support.paths import RECORDINGS
 
 HERE = Path(__file__).parent
 RECORDED = HERE / "recorded"
-RECORDINGS = HERE.parent / "field" / "recordings"
 COMMAND_S = 600.0
 
 

@@ -80,10 +80,10 @@ def test_newer_releases_in_the_index_change_nothing(tree: Path, tmp_path: Path) 
     lock = [
         wheels.write_wheel(index, "asking", "1.0", ["asked[more]>=1"]),
         wheels.write_wheel(index, "asked", "1.0", ["third>=1; extra == 'more'"], extra="more"),
-        wheels.write_wheel(index, "third", "1.0"),
+        wheels.write_wheel(index, "third", "1.0", ["beyond"]),  # not locked: whoever resolves must stop here
     ]
     (tree / "locks/all.lock").write_text("".join(map(wheels.locked, lock)), encoding="utf-8")
-    for name in ("asking", "asked", "third"):
+    for name in ("asking", "asked", "third", "beyond"):
         wheels.write_wheel(index, name, "2.0", extra="more")
     # The user's own settings, in pip's file: they count, and what pip says about them stays unsaid.
     settings = tmp_path / "pip.conf"
@@ -100,7 +100,7 @@ def test_newer_releases_in_the_index_change_nothing(tree: Path, tmp_path: Path) 
     )  # fmt: skip
     assert versions.stdout.split() == ["1.0", "1.0", "1.0"]
 
-    # The same index stops an installation that resolves.
+    # The same index stops an installation that resolves, with every release of pip.
     resolving = subprocess.run(
         [python, "-m", "pip", "install", "--dry-run", "--ignore-installed", "--require-hashes", "--no-index",
          "--find-links", index, "-r", tree / "locks/all.lock"],
