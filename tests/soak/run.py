@@ -30,7 +30,7 @@ from onboard.runtime.loop import run_virtual, virtual_clock  # noqa: E402
 from onboard.wire.bus import messages as swarm  # noqa: E402
 from onboard.wire.bus.messages import Command, CommandKind, Phase  # noqa: E402
 from onboard.wire.bus.topics import COMMAND, key  # noqa: E402
-from sim_bridge.rehearsal import Rehearsal  # noqa: E402
+from sim_bridge.rehearsal import Options, Rehearsal  # noqa: E402
 from tests.soak.faults import NAMES, OF_ALL, OF_ONE, Rng, Undo  # noqa: E402
 from tests.support.flights import flies  # noqa: E402
 
@@ -205,7 +205,7 @@ def play(number: int, seed: int, totals: Counter[str], seconds: float = GAME_S) 
         rng = np.random.default_rng((seed, number))
         kind = list(Kind)[number % len(Kind)]
         chase = scenario(kind, seed)
-        async with Rehearsal(chase, virtual_clock(), seed=seed + number, battery_s=1e9) as game:
+        async with Rehearsal(chase, virtual_clock(), Options(seed=seed + number, battery_s=1e9)) as game:
             soak = Soak(game, rng, totals)
             await soak.play(seconds)
             totals["simulated_s"] += round(soak.now)

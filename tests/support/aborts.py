@@ -13,7 +13,7 @@ from onboard.game.scenario import Flight, ImpairmentSpec, Parameters, Scenario, 
 from onboard.runtime.impairment import CLEAR, Impairment
 from onboard.runtime.loop import run_virtual, virtual_clock
 from onboard.wire.bus.messages import CommandKind, Phase
-from sim_bridge.rehearsal import Rehearsal
+from sim_bridge.rehearsal import Options, Rehearsal
 
 LOSS = 0.3
 WITHIN_S = 2.0
@@ -50,7 +50,7 @@ def trials(count: int, seed: int, loss: float = LOSS) -> list[Trial]:
 async def _trials(count: int, seed: int, loss: float) -> list[Trial]:
     rng = np.random.default_rng([seed, 1])
     found = []
-    async with Rehearsal(CHASE, virtual_clock(), seed=seed) as game:
+    async with Rehearsal(CHASE, virtual_clock(), Options(seed=seed)) as game:
         station = Station(game.broker.connect("gcs"), game.clock, game.game)
         task = asyncio.create_task(station.run())
         ids = CHASE.ids

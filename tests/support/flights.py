@@ -21,7 +21,7 @@ from onboard.runtime.loop import virtual_clock
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus.messages import Command, CommandKind, CommandReply, Phase
 from onboard.wire.bus.topics import COMMAND, key
-from sim_bridge.rehearsal import Rehearsal
+from sim_bridge.rehearsal import Options, Rehearsal
 from sim_bridge.vehicle.autopilot.autopilot import Autopilot
 
 EVADER, PURSUER, MATE = 1, 2, 3
@@ -55,7 +55,7 @@ def fenced() -> FenceSpec:
 
 def game_of(scenario: Scenario, **kinds: Any) -> Rehearsal:
     """The rehearsal of a scenario on the running virtual loop."""
-    return Rehearsal(scenario, virtual_clock(), **kinds)
+    return Rehearsal(scenario, virtual_clock(), Options(**kinds))
 
 
 async def under_way(game: Rehearsal, seconds: float = 5.0) -> None:
