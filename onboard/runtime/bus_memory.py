@@ -156,6 +156,7 @@ class MemoryBus:
         self._reliable_ns = 0  # arrival of the last reliable message: the next comes no sooner
         self._reliable: deque[tuple[bytes, Callable[[bytes], None]]] = deque(maxlen=CALLS_MAX)
         self._pumping = False
+        self.tap: Callable[[Sample], None] | None = None  # is told of everything delivered to this connection
         self._online = False
         self._closed = False
 
@@ -275,6 +276,14 @@ class MemoryBus:
             counts.update({f"in_{cause}": count for cause, count in self.channel.counts.items()})
         return counts
 
+    def cut(self) -> None:
+        """From now on nothing goes out or comes in, and nobody is told: as with a radio out of reach."""
+        self._online = False
+
+    def mend(self) -> None:
+        """End a `cut`: what publishers keep is caught up with, as after a broker's return."""
+        self._returned()
+
     async def close(self) -> None:
         """Leave the broker; tokens and kept values go with it."""
         if self._closed:
@@ -338,6 +347,8 @@ class MemoryBus:
                         continue
                     listener.had[source] = number
                 self._counts["received"] += 1
+                if self.tap is not None:
+                    self.tap(Sample(sample.key, payload))
                 listener.receiver(Sample(sample.key, payload))
 
         self._soon(delivery, sample.payload, arrived)

@@ -17,8 +17,8 @@ import pytest
 from onboard.game.scenario import Kind
 from onboard.wire.mavlink.tlog import read_tlog
 from tests.support.paths import ROOT
+from tests.support.real_time import until
 from tests.support.udp_fleet import HOST, fleet, free_port
-from tests.support.waiting import until
 
 PROGRAM = ROOT / ".venv-mavproxy" / "bin" / "mavproxy.py"
 KINDS = pytest.mark.parametrize("kind", list(Kind), ids=lambda kind: kind.value)

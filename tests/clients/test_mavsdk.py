@@ -12,7 +12,7 @@ import pytest
 
 from onboard.core.math.vectors import Vec, norm, sub
 from onboard.game.scenario import Kind
-from tests.support import waiting
+from tests.support import real_time
 from tests.support.udp_fleet import Fleet, fleet, free_port
 
 mavsdk = pytest.importorskip("mavsdk.asyncio", reason="MAVSDK is not installed (extra `mavsdk`)")
@@ -48,7 +48,7 @@ async def systems(sdk: Any, count: int) -> dict[int, Any]:
 async def until(condition: Callable[[], bool], what: str, seconds: float = 12.0) -> None:
     """Wait for something to become true."""
     try:
-        await waiting.until(condition, seconds)
+        await real_time.until(condition, seconds)
     except TimeoutError:
         pytest.fail(f"not within {seconds:g} s: {what}")
 

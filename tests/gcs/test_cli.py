@@ -25,8 +25,8 @@ from onboard.runtime.clock import RealClock
 from onboard.runtime.resources import configs
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import CommandKind, Phase
-from tests.support.crews import Crew
-from tests.support.radio import GAME, START_NS, Tower, on_bus, phase, setup
+from tests.support.answering_agents import AnsweringAgent
+from tests.support.sample_messages import GAME, START_NS, Tower, on_bus, phase, setup
 
 ROOT = Path(cli.__file__).parent.parent
 PATIENCE_S = 30.0
@@ -115,7 +115,7 @@ async def field(endpoint: str, count: int = 3, deaf: int = 0):
     """`count` vehicles on a bus that listens, and `deaf` more in the game that are not there."""
     bus = await open_zenoh(endpoint, listen=True)
     clock = RealClock()
-    crews = [Crew(bus, clock, i) for i in range(1, count + 1)]
+    crews = [AnsweringAgent(bus, clock, i) for i in range(1, count + 1)]
     bus.publish(*on_bus(setup(count + deaf)), topics.SETUP.delivery)
     bus.publish(*on_bus(phase(Phase.STAGING)), topics.PHASE.delivery)
 

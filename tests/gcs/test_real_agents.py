@@ -16,8 +16,8 @@ from gcs.picture.values import Presence
 from gcs.station import Station
 from onboard.runtime.bus_zenoh import open_zenoh
 from onboard.runtime.clock import RealClock
-from tests.support.buses import free_port
-from tests.support.waiting import until
+from tests.support.bus_stages import free_port
+from tests.support.real_time import until
 
 ROOT = Path(onboard.__file__).parents[1]
 LOST_S, BACK_S = 1.5, 2.0  # promised

@@ -37,9 +37,9 @@ def sent_beside(scenario_file: Path, frames: Sequence[tuple[int, bytes]], after_
     """What the evader's agent sends to its autopilot in a game on virtual time in which that autopilot is
     a recording: `frames` are (time since the game's beginning [ns], frame). The other vehicles are simulated.
     The game goes on for `after_s` without a frame, and the agents end as at SIGTERM."""
+    from onboard.game.scenario import load
     from onboard.runtime.links import memory_pair
     from onboard.runtime.loop import run_virtual, virtual_clock
-    from onboard.game.scenario import load
     from sim_bridge.rehearsal import Rehearsal
 
     async def play() -> list[Sent]:

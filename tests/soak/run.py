@@ -26,13 +26,12 @@ import psutil  # noqa: E402
 
 from onboard.game.scenario import Flight, ImpairmentSpec, Kind, Parameters, Scenario, VehicleSpec  # noqa: E402
 from onboard.pilot.predictor_choice import Predicting  # noqa: E402
-from onboard.runtime.loop import run_virtual, virtual_clock  # noqa: E402
+from onboard.runtime.loop import run_virtual  # noqa: E402
 from onboard.wire.bus import messages as swarm  # noqa: E402
 from onboard.wire.bus.messages import Command, CommandKind, Phase  # noqa: E402
 from onboard.wire.bus.topics import COMMAND, key  # noqa: E402
-from sim_bridge.rehearsal import Rehearsal  # noqa: E402
 from tests.soak.faults import NAMES, OF_ALL, OF_ONE, Rng, Undo  # noqa: E402
-from tests.support.flights import flies  # noqa: E402
+from tests.support.whole_games import WholeGame, flies, game_of  # noqa: E402
 
 GAME_S = 600.0
 LOOK_S = 0.1
@@ -83,7 +82,7 @@ class Vehicle:
 class Soak:
     """One game and its faults."""
 
-    def __init__(self, game: Rehearsal, rng: Rng, totals: Counter[str]) -> None:
+    def __init__(self, game: WholeGame, rng: Rng, totals: Counter[str]) -> None:
         self.game = game
         self.rng = rng
         self.totals = totals
@@ -99,7 +98,7 @@ class Soak:
     async def play(self, seconds: float) -> None:
         """Strike and watch for so long, then let all faults pass and demand that everybody flies."""
         game = self.game
-        assert await game.until(self.all_fly, 60.0), game.told[-9:]
+        await game.forward(60.0, until=self.all_fly)
         end, next_at = self.now + seconds, self.now + 2.0
         while self.now < end or any(v.active for v in self.vehicles.values()) or not self.all_fly():
             if game.phase is not Phase.RUNNING:
@@ -109,7 +108,7 @@ class Soak:
                 self.strike()
                 next_at = self.now + float(self.rng.uniform(*CALM_S))
             self.heal()
-            await game.until(lambda: False, LOOK_S)
+            await game.forward(LOOK_S)
             self.watch()
             await self.operate()
 
@@ -205,7 +204,7 @@ def play(number: int, seed: int, totals: Counter[str], seconds: float = GAME_S) 
         rng = np.random.default_rng((seed, number))
         kind = list(Kind)[number % len(Kind)]
         chase = scenario(kind, seed)
-        async with Rehearsal(chase, virtual_clock(), seed=seed + number, battery_s=1e9) as game:
+        async with game_of(chase, seed=seed + number, battery_s=1e9, any_error=True) as game:
             soak = Soak(game, rng, totals)
             await soak.play(seconds)
             totals["simulated_s"] += round(soak.now)

@@ -15,7 +15,7 @@ from gcs.picture import journal
 from gcs.picture.values import Picture
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus.messages import Command, CommandKind, CommandReply, Phase
-from tests.support.radio import START_NS, Tower, decision, health, phase, setup, state
+from tests.support.sample_messages import START_NS, Tower, decision, health, phase, setup, state
 
 
 class Desk:

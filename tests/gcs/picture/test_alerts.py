@@ -13,7 +13,7 @@ from gcs.picture.alerts import CLEAR_NS, Alerts, Finding
 from onboard.core.math.vectors import Vec
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus.messages import Phase, Severity
-from tests.support.radio import (
+from tests.support.sample_messages import (
     NS,
     START_NS,
     Tower,

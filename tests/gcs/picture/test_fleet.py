@@ -15,7 +15,7 @@ from gcs.picture.watch import Watch
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import Phase, Role
-from tests.support.radio import (
+from tests.support.sample_messages import (
     GAME,
     NS,
     START_NS,

@@ -20,8 +20,8 @@ from gcs.recording.recorder import Recorder, Status, remark_of
 from onboard.config.strict import ConfigError
 from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus.messages import Severity
-from tests.support.chase import EPOCH_NS, Item, chase
-from tests.support.recordings import CHILD, kill_while_recording, read
+from tests.support.chase_messages import EPOCH_NS, Item, chase
+from tests.support.recording_process import CHILD, kill_while_recording, read
 
 
 def recorded(path: Path, items: list[Item], **options: object) -> Recorder:

@@ -19,8 +19,8 @@ from gcs.report.program import read_run, write_report
 from onboard.config.strict import ConfigError
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus import topics
-from tests.support.chase import EPOCH_NS, Item
-from tests.support.runs import flight, make_run, make_tlogs
+from tests.support.chase_messages import EPOCH_NS, Item
+from tests.support.run_folders import flight, make_run, make_tlogs
 
 FIGURES = ["space", "plan", "distances", "rules", "speeds", "heights", "wind", "links", "latencies"]
 

@@ -16,8 +16,8 @@ from onboard.config.strict import ConfigError
 from onboard.runtime.bus_zenoh import LEASE_MS, open_zenoh
 from onboard.runtime.inbox import QUEUE_MAX, Inbox
 from onboard.wire.bus.topics import Delivery
-from tests.support.buses import Heard, free_port
-from tests.support.waiting import until
+from tests.support.bus_stages import Heard, free_port
+from tests.support.real_time import until
 
 STATE = "apollonius/range/vehicles/2/state"
 

@@ -14,8 +14,8 @@ from onboard.config.strict import ConfigError
 from onboard.runtime.links import PENDING_MAX, UdpLink, memory_pair, open_link, open_udp
 from onboard.runtime.protocols import Link
 from onboard.runtime.serial_link import BACKLOG_MAX
-from tests.support.virtual import virtual
-from tests.support.waiting import until
+from tests.support.real_time import until
+from tests.support.virtual_time import virtual
 
 
 class Inbox:

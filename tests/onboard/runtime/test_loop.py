@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.clock import VirtualClock
 from onboard.runtime.loop import EPOCH_NS, VirtualLoop, VirtualTimeError, run_virtual, virtual_clock
-from tests.support.virtual import virtual
+from tests.support.virtual_time import virtual
 
 
 @virtual

@@ -19,7 +19,7 @@ import psutil
 import pytest
 
 from onboard.wire.mavlink.tlog import read_tlog
-from tests.support.programs import (
+from tests.support.sim_bridge_process import (
     bridge,
     descendants,
     free_port,

@@ -21,10 +21,10 @@ from onboard.wire.mavlink.commands import set_message_interval
 from onboard.wire.mavlink.frames import dialect
 from sim_bridge.programs.serve import Options, serve, serve_scenario
 from sim_bridge.world.radio import CALLERS_MAX, Radio, agent_ports
-from tests.support.buses import Heard, free_port
-from tests.support.companions import Companion
-from tests.support.scripted import ScriptedAgent
-from tests.support.waiting import until
+from tests.support.bus_stages import Heard, free_port
+from tests.support.real_time import until
+from tests.support.scripted_agents import ScriptedAgent
+from tests.support.scripted_companion import Companion
 
 SCENARIO = Scenario(
     name="served",

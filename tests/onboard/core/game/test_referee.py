@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from onboard.core.game.referee import Score, Verdict, judge, opening, passage
 from onboard.core.math.vectors import ZERO, Vec
-from tests.support.situations import points
+from tests.support.random_situations import points
 
 FRESH = Score(Verdict.RUNNING, 0.0, -1, 1e300, 0.0)
 

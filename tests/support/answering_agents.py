@@ -10,7 +10,7 @@ from onboard.runtime.protocols import Bus
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import Command, CommandReply
-from tests.support.radio import GAME, health, on_bus, state
+from tests.support.sample_messages import GAME, health, on_bus, state
 
 MODES = {
     "abort": "LOITER", "hold": "LOITER", "return": "RTL", "land": "LAND",
@@ -18,7 +18,7 @@ MODES = {
 }  # fmt: skip
 
 
-class Crew:
+class AnsweringAgent:
     """One vehicle's agent: obeys at once, and its autopilot reports the new mode `takes_s` later."""
 
     def __init__(
