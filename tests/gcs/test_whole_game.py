@@ -71,10 +71,10 @@ def test_an_agent_that_falls_silent_is_lost_after_one_second_and_seen_within_one
     @virtual
     async def story() -> None:
         async with game_of_six() as (game, station):
+            game.expects(4, "supervisor_end")
             bus = game.agents[4].bus
             if how == "killed":
                 game.kill_agent(4)  # token and all
-                await bus.close()
             elif how == "silent":
                 bus.publish = lambda *_: None  # the process is stopped; its token stays
             else:

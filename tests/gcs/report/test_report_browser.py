@@ -11,6 +11,7 @@ import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from gcs.report.program import write_report
+from tests.support.real_time import patience
 from tests.support.run_folders import make_run
 
 BROWSERS = ("/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome")
@@ -23,6 +24,7 @@ OPTIONS = (
     "--disable-component-update",
     "--disable-sync",
 )
+PATIENCE_MS = 1000.0 * patience(20.0)
 CAMERA = (
     "JSON.parse(JSON.stringify(document.getElementById('figure-space')._fullLayout.scene._scene.getCamera()))"
 )
@@ -65,8 +67,8 @@ def test_the_report_opens_without_error_or_request_and_its_3d_view_turns(tab: Pa
     tab.on("pageerror", lambda error: errors.append(str(error)))
     tab.on("request", lambda request: requests.append(request.url))
     tab.goto(report.as_uri())
-    tab.wait_for_function("document.querySelectorAll('.figure .main-svg').length >= 9", timeout=60_000)
-    tab.wait_for_function(f"{CAMERA}.eye !== undefined", timeout=60_000)
+    tab.wait_for_function("document.querySelectorAll('.figure .main-svg').length >= 9", timeout=PATIENCE_MS)
+    tab.wait_for_function(f"{CAMERA}.eye !== undefined", timeout=PATIENCE_MS)
 
     assert tab.locator("h1").inner_text() == "Evader captured by pursuer 3 after 12.3 s"
     before: Any = tab.evaluate(CAMERA)
@@ -77,7 +79,7 @@ def test_the_report_opens_without_error_or_request_and_its_3d_view_turns(tab: Pa
     tab.mouse.down()
     tab.mouse.move(middle[0] + 180, middle[1] + 30, steps=8)
     tab.mouse.up()
-    tab.wait_for_function(f"Math.abs({CAMERA}.eye.x - ({before['eye']['x']})) > 0.1", timeout=30_000)
+    tab.wait_for_function(f"Math.abs({CAMERA}.eye.x - ({before['eye']['x']})) > 0.1", timeout=PATIENCE_MS)
     after: Any = tab.evaluate(CAMERA)
 
     def far(camera: Any) -> float:
