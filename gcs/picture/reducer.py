@@ -214,8 +214,8 @@ class Fleet:
         setup = swarm.SETUP.decode(payload, self.drops)
         if setup is None:
             return None
-        lengths = (setup.capture_radius, setup.safety_distance, setup.separation)
-        sizes = (*lengths, *(member.speed_max for member in setup.roster))
+        lengths = (setup.rules.R, setup.rules.rho, setup.rules.separation)
+        sizes = (*lengths, *(member.speed for member in setup.roster))
         if not _sane(*sizes) or min(sizes) < 0.0:
             self.drops["implausible"] += 1
             return None

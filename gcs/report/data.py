@@ -102,15 +102,15 @@ class Run(NamedTuple):
     def capture_radius(self) -> float | None:
         """R [m]."""
         if self.setup is not None:
-            return self.setup.capture_radius
-        return self.scenario.parameters.R if self.scenario is not None else None
+            return float(self.setup.rules.R)
+        return self.scenario.rules.R if self.scenario is not None else None
 
     @property
     def safety_distance(self) -> float | None:
         """ρ [m]."""
         if self.setup is not None:
-            return self.setup.safety_distance
-        return self.scenario.rho if self.scenario is not None else None
+            return float(self.setup.rules.rho)
+        return self.scenario.rules.rho if self.scenario is not None else None
 
     @property
     def fence(self) -> Fence | None:
@@ -121,7 +121,7 @@ class Run(NamedTuple):
     def flat(self) -> bool:
         """Whether distances are judged horizontally."""
         if self.setup is not None:
-            return self.setup.planar or self.setup.field_profile
+            return self.setup.flat
         return self.scenario is not None and (self.scenario.planar or self.scenario.flight.field_profile)
 
     @property

@@ -13,7 +13,6 @@ from onboard.config.strict import ConfigError
 from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus.messages import Role, Triple
 from onboard.wire.geodesy import Frame
-from onboard.wire.mavlink.telemetry import decode
 from onboard.wire.mavlink.tlog import read_tlog
 from onboard.wire.mavlink.values import AirData, GlobalPosition, SysStatus, Wind
 
@@ -91,7 +90,7 @@ def _read(path: Path, system: int) -> _Log:
     for stamp_ns, packet in read_tlog(data, log.causes):
         if packet.system != system:
             continue
-        value = decode(packet.message)
+        value = packet.value
         if isinstance(value, GlobalPosition):
             log.places.append((stamp_ns, value))
         elif isinstance(value, AirData):

@@ -157,7 +157,7 @@ def vehicles(run: Run) -> str:
                 f"<span class='dot' style='background:{colors[vehicle_id]}'></span>"
                 + escape(run.role_of(vehicle_id)),
                 escape(member.strategy or "paper") if member is not None else "",
-                f"{member.speed_max:g}" if member is not None else "",
+                f"{member.speed:g}" if member is not None else "",
                 mean,
                 f"{nearest[vehicle_id]:.2f}" if vehicle_id in nearest else "",
                 f"{median:.0f} / {most:.0f}" if len(late) else "",
@@ -224,16 +224,16 @@ def parameters(run: Run) -> str:
     setup = run.setup
     if setup is None:
         return ""
-    origin = setup.origin
+    origin, rules = setup.origin, setup.rules
     pairs = {
         "scenario": f"{setup.scenario} ({setup.scenario_hash})",
         "game, master": f"{setup.game}, {setup.master}",
         "origin": f"{origin.latitude_deg:.6f}°, {origin.longitude_deg:.6f}°, {origin.altitude_m:g} m",
-        "R, ρ, ε": f"{setup.capture_radius:g} m, {setup.safety_distance:g} m, {setup.epsilon_min:g} m",
-        "λ, β": f"{setup.lambda_:g}, {setup.beta:g}",
-        "separation": f"{setup.separation:g} m" if setup.separation else "off",
-        "horizon": f"{setup.horizon:g} s",
-        "game": "plane" if setup.planar else "in space",
+        "R, ρ, ε": f"{rules.R:g} m, {rules.rho:g} m, {rules.epsilon_min:g} m",
+        "λ, β": f"{rules.lambda_:g}, {rules.beta:g}",
+        "separation": f"{rules.separation:g} m" if rules.separation else "off",
+        "horizon": f"{rules.horizon:g} s",
+        "game": "plane" if rules.planar else "in space",
         "error of tracks": f"{setup.track_sigma:g} m",
         "seed": str(setup.seed),
     }

@@ -17,8 +17,8 @@ from onboard.core.math.angles import wrap
 from onboard.core.math.constants import NEVER, STANDARD_GRAVITY
 from onboard.core.math.vectors import Vec, add, clamp, norm
 from onboard.wire.mavlink import commands
-from onboard.wire.mavlink.commands import Target
-from onboard.wire.mavlink.frames import MavMessage
+from onboard.wire.mavlink.commands import Outgoing, RollTarget, Target
+from onboard.wire.mavlink.ids import CommandId
 from onboard.wire.mavlink.modes import Kind
 from onboard.wire.mavlink.values import CommandAck
 
@@ -33,8 +33,11 @@ SPEED_STEP = 0.2  # [m/s] that is a new airspeed
 LOOK_AHEAD = 3.3  # [s] a climb rate is an altitude this far ahead, at rate 0
 DRIFT = 8.0  # [m] by which the reference of altitude may leave the aircraft
 CREEP = 3.0  # [m/s; ground] below this there is no course: the nose counts
-CHANGE_SPEED, CHANGE_ALTITUDE, CHANGE_HEADING = 43000, 43001, 43002
-NAMES = {CHANGE_SPEED: "airspeed", CHANGE_ALTITUDE: "altitude", CHANGE_HEADING: "course"}
+NAMES: dict[int, str] = {
+    CommandId.CHANGE_SPEED: "airspeed",
+    CommandId.CHANGE_ALTITUDE: "altitude",
+    CommandId.CHANGE_HEADING: "course",
+}
 FAULTS = {
     "not_finite": "a setpoint that is no number was not sent",
     "no_direction": "a plane cannot stand still: give no setpoint, or leave to loiter",
@@ -136,15 +139,16 @@ class ArduPlaneAdapter:
     def acknowledge(self, now: float, ack: CommandAck) -> None:
         """Hear the answer to a command."""
         self._control.acknowledge(now, ack)
-        if ack.command not in NAMES:
+        name = NAMES.get(ack.command)
+        if name is None:
             return
         if ack.result == 0:
             self._refused = {pair for pair in self._refused if pair[0] != ack.command}
-            if ack.command != CHANGE_HEADING:
-                (self._altitude if ack.command == CHANGE_ALTITUDE else self._speed).open = False
+            if ack.command != CommandId.CHANGE_HEADING:
+                (self._altitude if ack.command == CommandId.CHANGE_ALTITUDE else self._speed).open = False
         elif (ack.command, ack.result) not in self._refused:
             self._refused.add((ack.command, ack.result))
-            text = f"{NAMES[ack.command]} refused: result {ack.result}"
+            text = f"{name} refused: result {ack.result}"
             self._notes.append(Note("warning", "setpoint_refused", text))
 
     def step(self, now: float, telemetry: Telemetry, setpoint: Setpoint | None) -> Step:
@@ -173,7 +177,7 @@ class ArduPlaneAdapter:
             messages.append(commands.change_speed(self._to, speed))
         return Step(tuple(messages), tuple(notes))
 
-    def _turn(self, now: float, telemetry: Telemetry, ground: Vec) -> list[MavMessage]:
+    def _turn(self, now: float, telemetry: Telemetry, ground: Vec) -> list[Outgoing]:
         if ground.x * ground.x + ground.y * ground.y < 1e-6:
             return []
         course = atan2(ground.y, ground.x)
@@ -182,7 +186,7 @@ class ArduPlaneAdapter:
                 return []
             self._turned_at = now
             bank = bank_for(course, telemetry.velocity, telemetry.yaw, self.envelope.bank_max)
-            return [commands.roll_target(self._to, telemetry.time_boot_s, bank)]
+            return [RollTarget(self._to, telemetry.time_boot_s, bank)]
         stale = now - self._turned_at >= 1.0  # it may have been lost
         new = self._course == NEVER or abs(wrap(course - self._course)) >= COURSE_STEP
         if now - self._turned_at < COURSE_EVERY or not (new or stale):
@@ -191,7 +195,7 @@ class ArduPlaneAdapter:
         lateral = STANDARD_GRAVITY * tan(self.envelope.bank_max)
         return [commands.change_heading(self._to, course, lateral)]
 
-    def _climb(self, now: float, telemetry: Telemetry, ground: Vec) -> list[MavMessage]:
+    def _climb(self, now: float, telemetry: Telemetry, ground: Vec) -> list[Outgoing]:
         """Altitude that follows the commanded climb: a reference integrates it, so that level stays level."""
         climb = clamp(-ground.z, -self.envelope.sink_max, self.envelope.climb_max)
         present = telemetry.altitude_m

@@ -17,7 +17,7 @@ from typing import NamedTuple, Protocol
 
 from onboard.core.math.constants import NEVER
 from onboard.core.math.vectors import ZERO, Vec
-from onboard.wire.mavlink.frames import MavMessage
+from onboard.wire.mavlink.commands import Outgoing
 from onboard.wire.mavlink.modes import Kind
 from onboard.wire.mavlink.values import UNKNOWN, CommandAck
 
@@ -115,7 +115,7 @@ class Note(NamedTuple):
 class Step(NamedTuple):
     """What one step wants done: messages to send, in order, and notes."""
 
-    messages: tuple[MavMessage, ...] = ()
+    messages: tuple[Outgoing, ...] = ()
     notes: tuple[Note, ...] = ()
 
 

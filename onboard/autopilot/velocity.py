@@ -14,8 +14,7 @@ from onboard.autopilot.base import Envelope, Note, Setpoint, Stage, Step, Teleme
 from onboard.autopilot.envelope import Shaper
 from onboard.autopilot.mode_control import Control
 from onboard.core.math.vectors import Vec, add, norm
-from onboard.wire.mavlink import commands
-from onboard.wire.mavlink.commands import Target
+from onboard.wire.mavlink.commands import Target, VelocityTarget
 from onboard.wire.mavlink.modes import Kind
 from onboard.wire.mavlink.values import CommandAck
 
@@ -108,7 +107,7 @@ class VelocityAdapter:
         self._complained = False
         wanted = self._shaper.shape(now, wanted)
         yaw = yaw_along(wanted, telemetry.yaw) if px4 else None
-        messages.append(commands.velocity_target(self._to, telemetry.time_boot_s, wanted, yaw=yaw))
+        messages.append(VelocityTarget(self._to, telemetry.time_boot_s, wanted, yaw))
         return Step(tuple(messages), tuple(notes))
 
     def _may_send(self, px4: bool) -> bool:

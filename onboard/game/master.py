@@ -12,7 +12,8 @@ from collections.abc import Mapping
 from enum import Enum
 from typing import NamedTuple
 
-from onboard.core.game.referee import Score, Verdict, judge, opening, passage
+from onboard.core.game.referee import GameResult, Score, Step, judge, opening, passage
+from onboard.core.game.rules import Target
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import ZERO, Vec, along, sub
 from onboard.wire.bus import messages as swarm
@@ -35,7 +36,7 @@ LISTEN_NS = 12 * NS_PER_S // 10  # a master that holds the lease speaks twice in
 HEALTH_NS = 3 * NS_PER_S  # an agent silent for longer is not there: six heartbeats lost in a row
 SUPERSEDED_NS = 15 * NS_PER_S // 10  # an agent's earlier process counts as gone after this silence
 READY_STAGES = ("ready", "acting")
-_WORDS = {Verdict.CAPTURED: "captured", Verdict.ARRIVED: "arrived", Verdict.ESCAPED: "escaped"}
+_WORDS = {GameResult.CAPTURED: "captured", GameResult.ARRIVED: "arrived", GameResult.ESCAPED: "escaped"}
 
 
 class Standing(Enum):
@@ -88,7 +89,7 @@ class GameMaster:
         self.nearest: dict[int, float] = {}  # smallest distance of each pursuer to the evader so far [m]
         self._timing = timing
         self._target = target
-        self._flat = setup.planar or setup.field_profile
+        self._rules = setup.rules.core()
         self._agents = {member.id: _Agent() for member in setup.roster}
         self._evader = next(member.id for member in setup.roster if member.role is Role.EVADER)
         self._pursuers = tuple(member.id for member in setup.roster if member.role is Role.PURSUER)
@@ -260,29 +261,27 @@ class GameMaster:
 
     def _judge(self, wall_ns: int, now_ns: int, here: dict[int, Vec]) -> None:
         assert self.score is not None
-        setup, evader = self.setup, self._evader
+        evader = self._evader
         start, dt = (self._before_ns - self.t0_ns) / NS_PER_S, (wall_ns - self._before_ns) / NS_PER_S
         ids = tuple(id for id in self._pursuers if id in self._before and id in here)
         before = tuple(self._before[id] for id in ids)
         after = tuple(here[id] for id in ids)
         target = ZERO if self._target is None else self._judged(self._target)
-        self.score = score = judge(
-            self.score, start, dt, self._before[evader], here[evader], before, after,
-            setup.capture_radius, setup.safety_distance, self._target is not None, target,
-            setup.epsilon_min, setup.horizon,
-        )  # fmt: skip
+        step = Step(start, dt, self._before[evader], here[evader], before, after)
+        goal = Target(self._target is not None, target)
+        self.score = score = judge(self.score, step, self._rules, goal)
         played = min(1.0, (score.time - start) / dt)  # a game ends within a step
         end = _part(self._before[evader], here[evader], played)
         for id, p0, p1 in zip(ids, before, after, strict=True):
             seen = passage(p0, _part(p0, p1, played), self._before[evader], end, 0.0).smallest
             self.nearest[id] = min(self.nearest.get(id, seen), seen)
-        if score.verdict != Verdict.RUNNING:
+        if score.verdict != GameResult.RUNNING:
             captor = ids[score.captor] if score.captor >= 0 else 0
-            self._end(_WORDS[Verdict(score.verdict)], score.time, captor, wall_ns, now_ns, "")
+            self._end(_WORDS[GameResult(score.verdict)], score.time, captor, wall_ns, now_ns, "")
 
     def _judged(self, position: Vec) -> Vec:
         """Plane games and field profiles are judged horizontally."""
-        return Vec(position.x, position.y, 0.0) if self._flat else position
+        return Vec(position.x, position.y, 0.0) if self.setup.flat else position
 
     def _elapsed(self, wall_ns: int) -> float:
         return max(0.0, (wall_ns - self.t0_ns) / NS_PER_S) if self.phase is Phase.RUNNING else 0.0

@@ -36,7 +36,7 @@ from onboard.runtime.clock import RealClock
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import Master, Phase, PhaseChange, Role, State, Track
-from onboard.wire.mavlink.frames import Sender
+from onboard.wire.mavlink.dialect import DialectSender
 from onboard.wire.mavlink.signing import MemoryStore, Signing
 from sim_bridge.world.world import World
 from tests.support import benchmark_record
@@ -208,7 +208,7 @@ class Stage:
         autopilot = self.world.vehicles[PURSUER].autopilot
         if signing is not None:
             autopilot.setup = autopilot.setup._replace(signing=signing)
-            autopilot._sender = Sender(PURSUER, 1, signing=signing)
+            autopilot._sender = DialectSender(PURSUER, 1, signing=signing)
         self._begun_ns = self._clock.wall_ns()
 
     async def run(self) -> None:

@@ -10,7 +10,8 @@ from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import ZERO, Vec, distance
 from onboard.game.scenario import Kind, VehicleSpec
 from onboard.wire.geodesy import Frame
-from onboard.wire.mavlink.frames import Framer, Sender, dialect
+from onboard.wire.mavlink.dialect import DialectSender, dialect, dialect_packet
+from onboard.wire.mavlink.frames import Framer
 from sim_bridge.vehicle.autopilot.autopilot import Autopilot
 from sim_bridge.vehicle.autopilot.make import autopilot_for
 from sim_bridge.vehicle.flight.kinematic import kinematic, start_motion
@@ -59,7 +60,7 @@ class FlownAutopilot:
         self.autopilot: Autopilot = autopilot_for(
             spec, kind, system, ORIGIN, start, airborne=airborne, epoch_ns=EPOCH_NS, **more
         )
-        self.client = Sender(*(client or (system, COMPANION)))
+        self.client = DialectSender(*(client or (system, COMPANION)))
         self.framer = Framer()
         self.heard: list[tuple[int, Any]] = []  # (now_ns, message) of everything it sent
         self.frames: list[bytes] = []
@@ -122,7 +123,7 @@ class FlownAutopilot:
         now = f"{self.now_ns / NS_PER_S:.2f} s: {self.mode} at {self.position}, velocity {self.velocity}"
         return "\n".join([now, *self.texts()[-LAST:], *acks[-LAST:]])
 
-    def send(self, message: Any, sender: Sender | None = None) -> None:
+    def send(self, message: Any, sender: DialectSender | None = None) -> None:
         """One message from the companion (or another)."""
         self.autopilot.receive(self.now_ns, (sender or self.client).pack(message), "peer")
         self._collect()
@@ -130,7 +131,8 @@ class FlownAutopilot:
     def _collect(self) -> None:
         for frame in self.autopilot.outgoing():
             self.frames.append(frame)
-            self.heard += [(self.now_ns, packet.message) for packet in self.framer.feed(frame)]
+            packets = self.framer.feed(frame)
+            self.heard += [(self.now_ns, dialect_packet(packet.raw).message) for packet in packets]
 
     def got(self, name: str, since_ns: int = 0) -> list[Any]:
         """Messages of a kind that it has sent."""

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 from onboard.core.math.constants import NS_PER_S
 from onboard.game.scenario import Kind
+from onboard.wire.mavlink.dialect import dialect_packet
 from onboard.wire.mavlink.tlog import read_tlog
 from tests.support.flown_autopilot import FlownAutopilot
 from tests.support.paths import RECORDINGS
@@ -63,8 +64,8 @@ def compared(kind: Kind) -> Comparison:
     entries = list(read_tlog((RECORDINGS / FILES[kind]).read_bytes()))
     zero = entries[0].stamp_ns
     timed = [((e.stamp_ns - zero) / NS_PER_S, e.packet) for e in entries]
-    requests = [(t, p.message) for t, p in timed if p.component == COMPANION]
-    real = Stream([(t, p.message) for t, p in timed if p.component == 1])
+    requests = [(t, dialect_packet(p.raw).message) for t, p in timed if p.component == COMPANION]
+    real = Stream([(t, dialect_packet(p.raw).message) for t, p in timed if p.component == 1])
     ready, healthy = READY[kind]
     flown = FlownAutopilot(kind, airborne=False, ready_s=ready)
     flown.autopilot.setup = flown.autopilot.setup._replace(healthy_s=healthy)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from math import cos, isfinite, sin
 
 from onboard.core.math.vectors import ZERO, Vec, is_finite
-from onboard.wire.mavlink.frames import Packet, dialect
+from onboard.wire.mavlink.dialect import DialectPacket, dialect
 from onboard.wire.mavlink.modes import ARDUCOPTER_MODES
 from sim_bridge.vehicle.autopilot import default_parameters as tables
 from sim_bridge.vehicle.autopilot import telemetry
@@ -61,7 +61,7 @@ class ArduCopter(Multicopter, ArduPilot):
         own = {"SYSID_THISMAV": self.system, "SCHED_LOOP_RATE": 400}
         return Parameters(tables.ARDUCOPTER, own | dict(self.setup.parameters), bytewise=False)
 
-    def _message_handlers(self) -> dict[int, Callable[[int, Packet], None]]:
+    def _message_handlers(self) -> dict[int, Callable[[int, DialectPacket], None]]:
         return super()._message_handlers() | {
             dialect.MAVLINK_MSG_ID_SET_POSITION_TARGET_LOCAL_NED: self._on_local_target,
             dialect.MAVLINK_MSG_ID_SET_POSITION_TARGET_GLOBAL_INT: self._on_global_target,
@@ -166,7 +166,7 @@ class ArduCopter(Multicopter, ArduPilot):
 
     # ------------------------------------------------------------------ setpoints
 
-    def _on_local_target(self, now_ns: int, packet: Packet) -> None:
+    def _on_local_target(self, now_ns: int, packet: DialectPacket) -> None:
         m = packet.message
         if not self.is_mode("GUIDED"):
             self.counters["target_outside_guided"] += 1
@@ -185,7 +185,7 @@ class ArduCopter(Multicopter, ArduPilot):
             position = Vec(here.x + position.x, here.y + position.y, here.z + position.z)
         self._follow(now_ns, m.type_mask, position, velocity)
 
-    def _on_global_target(self, now_ns: int, packet: Packet) -> None:
+    def _on_global_target(self, now_ns: int, packet: DialectPacket) -> None:
         m = packet.message
         if not self.is_mode("GUIDED"):
             self.counters["target_outside_guided"] += 1

@@ -16,7 +16,7 @@ import numpy as np
 from onboard.config import strict as config
 from onboard.config.strict import ConfigError
 from onboard.core.math.constants import STANDARD_GRAVITY
-from onboard.core.math.states import Limits
+from onboard.core.math.states import VehicleLimits
 from onboard.runtime.resources import configs
 from sim_bridge.vehicle.flight.axis import AxisLaw
 from sim_bridge.vehicle.flight.loop_analysis import closed_loop
@@ -217,7 +217,7 @@ def build(spec: Spec, name: str) -> Aircraft:
     return Aircraft(spec, pitch, yaw, model)
 
 
-def within(model: PlaneModel, limits: Limits) -> PlaneModel:
+def within(model: PlaneModel, limits: VehicleLimits) -> PlaneModel:
     """The same aircraft under a vehicle's own limits (2)–(3): the narrower of both."""
     high = model.speed_max if isinf(limits.speed_max) else min(model.speed_max, limits.speed_max)
     return model._replace(

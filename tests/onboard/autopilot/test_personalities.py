@@ -20,8 +20,8 @@ from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import ZERO, Vec
 from onboard.game.scenario import Kind
 from onboard.wire.mavlink import commands
-from onboard.wire.mavlink.commands import Target
-from onboard.wire.mavlink.frames import Framer, MavMessage, Sender
+from onboard.wire.mavlink.commands import Outgoing, SetpointMessage, Target
+from onboard.wire.mavlink.frames import Framer, Sender
 from onboard.wire.mavlink.modes import Kind as Autopilot
 from onboard.wire.mavlink.values import CommandAck, Heartbeat, Timesync
 from tests.support.flown_autopilot import ORIGIN, FlownAutopilot
@@ -102,14 +102,14 @@ class Flight:
         self._asked_at, self._counts = self.now, {}
         for message in self.asking.step(self.now, rates):
             self._send(message)
-        self._send(commands.heartbeat())
+        self._send(commands.OwnHeartbeat())
         self._send(self.timesync.ask(self.flown.now_ns))
 
-    def _send(self, message: MavMessage) -> None:
+    def _send(self, message: Outgoing) -> None:
         frame = self.sender.pack(message)
         if self.rng.random() >= self.loss:
             self.flown.autopilot.receive(self.flown.now_ns, frame, "agent")
-            if message.get_type().startswith("SET_"):
+            if isinstance(message, SetpointMessage):
                 self.setpoints.append(self.now)
 
     def _hear(self) -> None:
@@ -120,7 +120,7 @@ class Flight:
             for packet in self.framer.feed(frame):
                 value = self.observer.take(self.now, packet)
                 if value is not None and hasattr(self, "adapter"):
-                    name = packet.message.get_type()
+                    name = packet.name
                     self._counts[name] = self._counts.get(name, 0) + 1
                     if isinstance(value, CommandAck):
                         self.adapter.acknowledge(self.now, value)

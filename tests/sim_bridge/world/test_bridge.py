@@ -102,7 +102,7 @@ async def test_the_setup_says_everything_but_the_target() -> None:
     setup = swarm.SETUP.decode(setups.payloads[0], Counter())
     assert setup == setup_of(scenario(), GAME, "sim-bridge")
     assert setup is not None
-    assert [(m.id, m.role, m.speed_max) for m in setup.roster] == [
+    assert [(m.id, m.role, m.speed) for m in setup.roster] == [
         (1, Role.EVADER, 4.0), (2, Role.PURSUER, 5.0), (3, Role.PURSUER, 5.0),
     ]  # fmt: skip
     assert setup.roster[1].start == (30.0, 0.0, -50.0)  # a plane game is flown at its height

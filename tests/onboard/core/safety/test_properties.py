@@ -7,10 +7,11 @@ from math import atan2, cos, isfinite, pi, sin
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from onboard.core.math.states import Mate
 from onboard.core.math.vectors import Vec
 from onboard.core.safety.fence import fits, inside, outside_by
 from onboard.core.safety.health import Demand
-from onboard.core.safety.policy import Action, Cause, Fence, Mate, Seen
+from onboard.core.safety.policy import Action, Cause, Fence, Seen
 from onboard.core.safety.supervisor import Watch, advance, supervise
 from tests.support.supervised_vehicle import COPTER, FIELD, PLANE, SupervisedVehicle, assert_within
 

@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec, norm, sub
 from onboard.game.scenario import Kind
-from onboard.wire.mavlink.frames import Framer, Sender, dialect
+from onboard.wire.mavlink.dialect import DialectSender, dialect
+from onboard.wire.mavlink.frames import Framer
 from onboard.wire.mavlink.signing import MemoryStore, Signing
 from sim_bridge.vehicle.autopilot.health import Fault
 from tests.support.flown_autopilot import EPOCH_NS, ORIGIN, FlownAutopilot
@@ -348,7 +349,8 @@ def test_a_second_ground_station_changes_nothing(kind: Kind) -> None:
 @KINDS
 def test_its_own_frames_coming_back_are_not_obeyed(kind: Kind) -> None:
     flown = FlownAutopilot(kind)
-    flown.send(dialect.MAVLink_command_long_message(0, 0, 400, 0, 0, 21196, 0, 0, 0, 0, 0), Sender(1, 1))
+    disarm = dialect.MAVLink_command_long_message(0, 0, 400, 0, 0, 21196, 0, 0, 0, 0, 0)
+    flown.send(disarm, DialectSender(1, 1))
     assert flown.autopilot.armed
     assert flown.autopilot.counters["own_echo"] == 1
 
@@ -430,7 +432,7 @@ def test_with_a_key_it_obeys_signed_frames_alone_and_signs_its_own(kind: Kind) -
     flown.send(request)
     assert flown.got("COMMAND_ACK") == []
     assert flown.autopilot.counters["signature_unsigned"] == 1
-    signed = Sender(1, 191, signing=Signing(key, MemoryStore()))
+    signed = DialectSender(1, 191, signing=Signing(key, MemoryStore()))
     frame = signed.pack(request, EPOCH_NS + flown.now_ns)
     flown.autopilot.receive(flown.now_ns, frame, "peer")
     flown.forward(0.1)
