@@ -91,7 +91,11 @@ async def test_it_discovers_and_arms_every_vehicle_on_one_port(kind: Kind) -> No
 @MULTICOPTERS
 async def test_offboard_velocities_move_one_multicopter_and_not_its_neighbours(kind: Kind) -> None:
     port = free_port()
-    async with asyncio.timeout(real_time.patience(PLAYED_S)), fleet(kind, [[port]] * 3) as vehicles, client(port) as sdk:
+    async with (
+        asyncio.timeout(real_time.patience(PLAYED_S)),
+        fleet(kind, [[port]] * 3) as vehicles,
+        client(port) as sdk,
+    ):
         found = await systems(sdk, 3)
         starts = {id: vehicles.position(id) for id in (1, 2, 3)}
         telemetry, offboard = TelemetryAsync(found[2]), OffboardAsync(found[2])

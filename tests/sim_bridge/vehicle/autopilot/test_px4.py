@@ -12,7 +12,9 @@ from tests.support.flown_autopilot import ORIGIN, FlownAutopilot
 GCS = dialect.MAVLink_heartbeat_message(6, 8, 0, 0, 4, 3)
 
 
-def stream(flown: FlownAutopilot, v: Vec, seconds: float, every_s: float = 0.05, **more: int) -> FlownAutopilot:
+def stream(
+    flown: FlownAutopilot, v: Vec, seconds: float, every_s: float = 0.05, **more: int
+) -> FlownAutopilot:
     return flown.forward(seconds, every_s=every_s, send=lambda: flown.velocity_target(v, **more))
 
 
