@@ -157,13 +157,14 @@ class MemoryBus:
         self._reliable: deque[tuple[bytes, Callable[[bytes], None]]] = deque(maxlen=CALLS_MAX)
         self._pumping = False
         self.tap: Callable[[Sample], None] | None = None  # is told of everything delivered to this connection
+        self.stopped = False  # its process is stopped (SIGSTOP): publishes nothing, and its tokens stay
         self._online = False
         self._closed = False
 
     def publish(self, key: str, payload: bytes, delivery: Delivery) -> None:
         """Put a message; counts `no_bus` while there is no broker."""
-        if self._closed:
-            self._counts["closed"] += 1
+        if self._closed or self.stopped:
+            self._counts["closed" if self._closed else "stopped"] += 1
             return
         number = 0
         if delivery in (Delivery.CACHED, Delivery.EVENT):

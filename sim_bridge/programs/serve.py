@@ -11,6 +11,7 @@ from pathlib import Path
 
 import msgspec
 
+from onboard.config.names import game_name
 from onboard.config.strict import ConfigError
 from onboard.game.master import Standing
 from onboard.game.scenario import Scenario, load
@@ -69,8 +70,7 @@ async def serve_scenario(
     """`serve` on the running loop; recordings of wind lie in `folder`; `started` is told what is up.
 
     `ending` is awaited when it shall end, while the vehicles still fly."""
-    if not options.game or set(options.game) & set("/*$?#"):
-        raise ConfigError(f"game: found '{options.game}', expected a name without / * $ ? #")
+    game_name(options.game)
     loop, stop = asyncio.get_running_loop(), asyncio.Event()
     radios: dict[int, Radio] = {}
     bus: ZenohBus | None = None

@@ -31,8 +31,8 @@ WIDTH |= {"float": 4, "uint64_t": 8, "int64_t": 8, "double": 8}
 def aimed(rng: np.random.Generator, flown: FlownAutopilot) -> bytes:
     """A sound frame of a kind that the autopilot acts on, addressed to it: any payload, but with numbers
     likely to matter, and commands that it knows."""
-    handled = sorted(flown.autopilot._handlers)
-    known = sorted(flown.autopilot._commands)
+    handled = sorted(flown.autopilot.handlers)
+    known = sorted(flown.autopilot.commands)
     kind = dialect.mavlink_map[handled[int(rng.integers(len(handled)))]]
     if rng.random() < 0.3:
         long, integer = dialect.MAVLink_command_long_message, dialect.MAVLink_command_int_message

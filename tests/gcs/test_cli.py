@@ -15,7 +15,7 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from gcs import cli, settings
+from gcs import cli, options, settings
 from gcs.console.plain_lines import Plain
 from gcs.picture.alert_rules import Thresholds
 from gcs.picture.plain_data import document
@@ -243,3 +243,70 @@ def test_the_document_has_a_name_for_every_field_and_no_infinity():
     assert msgspec.json.decode(msgspec.json.encode(told)) == told
     assert told["vehicles"][0]["age_s"] is None
     assert told["now_ns"] == START_NS
+
+
+SHARED = {  # option → its value on the command line, and what the settings or options then hold
+    "config": ("other.toml", lambda o: o.settings().operator == "from the file"),
+    "game": ("chase", lambda o: o.settings().game == "chase"),
+    "bus": ("tcp/127.0.0.1:5555", lambda o: o.settings().bus.endpoint == "tcp/127.0.0.1:5555"),
+    "zenoh": ("tls.json5", lambda o: o.settings().bus.zenoh == "tls.json5"),
+    "operator": ("ann", lambda o: o.settings().operator == "ann"),
+    "runs": ("elsewhere", lambda o: o.settings().recording.folder == "elsewhere"),
+    "no-record": (None, lambda o: not o.settings().recording.enabled),
+    "plain": (None, lambda o: o.plain is True),
+}
+BUS_OPTIONS = ("config", "game", "bus", "zenoh")
+SUBCOMMANDS = {  # subcommand → what it is called with, and the shared options that it uses
+    "status": ((), BUS_OPTIONS),
+    "command": (("abort", "--all"), (*BUS_OPTIONS, "operator")),
+    "record": ((), (*BUS_OPTIONS, "runs")),
+    "replay": (("RUN",), ("config", "plain")),
+    "report": (("RUN",), ("config",)),
+    "game run": (("field.toml",), tuple(SHARED)),
+}
+
+
+class ReachedError(Exception):
+    """A subcommand was about to begin its work with these options."""
+
+
+@pytest.fixture
+def received(monkeypatch, tmp_path):
+    """Call `gcs` in this process; the shared options that its subcommand would have begun to work with."""
+    (tmp_path / "other.toml").write_text('operator = "from the file"\n')
+    monkeypatch.chdir(tmp_path)
+
+    def stop(given: options.Options) -> settings.Settings:
+        raise ReachedError(given)
+
+    def call(*arguments: str) -> options.Options:
+        with monkeypatch.context() as patched:
+            patched.setattr(options.Options, "settings", stop)
+            with pytest.raises(ReachedError) as reached:
+                cli.app(list(arguments), standalone_mode=False, prog_name="gcs")
+        return reached.value.args[0]
+
+    return call
+
+
+@pytest.mark.parametrize("subcommand", SUBCOMMANDS)
+@pytest.mark.parametrize("option", SHARED)
+def test_a_shared_option_holds_before_and_after_the_subcommand(received, subcommand, option):
+    arguments, used = SUBCOMMANDS[subcommand]
+    value, holds = SHARED[option]
+    typed = (f"--{option}",) if value is None else (f"--{option}", value)
+    before, after = (*typed, *subcommand.split(), *arguments), (*subcommand.split(), *arguments, *typed)
+    if option in used:
+        assert holds(received(*before)), "before the subcommand"
+        assert holds(received(*after)), "after the subcommand"
+        assert not holds(received(*subcommand.split(), *arguments)), "without it the default holds"
+        return
+    done = gcs(*before)
+    name = option.removeprefix("no-")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == f"gcs: --{name}: found before {subcommand}, which does not use it\n"
+
+
+def test_an_option_after_the_subcommand_outranks_the_same_one_before_it(received):
+    given = received("--bus", "tcp/10.0.0.1:1", "--game", "early", "status", "--bus", "tcp/10.0.0.2:2")
+    assert (given.bus, given.game) == ("tcp/10.0.0.2:2", "early")

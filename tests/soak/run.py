@@ -15,7 +15,7 @@ import json
 import os
 import sys
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from pathlib import Path
 
 for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
@@ -82,10 +82,13 @@ class Vehicle:
 class Soak:
     """One game and its faults."""
 
-    def __init__(self, game: WholeGame, rng: Rng, totals: Counter[str]) -> None:
+    def __init__(
+        self, game: WholeGame, rng: Rng, totals: Counter[str], explains: Collection[str] = EXPLAINS
+    ) -> None:
         self.game = game
         self.rng = rng
         self.totals = totals
+        self.explains = explains
         self.vehicles = {id: Vehicle() for id in game.scenario.ids}
         self._due: list[tuple[float, int, Undo, tuple[int, ...]]] = []
         self._in_force: set[str] = set()
@@ -154,7 +157,7 @@ class Soak:
             alive = f"killed {id}" not in self._in_force
             flying = alive and flies(agent)
             kinds = agent.journal.kinds
-            explained = sum(kinds.get(kind, 0) for kind in EXPLAINS) + agent.journal.suppressed
+            explained = sum(kinds.get(kind, 0) for kind in self.explains) + agent.journal.suppressed
             if flying or not alive:
                 vehicle.stopped_at, vehicle.explained = -1.0, explained
             elif vehicle.flew:
@@ -197,15 +200,24 @@ class Soak:
         )
 
 
-def play(number: int, seed: int, totals: Counter[str], seconds: float = GAME_S) -> None:
-    """Game `number` of a seed. Raises AssertionError with the story of what went wrong."""
+def play(
+    number: int,
+    seed: int,
+    totals: Counter[str],
+    seconds: float = GAME_S,
+    explains: Collection[str] = EXPLAINS,
+) -> None:
+    """Game `number` of a seed. Raises AssertionError with the story of what went wrong.
+
+    `explains`: the kinds of events that explain why a vehicle has stopped.
+    """
 
     async def game_on() -> None:
         rng = np.random.default_rng((seed, number))
         kind = list(Kind)[number % len(Kind)]
         chase = scenario(kind, seed)
         async with game_of(chase, seed=seed + number, battery_s=1e9, any_error=True) as game:
-            soak = Soak(game, rng, totals)
+            soak = Soak(game, rng, totals, explains)
             await soak.play(seconds)
             totals["simulated_s"] += round(soak.now)
 

@@ -33,7 +33,7 @@ class AnsweringAgent:
         self.since_ns = 0
         self.mode = "GUIDED"
         self.stage = "acting"
-        self._bus = bus
+        self.bus = bus
         self._clock = clock
         self._drops: Counter[str] = Counter()
         bus.serve(topics.key(GAME, topics.COMMAND, i), self.answer)
@@ -68,4 +68,4 @@ class AnsweringAgent:
             (state(self.id, now_ns, mode=self.mode), topics.STATE),
             (health(self.id, now_ns, mode=self.mode, stage=self.stage), topics.HEALTH),
         ):
-            self._bus.publish(*on_bus(message), topic.delivery)
+            self.bus.publish(*on_bus(message), topic.delivery)

@@ -64,8 +64,8 @@ class Autopilot(ABC):
         self.mode = self.first_mode
         self._boot_ns = now_ns
         self._last_step_ns = now_ns
-        self._handlers: dict[int, Callable[[int, DialectPacket], None]] = self._message_handlers()
-        self._commands: dict[int, Callable[[int, Command], int]] = self._command_handlers()
+        self.handlers: dict[int, Callable[[int, DialectPacket], None]] = self._message_handlers()
+        self.commands: dict[int, Callable[[int, Command], int]] = self._command_handlers()
         self._framers: OrderedDict[Hashable, Framer] = OrderedDict()
         self._out: list[bytes] = []
         self._place: tuple[Vec, Geodetic] | None = None
@@ -348,7 +348,7 @@ class Autopilot(ABC):
         ) not in (0, COMPONENT):
             self.counters["for_others"] += 1
             return
-        handler = self._handlers.get(message.get_msgId())
+        handler = self.handlers.get(message.get_msgId())
         if handler is None:
             self.counters["not_handled"] += 1
             return
@@ -365,7 +365,7 @@ class Autopilot(ABC):
         self._obey(now_ns, from_int(packet))
 
     def _obey(self, now_ns: int, command: Command) -> None:
-        handler = self._commands.get(command.number)
+        handler = self.commands.get(command.number)
         result = UNSUPPORTED if handler is None else handler(now_ns, command)
         self.emit(
             dialect.MAVLink_command_ack_message(

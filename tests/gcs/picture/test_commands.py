@@ -179,7 +179,7 @@ async def test_a_refusal_is_shown_with_its_reason():
 @virtual
 async def test_two_stations_command_and_each_sees_whom_the_vehicle_obeys():
     async with field(1, takes_s=5.0) as (station, crews):
-        other = Station(crews[0]._bus, virtual_clock(), GAME, operator="ben")
+        other = Station(crews[0].bus, virtual_clock(), GAME, operator="ben")
         task = asyncio.create_task(other.run())
         await asyncio.sleep(0.01)
         first = station.command(CommandKind.HOLD, (1,))

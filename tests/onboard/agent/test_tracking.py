@@ -7,7 +7,7 @@ import asyncio
 import pytest
 
 from onboard.agent.agent import Agent
-from onboard.agent.config import AgentConfig, check
+from onboard.agent.config import AgentConfig, load
 from onboard.config.strict import ConfigError
 from onboard.core.math.vectors import Vec, distance
 from onboard.game.scenario import Kind
@@ -84,4 +84,4 @@ async def test_a_pilot_takes_the_tracker_over_and_gives_it_back(
 
 def test_a_tracker_without_a_route_is_refused() -> None:
     with pytest.raises(ConfigError, match="route: found none, expected a tracker's route file"):
-        check(AgentConfig(role=Role.TRACKER), "options")
+        load(None, {"role": "tracker"})

@@ -128,14 +128,14 @@ def test_an_animation_is_a_gif_with_many_frames(tmp_path: Path) -> None:
 
 BAD = {
     "an unknown key": (("R = 2.0", "R = 2.0\nradius = 3"), "parameters.radius: unknown key"),
-    "a wrong type": (("speed = 5", 'speed = "fast"'), "evader.speed: expected float, got str"),
+    "a wrong type": (("speed = 5", 'speed = "fast"'), "evader.speed: found 'fast', expected a number"),
     "a negative speed": (("speed = 4", "speed = -4"), "pursuers[0].speed: found -4.0, expected zero or more"),
     "a resting evader": (("speed = 5", "speed = 0"), "evader.speed: found 0.0, expected a positive speed"),
     "not a number": (("speed = 5", "speed = nan"), "evader.speed: found nan, expected a finite number"),
     "infinity": (("horizon = 100.0", "horizon = inf"), "parameters.horizon: found inf, expected a finite"),
     "infinity in a place": (("position = [0, 0]", "position = [-inf, 0]"), "evader.position[0]: found -inf"),
     "three numbers": (("position = [0, 0]", "position = [0, 0, 9]"), "position: found three numbers"),
-    "one number": (("position = [0, 0]", "position = [0]"), "evader.position: expected array of length"),
+    "one number": (("position = [0, 0]", "position = [0]"), "evader.position: found [0], expected a list"),
     "no TOML": (("[evader]", "[evader"), "not valid TOML"),
     "a step of nothing": (("dt = 0.05", "dt = 0.0"), "parameters.dt: found 0.0, expected a time step"),
 }

@@ -6,10 +6,11 @@ from math import atan2, degrees, hypot, pi
 
 import pytest
 
+from onboard.core.math.angles import wrap
+from onboard.core.math.constants import STANDARD_GRAVITY
 from onboard.core.math.vectors import ZERO, Vec, norm
 from onboard.game.scenario import Kind
 from onboard.wire.mavlink.dialect import DialectSender, dialect
-from sim_bridge.vehicle.flight.kinematic import G, wrap
 from tests.support.flown_autopilot import ORIGIN, FlownAutopilot
 
 GCS = dialect.MAVLink_heartbeat_message(6, 8, 0, 0, 4, 3)
@@ -115,7 +116,7 @@ def test_a_roll_alone_turns_it_level_and_lapses_after_three_seconds() -> None:
     flown.forward(5.0, every_s=0.05, send=lambda: flown.roll_target(30.0))
     before = flown.airframe.motion.yaw
     assert degrees(flown.airframe.motion.roll) == pytest.approx(30.0)
-    assert flown.airframe.motion.rates.z == pytest.approx(G * 0.57735 / 22.0, rel=0.01)
+    assert flown.airframe.motion.rates.z == pytest.approx(STANDARD_GRAVITY * 0.57735 / 22.0, rel=0.01)
     assert flown.height == pytest.approx(100.0, abs=0.1)
     assert speed(flown) == pytest.approx(22.0)
     flown.forward(2.8)
@@ -293,7 +294,7 @@ def test_a_dead_agent_is_missed_only_if_its_system_is_watched() -> None:
 def test_its_parameters_fit_the_airframe_it_is_mounted_in() -> None:
     p = guided().autopilot.parameters
     assert (p["AIRSPEED_MIN"], p["AIRSPEED_MAX"], p["AIRSPEED_CRUISE"]) == (10.0, 30.0, 22.0)
-    assert p["ROLL_LIMIT_DEG"] == pytest.approx(degrees(atan2(22.0 * 40.0 * pi / 180.0, G)))
+    assert p["ROLL_LIMIT_DEG"] == pytest.approx(degrees(atan2(22.0 * 40.0 * pi / 180.0, STANDARD_GRAVITY)))
     with pytest.raises(ValueError, match="NO_SUCH"):
         guided(parameters={"NO_SUCH": 1})
 
