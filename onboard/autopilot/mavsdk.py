@@ -128,6 +128,11 @@ class MavsdkAdapter:
         """Who flies."""
         return self._control.stage
 
+    @property
+    def child(self) -> int | None:
+        """The child's process id, while there is one."""
+        return self._courier.process.pid if self._courier is not None else None
+
     def enter(self, now: float) -> None:
         """Ask the child to start offboard; give setpoints meanwhile (zero to hover)."""
         self._control.enter(now)

@@ -64,7 +64,7 @@ class World:
         self.lost_steps = 0
         self._clock = clock
         self._wind = wind
-        self._tap = tap
+        self.tap = tap
         self._start_ns = clock.monotonic_ns()
         self._epoch_ns = clock.wall_ns()
         self._done = 0  # physics steps
@@ -139,15 +139,15 @@ class World:
         frames = vehicle.autopilot.outgoing()
         if not frames:
             return
-        if self._tap is not None:
+        if self.tap is not None:
             for frame in frames:
-                self._tap(vehicle.id, self._clock.wall_ns(), frame, True)
+                self.tap(vehicle.id, self._clock.wall_ns(), frame, True)
         vehicle.send(frames)
 
     def _listen(self, vehicle: SimVehicle, link: Link, number: int) -> None:
         def arrived(data: bytes, peer: Hashable) -> None:
-            if self._tap is not None:
-                self._tap(vehicle.id, self._clock.wall_ns(), data, False)
+            if self.tap is not None:
+                self.tap(vehicle.id, self._clock.wall_ns(), data, False)
             vehicle.autopilot.receive(self.elapsed_ns, data, (number, peer))
             self._flush(vehicle)
 

@@ -15,7 +15,16 @@ from onboard.wire.mavlink.dialect import DialectSender, dialect, dialect_packet
 from onboard.wire.mavlink.tlog import read_tlog
 from tests.support.small_scenarios import EVADER, MATE, PURSUER, chase, duel
 from tests.support.virtual_time import virtual
-from tests.support.whole_games import autopilot, choose_mode, flies, game_of, mode, place, under_way
+from tests.support.whole_games import (
+    autopilot,
+    choose_mode,
+    flies,
+    game_of,
+    mode,
+    place,
+    setpoints_heard,
+    under_way,
+)
 
 STATION, STATION_COMPONENT = 255, 190
 
@@ -142,16 +151,8 @@ async def test_an_agent_killed_and_started_again_is_let_in_by_the_master_and_nob
 async def test_a_pilot_takes_one_vehicle_out_of_the_game_and_its_setpoints_cease_at_once() -> None:
     async with game_of(chase(pursuers=2)) as game:
         await under_way(game, 3.0)
-        heard: list[int] = []
-        receive = autopilot(game, PURSUER).receive
-
-        def listening(now_ns: int, data: bytes, peer: object) -> None:
-            if data[7] == 84:  # SET_POSITION_TARGET_LOCAL_NED
-                heard.append(now_ns)
-            receive(now_ns, data, peer)  # type: ignore[arg-type]
-
-        autopilot(game, PURSUER).receive = listening  # type: ignore[method-assign]
-        taken_ns = game.bridge.world.elapsed_ns
+        heard = setpoints_heard(game, PURSUER)
+        taken_ns = game.clock.wall_ns()
         game.expects(PURSUER, "supervisor_end")
         choose_mode(game, PURSUER, "ALT_HOLD")
         await game.forward(8.0)

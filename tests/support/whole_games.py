@@ -26,6 +26,7 @@ from sim_bridge.vehicle.autopilot.autopilot import Autopilot
 
 STORY = ["staging", "ready", "running", "ended", "recovery"]
 LAST_EVENTS = 20  # of each vehicle, in the text of a failure
+SETPOINT = 84  # SET_POSITION_TARGET_LOCAL_NED, as the eighth byte of a frame tells
 ABORTED = "aborted"  # the verdict that a story may expect of its game
 
 
@@ -170,6 +171,21 @@ def flies(agent: Agent) -> bool:
     """Whether the agent's setpoints count and go out."""
     verdict = agent.acting.verdict
     return agent.craft.stage is Stage.ACTIVE and verdict is not None and verdict.stream
+
+
+def setpoints_heard(game: Rehearsal, vehicle: int) -> list[int]:
+    """A list that from now on receives the instant of each velocity setpoint [ns since the epoch].
+
+    What counts is the arrival at the vehicle's autopilot.
+    """
+    heard: list[int] = []
+
+    def tap(id: int, wall_ns: int, frame: bytes, sent: bool) -> None:
+        if id == vehicle and not sent and frame[7] == SETPOINT:
+            heard.append(wall_ns)
+
+    game.bridge.world.tap = tap
+    return heard
 
 
 def phases(game: Rehearsal, id: int) -> list[str]:
