@@ -117,7 +117,7 @@ def flight() -> Iterator[Pilot]:
 
 
 async def in_flight(pilot: Pilot) -> None:
-    """Fly offboard at 4 m/s; once more where a busy machine made this parent 200 ms late and the child end."""
+    """Fly offboard at 4 m/s; once more where this parent, on a busy machine, was 200 ms late."""
     end = time.monotonic() + patience(30.0)
     while abs(pilot.vehicle.airframe.motion.velocity.y - 4.0) > 0.5 or pilot.vehicle.mode != "OFFBOARD":
         assert time.monotonic() < end, pilot.notes
