@@ -157,7 +157,7 @@ app.add_typer(scenario_app, name="scenario")
 def scenario_new(
     file: Annotated[Path, typer.Argument(help="File to write; it must not exist.")],
 ) -> None:
-    """Write a commented template."""
+    """Write a commented template of a scenario."""
     from sim_bridge.programs.scenario_tools import new
 
     print(new(file))
@@ -221,7 +221,7 @@ def _folder(path: Path) -> None:
 
 
 def main() -> None:
-    """Entry point."""
+    """Run the command line `sim-bridge`."""
     run(app, "sim-bridge")
 
 

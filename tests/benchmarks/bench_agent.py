@@ -207,7 +207,9 @@ class Stage:
         self.world = World(what, self._clock, {PURSUER: [watch]})
         autopilot = self.world.vehicles[PURSUER].autopilot
         if signing is not None:
-            autopilot.setup = autopilot.setup._replace(signing=signing)
+            autopilot.setup = autopilot.setup._replace(
+                options=autopilot.setup.options._replace(signing=signing)
+            )
             autopilot._sender = DialectSender(PURSUER, 1, signing=signing)
         self._begun_ns = self._clock.wall_ns()
 

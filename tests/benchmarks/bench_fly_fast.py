@@ -20,7 +20,7 @@ from onboard.game.scenario import load
 from onboard.pilot.predictor_choice import Predicting
 from onboard.runtime.loop import run_virtual, virtual_clock
 from onboard.runtime.resources import configs
-from sim_bridge.rehearsal import Rehearsal
+from sim_bridge.rehearsal import Options, Rehearsal
 from tests.support import benchmark_record
 
 PROMISES = {Predicting.CONSTANT_VELOCITY: 10.0, Predicting.NETWORK: 4.0}
@@ -49,7 +49,7 @@ def play(predicting: Predicting, folder: Path) -> Played:
 
     async def game() -> Played:
         clock = virtual_clock()
-        async with Rehearsal(scenario, clock, folder=folder) as rehearsal:
+        async with Rehearsal(scenario, clock, Options(folder=folder)) as rehearsal:
             outcome = await rehearsal.until_ended()
             await rehearsal.land_agents()
             return Played(clock.monotonic_ns() / 1e9, 0.0, f"{outcome.verdict} after {outcome.time:.1f} s")

@@ -153,13 +153,13 @@ async def test_status_prints_the_picture_once_as_json(free_endpoint):
         code, out, err = await shell("status", "--json", endpoint=free_endpoint)
     assert (code, err) == (0, "")
     picture = json.loads(out)
-    assert picture["format"] == 1
+    assert picture["format"] == 2
     assert [v["id"] for v in picture["vehicles"]] == [1, 2, 3]
     assert picture["vehicles"][1]["presence"] == "present"
     assert picture["vehicles"][1]["state"]["mode"] == "GUIDED"
     assert picture["game"]["setup"]["scenario"] == "meeting"
     assert picture["game"]["phase"] == "staging"
-    assert "lambda" in picture["game"]["setup"]
+    assert picture["game"]["setup"]["rules"]["lambda"] == setup(3).rules.lambda_
 
 
 @pytest.mark.real

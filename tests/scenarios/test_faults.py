@@ -152,7 +152,7 @@ async def test_a_pilot_takes_one_vehicle_out_of_the_game_and_its_setpoints_cease
     async with game_of(chase(pursuers=2)) as game:
         await under_way(game, 3.0)
         heard = setpoints_heard(game, PURSUER)
-        taken_ns = game.clock.wall_ns()
+        taken_ns = game.bridge.world.elapsed_ns
         game.expects(PURSUER, "supervisor_end")
         choose_mode(game, PURSUER, "ALT_HOLD")
         await game.forward(8.0)

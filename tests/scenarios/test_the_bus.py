@@ -11,7 +11,7 @@ from onboard.agent.config import AgentConfig
 from onboard.core.math.vectors import Vec
 from onboard.runtime.links import memory_pair
 from onboard.wire.bus.messages import Phase, Role
-from sim_bridge.world.bridge import Bridge
+from sim_bridge.world.bridge import Bridge, Options
 from tests.support.small_scenarios import EVADER, PURSUER, chase, duel
 from tests.support.virtual_time import virtual
 from tests.support.whole_games import STORY, at_phase, flies, game_of, mode, phases, place, under_way
@@ -75,7 +75,7 @@ async def test_a_second_bridge_that_joins_a_running_game_yields_and_changes_noth
         await under_way(game, 1.0)
         said: list[str] = []
         bus = game.broker.connect("second bridge")
-        second = Bridge(chase(), game.clock, bus, {}, nonce=1, game=game.game, say=said.append)
+        second = Bridge(chase(), game.clock, bus, {}, Options(1, game.game), said.append)
         task = asyncio.create_task(second.run())
         before = place(game, EVADER)
         await game.forward(6.0)

@@ -11,10 +11,10 @@ from gcs.station import Station
 from onboard.game.scenario import Flight, ImpairmentSpec, Parameters, Scenario, VehicleSpec
 from onboard.pilot.predictor_choice import Predicting
 from onboard.runtime.impairment import CLEAR, Impairment
-from onboard.runtime.loop import run_virtual, virtual_clock
+from onboard.runtime.loop import run_virtual
 from onboard.wire.bus.messages import CommandKind, Phase
 from sim_bridge.rehearsal import Rehearsal
-from tests.support.whole_games import WholeGame, at_phase
+from tests.support.whole_games import at_phase, game_of
 
 LOSS = 0.3
 WITHIN_S = 2.0
@@ -50,7 +50,7 @@ def trials(count: int, seed: int, loss: float = LOSS) -> list[Trial]:
 async def _trials(count: int, seed: int, loss: float) -> list[Trial]:
     rng = np.random.default_rng([seed, 1])
     found = []
-    async with WholeGame(CHASE, virtual_clock(), seed=seed, any_error=True) as game:
+    async with game_of(CHASE, seed=seed, any_error=True) as game:
         station = Station(game.broker.connect("gcs"), game.clock, game.game)
         task = asyncio.create_task(station.run())
         ids = CHASE.ids

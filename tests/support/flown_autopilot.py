@@ -14,6 +14,7 @@ from onboard.wire.mavlink.dialect import DialectSender, dialect, dialect_packet
 from onboard.wire.mavlink.frames import Framer
 from sim_bridge.vehicle.autopilot.autopilot import Autopilot
 from sim_bridge.vehicle.autopilot.make import autopilot_for
+from sim_bridge.vehicle.autopilot.setup import Options
 from sim_bridge.vehicle.flight.kinematic import kinematic, start_motion
 from sim_bridge.vehicle.motion import Air, Demand
 
@@ -58,7 +59,7 @@ class FlownAutopilot:
         start = start_motion(position, radians(spec.heading_deg or 0.0), kind, spec.speed, self.air, airborne)
         self.airframe = kinematic(spec, kind, start, self.air)
         self.autopilot: Autopilot = autopilot_for(
-            spec, kind, system, ORIGIN, start, airborne=airborne, epoch_ns=EPOCH_NS, **more
+            spec, kind, system, ORIGIN, start, Options(airborne=airborne, epoch_ns=EPOCH_NS, **more)
         )
         self.client = DialectSender(*(client or (system, COMPANION)))
         self.framer = Framer()

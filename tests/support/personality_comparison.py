@@ -67,8 +67,7 @@ def compared(kind: Kind) -> Comparison:
     requests = [(t, dialect_packet(p.raw).message) for t, p in timed if p.component == COMPANION]
     real = Stream([(t, dialect_packet(p.raw).message) for t, p in timed if p.component == 1])
     ready, healthy = READY[kind]
-    flown = FlownAutopilot(kind, airborne=False, ready_s=ready)
-    flown.autopilot.setup = flown.autopilot.setup._replace(healthy_s=healthy)
+    flown = FlownAutopilot(kind, airborne=False, ready_s=ready, healthy_share=healthy / ready)
     for t, message in requests:
         flown.forward(t - flown.now_ns / NS_PER_S)
         flown.send(message)

@@ -8,7 +8,7 @@ fails, the story's own assertions included, is told with the last events of each
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from typing import Any
 
 from onboard.agent.agent import Agent
@@ -17,11 +17,11 @@ from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec, distance, norm
 from onboard.game.scenario import Scenario
 from onboard.runtime.loop import virtual_clock
-from onboard.runtime.protocols import Sample
+from onboard.runtime.protocols import Clock, Sample
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus.messages import Command, CommandKind, CommandReply, Event, Phase, Severity
 from onboard.wire.bus.topics import COMMAND, everything, key
-from sim_bridge.rehearsal import Rehearsal
+from sim_bridge.rehearsal import Options, Rehearsal
 from sim_bridge.vehicle.autopilot.autopilot import Autopilot
 
 STORY = ["staging", "ready", "running", "ended", "recovery"]
@@ -40,8 +40,8 @@ class WholeGame(Rehearsal):
     `any_error` expects every kind of error of every vehicle, for games that are full of faults.
     """
 
-    def __init__(self, *arguments: Any, any_error: bool = False, **options: Any) -> None:
-        super().__init__(*arguments, **options)
+    def __init__(self, scenario: Scenario, clock: Clock, *, any_error: bool = False, **options: Any) -> None:
+        super().__init__(scenario, clock, Options(**options))
         self._any_error = any_error
         self._begun_ns = self.clock.wall_ns()
         self._expected: set[tuple[int, str]] = set()
@@ -174,17 +174,19 @@ def flies(agent: Agent) -> bool:
 
 
 def setpoints_heard(game: Rehearsal, vehicle: int) -> list[int]:
-    """A list that from now on receives the instant of each velocity setpoint [ns since the epoch].
+    """A list that from now on receives the instant of each velocity setpoint [ns since the world began].
 
     What counts is the arrival at the vehicle's autopilot.
     """
     heard: list[int] = []
+    receive = autopilot(game, vehicle).receive
 
-    def tap(id: int, wall_ns: int, frame: bytes, sent: bool) -> None:
-        if id == vehicle and not sent and frame[7] == SETPOINT:
-            heard.append(wall_ns)
+    def listening(now_ns: int, data: bytes, peer: Hashable) -> None:
+        if data[7] == SETPOINT:
+            heard.append(now_ns)
+        receive(now_ns, data, peer)
 
-    game.bridge.world.tap = tap
+    autopilot(game, vehicle).receive = listening  # type: ignore[method-assign]
     return heard
 
 

@@ -13,8 +13,8 @@ from pathlib import Path
 import psutil
 import pytest
 
-from onboard.autopilot.base import Envelope, Note, Setpoint, Stage, Telemetry, Way
-from onboard.autopilot.mavsdk import LINE, RELEASE, SETPOINT, MavsdkAdapter
+from onboard.autopilot.base import Envelope, Note, ReleaseMode, Setpoint, Stage, Telemetry
+from onboard.autopilot.mavsdk import LINE, RELEASE, SETPOINT, MavsdkAdapter, MavsdkEncoder
 from onboard.autopilot.mavsdk_child import Feeder
 from onboard.core.math.vectors import Vec
 from onboard.game.scenario import Kind as Spec
@@ -91,7 +91,8 @@ class Pilot:
 
     def __init__(self, vehicle: Vehicle) -> None:
         self.vehicle = vehicle
-        self.adapter = MavsdkAdapter(Kind.PX4_MULTICOPTER, Target(1), Envelope(), vehicle.url)
+        encoder = MavsdkEncoder(Kind.PX4_MULTICOPTER, Target(1), Envelope())
+        self.adapter = MavsdkAdapter(Target(1), encoder, vehicle.url)
         self.notes: list[Note] = []
 
     async def fly(self, seconds: float, velocity: Vec | None, until: Stage | None = None) -> None:
@@ -157,11 +158,11 @@ async def test_a_blocked_parent_ends_offboard_and_the_child(flight: Pilot) -> No
 @pytest.mark.real
 async def test_hold_and_return_through_mavsdk(flight: Pilot) -> None:
     await in_flight(flight)
-    flight.adapter.leave(time.monotonic(), Way.HOLD)
+    flight.adapter.leave(time.monotonic(), ReleaseMode.HOLD)
     await flight.fly(patience(5.0), Vec(0.0, 4.0, 0.0), until=Stage.LEFT)
     assert flight.vehicle.mode == "HOLD"
     await silent(flight)
-    flight.adapter.leave(time.monotonic(), Way.RETURN)
+    flight.adapter.leave(time.monotonic(), ReleaseMode.RETURN)
     await flight.fly(patience(5.0), None, until=Stage.LEFT)
     assert flight.vehicle.mode == "RTL"
 

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from onboard.autopilot import health
-from onboard.autopilot.base import Envelope, Note, Refusal, Setpoint, Stage, Way
-from onboard.autopilot.choose import adapter_for
+from onboard.autopilot.base import Envelope, Note, Refusal, ReleaseMode, Setpoint, Stage
+from onboard.autopilot.choose import AdapterOptions, adapter_for
 from onboard.autopilot.stream_rates import Asking
 from onboard.autopilot.telemetry_state import Observer
 from onboard.autopilot.timesync import TimesyncEstimator
@@ -66,9 +66,10 @@ class Flight:
         chosen = adapter_for(
             Heartbeat(heart.kind, 0, 0, 0, heart.mode, heart.armed, 4),
             Target(1),
-            scheme=scheme,
-            parameters=parameters,
-            envelope=PLANE_ENVELOPE if kind == Kind.ARDUPLANE else Envelope(acceleration=0.0),
+            AdapterOptions(
+                scheme, envelope=PLANE_ENVELOPE if kind == Kind.ARDUPLANE else Envelope(acceleration=0.0)
+            ),
+            parameters or {},
         )
         assert not isinstance(chosen, Refusal)
         self.adapter = chosen
@@ -145,13 +146,13 @@ def test_it_enters_follows_and_leaves(kind: Kind, loss: float) -> None:
     assert flight.flown.mode == GUIDED[kind]
     flight.forward(15.0, level(kind))
     assert degrees(abs(wrap(pi / 2 - atan2(flight.flown.velocity.y, flight.flown.velocity.x)))) < 5.0
-    flight.adapter.leave(flight.now, Way.HOLD)
+    flight.adapter.leave(flight.now, ReleaseMode.HOLD)
     last = flight.now
     flight.forward(4.0, level(kind))
     assert flight.flown.mode == HOLD[kind]
     assert flight.adapter.stage is Stage.LEFT
     assert max(flight.setpoints) <= last
-    flight.adapter.leave(flight.now, Way.RETURN)
+    flight.adapter.leave(flight.now, ReleaseMode.RETURN)
     flight.forward(4.0, None)
     assert flight.flown.mode == "RTL"
     assert {note.severity for note in flight.notes} == {"info"}

@@ -13,8 +13,9 @@ from pathlib import Path
 import pytest
 
 from onboard.config.strict import ConfigError
-from onboard.runtime.bus_zenoh import LEASE_MS, open_zenoh
+from onboard.runtime.bus_zenoh import open_zenoh
 from onboard.runtime.inbox import QUEUE_MAX, Inbox
+from onboard.runtime.zenoh_config import LEASE_MS
 from onboard.wire.bus.topics import Delivery
 from tests.support.bus_stages import Heard, free_port
 from tests.support.real_time import patience, until
@@ -138,7 +139,7 @@ async def test_endpoints_may_come_from_a_zenoh_file(tmp_path: Path) -> None:
 def test_a_program_ends_whether_the_bus_ever_came_or_not(closing: str) -> None:
     program = f"""
 import asyncio
-from onboard.runtime.bus_zenoh import LEASE_MS, open_zenoh
+from onboard.runtime.bus_zenoh import open_zenoh
 async def main():
     bus = await open_zenoh("tcp/127.0.0.1:{free_port()}")
     bus.announce("apollonius/range/vehicles/2/alive")
@@ -158,7 +159,7 @@ async def test_a_process_that_dies_or_hangs_is_seen_to_leave(end: signal.Signals
     endpoint = f"tcp/127.0.0.1:{free_port()}"
     program = f"""
 import asyncio
-from onboard.runtime.bus_zenoh import LEASE_MS, open_zenoh
+from onboard.runtime.bus_zenoh import open_zenoh
 async def main():
     bus = await open_zenoh("{endpoint}")
     bus.announce("apollonius/range/vehicles/2/alive")
