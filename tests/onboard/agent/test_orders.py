@@ -9,7 +9,8 @@ from onboard.autopilot.base import ReleaseMode, Stage
 from onboard.core.safety.policy import Action
 from onboard.game.scenario import Kind
 from onboard.wire.bus.messages import CommandKind
-from tests.support.flights import (
+from tests.support.virtual_time import virtual
+from tests.support.whole_games import (
     PURSUER,
     autopilot,
     chase,
@@ -24,7 +25,6 @@ from tests.support.flights import (
     speed,
     under_way,
 )
-from tests.support.virtual import virtual
 
 WORDS = {
     Kind.PX4: {"hold": "HOLD", "return": "RTL", "land": "LAND", "abort": "HOLD"},
