@@ -96,8 +96,8 @@ class Stage(Enum):
     TAKEN = "taken"  # somebody else changed the mode: hands off
 
 
-class Way(Enum):
-    """How to leave."""
+class ReleaseMode(Enum):
+    """What the autopilot shall do alone when this agent leaves."""
 
     HOLD = "hold"
     RETURN = "return"
@@ -157,7 +157,7 @@ class Adapter(Protocol):
         """Ask for the guided mode until the heartbeat reports it. Also takes control back after TAKEN."""
         ...
 
-    def leave(self, now: float, way: Way) -> None:
+    def leave(self, now: float, mode: ReleaseMode) -> None:
         """End the setpoints and ask for a mode the autopilot can hold alone, until it reports it."""
         ...
 

@@ -15,7 +15,7 @@ import msgspec
 
 from onboard.config.strict import ConfigError
 from onboard.game.scenario import Scenario
-from onboard.runtime.bus_zenoh import DEFAULT_ENDPOINT
+from onboard.runtime.zenoh_config import DEFAULT_ENDPOINT
 from onboard.wire.bus.topics import DEFAULT_GAME
 from sim_bridge.programs import run_folder
 

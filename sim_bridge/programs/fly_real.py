@@ -13,9 +13,10 @@ from onboard.core.math.vectors import distance
 from onboard.game.master import Standing
 from onboard.game.scenario import Scenario
 from onboard.game.staging import target_of
-from onboard.runtime.bus_zenoh import DEFAULT_ENDPOINT, ZenohBus
+from onboard.runtime.bus_zenoh import ZenohBus
 from onboard.runtime.clock import RealClock
 from onboard.runtime.protocols import Sample
+from onboard.runtime.zenoh_config import DEFAULT_ENDPOINT
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus.messages import Event, Outcome, Phase, Severity
 from onboard.wire.bus.topics import DECISION, DEFAULT_GAME, key

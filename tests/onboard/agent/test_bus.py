@@ -18,7 +18,8 @@ from onboard.runtime.patterns import matches
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus.messages import Master, Role, Track
 from onboard.wire.bus.topics import DECISION, EVADER_BRIEF, MASTER, SETUP, STATE, TRACK, Delivery, key
-from tests.support.flights import (
+from tests.support.virtual_time import virtual
+from tests.support.whole_games import (
     EVADER,
     MATE,
     PURSUER,
@@ -28,7 +29,6 @@ from tests.support.flights import (
     passes,
     under_way,
 )
-from tests.support.virtual import virtual
 
 
 @virtual

@@ -12,8 +12,8 @@ from onboard.config.strict import ConfigError
 from onboard.core.math.vectors import Vec, distance
 from onboard.game.scenario import Kind
 from onboard.wire.bus.messages import Role
-from tests.support.flights import EVADER, chase, choose_mode, flies, game_of, mode, passes, place
-from tests.support.virtual import virtual
+from tests.support.virtual_time import virtual
+from tests.support.whole_games import EVADER, chase, choose_mode, flies, game_of, mode, passes, place
 
 ROUTE = """
 name = "round"
