@@ -55,7 +55,7 @@ def planar(
     animate: Annotated[Path | None, typer.Option(help="GIF or MP4 of the first game.")] = None,
 ) -> None:
     """Play the paper's plane game; exit 1 when a verdict differs from the paper's."""
-    from onboard.runtime.plugins import pursuer_strategy
+    from onboard.game.plugins import pursuer_strategy
     from sim_bridge.plane_game import program as room
 
     if dt is not None and not 0.0 < dt <= 1.0:

@@ -11,6 +11,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, BinaryIO, NamedTuple
 
+from msgspec import convert
+
 from gcs.recording.recorder import Recorder
 from onboard.agent.agent import Agent
 from onboard.agent.config import AgentConfig
@@ -18,7 +20,7 @@ from onboard.core.math.constants import NS_PER_S
 from onboard.game.master import GameMaster
 from onboard.game.scenario import Scenario
 from onboard.runtime.bus_memory import MemoryBroker, MemoryBus
-from onboard.runtime.impairment import Impaired, Impairment, impairment_of
+from onboard.runtime.impairment import Impaired, Impairment
 from onboard.runtime.links import memory_pair
 from onboard.runtime.protocols import Bus, Clock, Link, Sample
 from onboard.wire.bus.messages import Event, Health, Outcome, Phase, Role
@@ -93,7 +95,7 @@ class Rehearsal:
         self._tasks: dict[int, asyncio.Task[None]] = {}
         self._options = options
         self._tlogs: dict[int, tuple[BinaryIO, TlogWriter]] = {}
-        impairment = impairment_of(scenario.flight.impairment)
+        impairment = convert(scenario.flight.impairment, Impairment, from_attributes=True)
         on_bus = scenario.flight.impairment.bus
         self.broker = MemoryBroker(
             impairment if on_bus else None, generator(self.seed, "bus") if on_bus else None

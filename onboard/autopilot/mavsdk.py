@@ -127,7 +127,7 @@ class MavsdkAdapter(GuidedAdapter):
     @property
     def child(self) -> int | None:
         """The child's process id, while there is one."""
-        return self._courier.process.pid if self._courier is not None else None
+        return self._courier.process.pid if isinstance(self._courier, Child) else None
 
     def close(self) -> None:
         """End the child."""

@@ -15,10 +15,10 @@ from typing import NamedTuple
 
 from onboard.config.strict import ConfigError
 from onboard.core.math.constants import NS_PER_S
+from onboard.game.plugins import evader_strategy, pursuer_strategy
 from onboard.game.scenario import Scenario, load
 from onboard.runtime.clock import RealClock
 from onboard.runtime.loop import run_virtual, virtual_clock
-from onboard.runtime.plugins import evader_strategy, pursuer_strategy
 from onboard.runtime.run_folder import new_run
 from sim_bridge.programs import run_folder
 from sim_bridge.world.summary import Summary
