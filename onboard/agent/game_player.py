@@ -25,10 +25,10 @@ from onboard.core.safety.policy import Action, Cause, Seen
 from onboard.core.safety.supervisor import Verdict, Watch, supervise
 from onboard.core.safety.words import ACTIONS, CAUSES
 from onboard.core.strategy.registry import EVADERS, PURSUERS
+from onboard.game.plugins import evader_strategy, pursuer_strategy
 from onboard.pilot.memory import Memory
 from onboard.pilot.pilot import Pilot, PilotDecision
 from onboard.pilot.setup import GameSetup, Own, Side, TrackSample
-from onboard.runtime.plugins import evader_strategy, pursuer_strategy
 from onboard.runtime.protocols import Clock
 from onboard.wire.bus.messages import Phase, PhaseChange, Role, Setup, Severity, Track
 from onboard.wire.geodesy import Frame

@@ -139,6 +139,11 @@ class MavsdkAdapter(GuidedAdapter):
         """Return whether the optional extra is installed."""
         return find_spec("mavsdk") is not None
 
+    @property
+    def child(self) -> int | None:
+        """The child's process id, while there is one."""
+        return self._courier.process.pid if isinstance(self._courier, Child) else None
+
     def close(self) -> None:
         """End the child."""
         if self._courier is not None:
