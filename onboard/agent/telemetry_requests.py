@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 
 from onboard.autopilot.parameters import WANTED
-from onboard.autopilot.stream_rates import NEEDS, Asking, Need, capacity_of
+from onboard.autopilot.stream_rates import NEEDS, Need, StreamRates, capacity_of
 from onboard.autopilot.timesync import TimesyncEstimator
 from onboard.core.math.constants import NEVER, NS_PER_S
 from onboard.wire.mavlink import commands
@@ -44,7 +44,7 @@ class Requests:
         baud = baud_of(link)
         self.parameters: dict[str, float] = {}
         self.clock = TimesyncEstimator()
-        self._rates = Asking(
+        self._rates = StreamRates(
             kind,
             to,
             capacity_of(baud) if baud else None,
