@@ -120,12 +120,9 @@ class VehicleSpec(struct_from(VehicleLimits, Player, LIMIT_KEYS)):  # type: igno
         speed, fastest = self.speed, self.speed_max
         demand(self.speed_min <= speed, "speed_min", self.speed_min, f"0 to speed = {speed:g} m/s")
         demand(fastest is None or fastest >= speed, "speed_max", fastest, f"at least speed = {speed:g} m/s")
-        for angle, low, high, most in (
-            ("pitch", self.pitch_min_deg, self.pitch_max_deg, 90),
-            ("yaw", self.yaw_min_deg, self.yaw_max_deg, 360),
-        ):
-            demand(low <= high, f"{angle}_min_deg", f"{low:g} with {angle}_max_deg {high:g}",
-                   f"−{most} ≤ min ≤ max ≤ {most}")  # fmt: skip
+        for angle in ("pitch", "yaw"):
+            low, high = getattr(self, f"{angle}_min_deg"), getattr(self, f"{angle}_max_deg")
+            demand(low <= high, f"{angle}_min_deg", f"{low:g} with {angle}_max_deg {high:g}", "min ≤ max")
 
     def start(self) -> Vec:
         """Start in the game frame."""
@@ -189,12 +186,12 @@ class FenceSpec(StrictConfig, frozen=True):
     """Geofence: polygon of [north, east] and a height band [m]."""
 
     polygon: Polygon
-    height_min: Coordinate
-    height_max: Coordinate
+    height_min: Coordinate  # [m]
+    height_max: Coordinate  # [m]
 
     def __post_init__(self) -> None:
-        demand(self.height_min < self.height_max, "height_min", self.height_min,
-               f"less than height_max = {self.height_max:g} m")  # fmt: skip
+        below = f"less than height_max = {self.height_max:g} m"
+        demand(self.height_min < self.height_max, "height_min", self.height_min, below)
 
 
 class Flight(StrictConfig, frozen=True):
@@ -243,8 +240,8 @@ class Scenario(StrictConfig, frozen=True):
 
     def __post_init__(self) -> None:
         demand(self.evader.speed > 0, "evader.speed", self.evader.speed, "a positive speed [m/s]")
-        for index, pursuer in enumerate(self.pursuers):
-            demand(pursuer.target is None, f"pursuers[{index}].target", pursuer.target,
+        for index, v in enumerate(self.pursuers):
+            demand(v.target is None, f"pursuers[{index}].target", v.target,
                    "no target: only the evader has one")  # fmt: skip
         ids = self.ids
         demand(len(set(ids)) == len(ids), "pursuers.id", list(ids), "ids that differ")
@@ -284,5 +281,5 @@ def vec(point: Point) -> Vec:
 
 
 def load(path: Path) -> Scenario:
-    """Read a scenario file. Raises ConfigError with file, key, found and expected."""
+    """Read a scenario file. Raises ConfigError that names file, key, found and expected."""
     return config.read(path, Scenario)

@@ -151,13 +151,15 @@ class MemoryBus:
         self._kept: dict[str, _Kept] = {}
         self._counts: Counter[str] = Counter()
         self._delivery = MemoryDelivery(channel, self._counts)
+        self.tap: Callable[[Sample], None] | None = None  # is told of everything delivered to this connection
+        self.stopped = False  # its process is stopped (SIGSTOP): publishes nothing, and its tokens stay
         self._online = False
         self._closed = False
 
     def publish(self, key: str, payload: bytes, delivery: Delivery) -> None:
         """Put a message; counts `no_bus` while there is no broker."""
-        if self._closed:
-            self._counts["closed"] += 1
+        if self._closed or self.stopped:
+            self._counts["closed" if self._closed else "stopped"] += 1
             return
         number = 0
         if delivery in (Delivery.CACHED, Delivery.EVENT):
@@ -270,6 +272,14 @@ class MemoryBus:
             counts.update({f"in_{cause}": count for cause, count in self.channel.counts.items()})
         return counts
 
+    def cut(self) -> None:
+        """From now on nothing goes out or comes in, and nobody is told: as with a radio out of reach."""
+        self._online = False
+
+    def mend(self) -> None:
+        """End a `cut`: what publishers keep is caught up with, as after a broker's return."""
+        self._returned()
+
     async def close(self) -> None:
         """Leave the broker; tokens and kept values go with it."""
         if self._closed:
@@ -333,6 +343,8 @@ class MemoryBus:
                         continue
                     listener.had[source] = number
                 self._counts["received"] += 1
+                if self.tap is not None:
+                    self.tap(Sample(sample.key, payload))
                 listener.receiver(Sample(sample.key, payload))
 
         self._delivery.bring(delivery, sample.payload, arrived)

@@ -35,8 +35,8 @@ class Autopilot(AutopilotState):
 
     def __init__(self, setup: Setup, now_ns: int) -> None:
         super().__init__(setup, now_ns)
-        self._handlers: dict[int, Callable[[int, DialectPacket], None]] = self._message_handlers()
-        self._commands: dict[int, Callable[[int, Command], int]] = self._command_handlers()
+        self.handlers: dict[int, Callable[[int, DialectPacket], None]] = self._message_handlers()
+        self.commands: dict[int, Callable[[int, Command], int]] = self._command_handlers()
         self._framers: OrderedDict[Hashable, Framer] = OrderedDict()
         self._ground_station_ns = -1  # last heartbeat of the watched one; −1 = never
         self._heartbeat_ns = now_ns  # when the next one is due
@@ -225,7 +225,7 @@ class Autopilot(AutopilotState):
         ) not in (0, COMPONENT):
             self.counters["for_others"] += 1
             return
-        handler = self._handlers.get(message.get_msgId())
+        handler = self.handlers.get(message.get_msgId())
         if handler is None:
             self.counters["not_handled"] += 1
             return
@@ -242,7 +242,7 @@ class Autopilot(AutopilotState):
         self._obey(now_ns, from_int(packet))
 
     def _obey(self, now_ns: int, command: Command) -> None:
-        handler = self._commands.get(command.number)
+        handler = self.commands.get(command.number)
         result = UNSUPPORTED if handler is None else handler(now_ns, command)
         self.emit(
             dialect.MAVLink_command_ack_message(

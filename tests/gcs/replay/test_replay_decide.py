@@ -14,7 +14,7 @@ from onboard.runtime.loop import run_virtual, virtual_clock
 from onboard.runtime.resources import configs
 from onboard.wire.bus.messages import Role
 from sim_bridge.rehearsal import Options, Rehearsal
-from tests.support.chase import chase
+from tests.support.chase_messages import chase
 
 
 @pytest.fixture(scope="module")

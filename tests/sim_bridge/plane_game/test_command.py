@@ -18,6 +18,7 @@ from onboard.runtime.program import run
 from sim_bridge.cli import app
 from sim_bridge.plane_game.program import table1
 from tests.support.paths import ROOT
+from tests.support.real_time import patience
 
 pytestmark = pytest.mark.timeout(300)  # twenty games at 0.01 s are 200,000 steps
 
@@ -46,8 +47,8 @@ def command(*words: object) -> Ended:
 def process(*words: object, folder: Path) -> Ended:
     """`sim-bridge planar …` as a process of its own."""
     done = subprocess.run(
-        [sys.executable, "-m", "sim_bridge.cli", "planar", *map(str, words)], cwd=folder, timeout=100,
-        check=False, capture_output=True, text=True,
+        [sys.executable, "-m", "sim_bridge.cli", "planar", *map(str, words)], cwd=folder,
+        timeout=patience(40.0), check=False, capture_output=True, text=True,
         env={**os.environ, "PYTHONPATH": str(ROOT)},
     )  # fmt: skip
     return Ended(done.returncode, done.stdout, done.stderr)

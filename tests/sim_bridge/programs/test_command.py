@@ -11,7 +11,7 @@ from onboard.game.scenario import load
 from onboard.runtime.resources import configs
 from sim_bridge.programs.fly import Options, demand_strategies, fly, scenario_file
 from sim_bridge.programs.scenario_tools import TEMPLATE, check, new
-from tests.support.programs import bridge, short
+from tests.support.sim_bridge_process import bridge, short
 
 EDITS = [  # what is wrong in the file, and what is said of it
     ("speed = 5", "sped = 5", "evader.sped: unknown key"),

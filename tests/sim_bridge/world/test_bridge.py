@@ -28,10 +28,10 @@ from onboard.wire.bus.topics import (
     vehicle_of,
 )
 from sim_bridge.world.bridge import Bridge, Options
-from tests.support.buses import Heard
-from tests.support.scripted import ScriptedAgent, for_a_while
-from tests.support.virtual import virtual
-from tests.support.waiting import until
+from tests.support.bus_stages import Heard
+from tests.support.real_time import until
+from tests.support.scripted_agents import ScriptedAgent, for_a_while
+from tests.support.virtual_time import virtual
 
 GAME = "range"
 

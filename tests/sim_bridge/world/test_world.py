@@ -20,8 +20,8 @@ from onboard.wire.mavlink.dialect import dialect
 from onboard.wire.mavlink.modes import ARDUCOPTER_MODES
 from sim_bridge.vehicle.motion import Air, Motion
 from sim_bridge.world.world import BEHIND_MAX, World
-from tests.support.companions import Companion
-from tests.support.virtual import virtual
+from tests.support.scripted_companion import Companion
+from tests.support.virtual_time import virtual
 
 POSITION = dialect.MAVLINK_MSG_ID_GLOBAL_POSITION_INT
 
