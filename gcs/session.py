@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from gcs.console.source import Key
 from gcs.picture.values import Picture
 from gcs.settings import Settings
-from gcs.station import Station
+from gcs.station import Station, StationSetup
 from onboard.runtime.bus_zenoh import ZenohBus, open_zenoh
 from onboard.runtime.clock import RealClock
 from onboard.wire.bus.messages import CommandKind, Severity
@@ -79,9 +79,8 @@ async def on_air(settings: Settings, *, listen: bool, record: bool) -> AsyncIter
     async with AsyncExitStack() as stack:
         bus = await open_zenoh(settings.bus.endpoint or None, listen=listen, config_file=zenoh)
         stack.push_async_callback(bus.close)
-        station = Station(
-            bus, clock, settings.game, operator=settings.signature, limits=settings.alerts, version=version()
-        )
+        who = StationSetup(settings.game, settings.signature, version(), settings.alerts)
+        station = Station(bus, clock, who)
         keeper = None
         if record:
             links = []

@@ -5,7 +5,7 @@ from __future__ import annotations
 from datetime import UTC, datetime
 from math import degrees
 
-from gcs.picture.values import CommandView, Picture, Presence
+from gcs.picture.values import CommandView, LegState, Picture, Presence
 from onboard.wire.bus.messages import Severity
 
 Runs = list[tuple[str, str]]
@@ -30,7 +30,7 @@ def _game(picture: Picture) -> list[str]:
     parts = [f"{name} {phase} {game.clock}"]
     if game.outcome is not None:
         by = f" by {game.outcome.captor}" if game.outcome.captor else ""
-        parts.append(f"evader {game.outcome.verdict}{by}")
+        parts.append(f"evader {game.outcome.verdict.value}{by}")
     elif picture.assessment is not None:
         found = picture.assessment
         gap = "encircled" if found.encircled else f"gap {degrees(found.largest_gap):.0f}°"
@@ -66,17 +66,16 @@ def _shown(command: CommandView, picture: Picture) -> bool:
 
 
 def _command(command: CommandView) -> Runs:
-    done = sum(leg.state == "confirmed" for leg in command.legs)
-    text = f"{command.kind}: {done} of {len(command.legs)} confirmed"
+    done = sum(leg.state is LegState.CONFIRMED for leg in command.legs)
+    text = f"{command.kind.value}: {done} of {len(command.legs)} confirmed"
     if command.confirmed:
         slowest = max(leg.took_s for leg in command.legs)
         return [(f"{text} in {slowest:.1f} s", "green")]
     groups: dict[str, list[str]] = {}
     for leg in command.legs:
-        if leg.state != "confirmed":
-            word = "no answer" if leg.state == "sent" else leg.state
+        if leg.state is not LegState.CONFIRMED:
             said = f" ({leg.reason})" if leg.reason else ""
-            groups.setdefault(word, []).append(f"{leg.id}{said}")
+            groups.setdefault(leg.state.words, []).append(f"{leg.id}{said}")
     rest = "; ".join(f"{word}: {', '.join(ids)}" for word, ids in groups.items())
     return [(f"{text}; {rest}", "bold yellow")]
 
@@ -94,4 +93,3 @@ def log_lines(picture: Picture, width: int) -> list[Runs]:
 def clock(at_ns: int) -> str:
     """Time of day, UTC."""
     return datetime.fromtimestamp(at_ns // 1_000_000_000, UTC).strftime("%H:%M:%S")
-

@@ -191,7 +191,8 @@ class Log(Part, frozen=True):
 
 def layout(kind: type[Part]) -> Layout:
     """The channel layout of one of the messages above."""
-    return Layout(f"foxglove.{kind.__name__}", "json", as_bytes(_plain(inlined(msgspec.json.schema(kind)))))
+    schema = inlined(msgspec.json.schema(kind), {})
+    return Layout(f"foxglove.{kind.__name__}", "json", as_bytes(_plain(schema)))
 
 
 def _plain(node: Any) -> Any:

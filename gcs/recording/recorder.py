@@ -14,7 +14,7 @@ from pathlib import Path
 
 import msgspec
 
-from gcs.picture.journal import Remark
+from gcs.picture.station_journal import HEARD_HERE, Remark
 from gcs.recording.file import McapWriter, OpenDisk, OsFile, WholeFile
 from gcs.recording.schemas import Layout, layout_of
 from gcs.recording.views import Views
@@ -145,10 +145,10 @@ class Recorder:
         return bool(self._file.trouble) and self._file.waiting_bytes > self._most_waiting
 
     def _open_channel(self, key: str) -> int:
-        layout = layout_of(key)
-        if layout is None or len(self._channels) >= MOST_CHANNELS:
-            key, layout = OTHER, Layout("", "msgpack", b"")
-        return self._channel(key, layout)
+        place = HEARD_HERE.find(key)
+        if place is None or len(self._channels) >= MOST_CHANNELS:
+            return self._channel(OTHER, Layout("", "msgpack", b""))
+        return self._channel(key, layout_of(place.topic))
 
     def _put(self, topic: str, layout: Layout, payload: bytes, stamp_ns: int) -> None:
         self._writer.message(self._channel(topic, layout), stamp_ns, payload)

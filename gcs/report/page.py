@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from gcs.picture.values import LegState
 from gcs.report import theme as look
 from gcs.report.data import NS, Run
 from gcs.report.plotly_parts import Figure
@@ -19,6 +20,7 @@ POLICY = (
     "default-src 'none'; script-src 'unsafe-inline' 'unsafe-eval'; style-src 'unsafe-inline'; "
     "img-src data: blob:; font-src data:; worker-src blob:"
 )
+TAGS = {LegState.CONFIRMED: "good", LegState.REFUSED: "error"}  # of others: warning
 CONFIG = {"responsive": True, "displaylogo": False, "scrollZoom": True, "showSendToCloud": False}
 STYLE = f"""
 :root {{ color-scheme: light; }}
@@ -176,11 +178,11 @@ def commands(run: Run) -> str:
         at = f"{(command.issued_ns - run.t0_ns) / NS:.1f}"
         legs = []
         for leg in command.legs:
-            kind = "good" if leg.state == "confirmed" else "error" if leg.state == "refused" else "warning"
-            took = f" in {leg.took_s:.2f} s" if leg.state == "confirmed" else ""
+            kind = TAGS.get(leg.state, "warning")
+            took = f" in {leg.took_s:.2f} s" if leg.state is LegState.CONFIRMED else ""
             why = f" ({escape(leg.reason)})" if leg.reason else ""
-            legs.append(f"<span class='tag {kind}'>{leg.id} {escape(leg.state)}{took}</span>{why}")
-        rows.append([at, escape(command.kind), escape(command.sender), " ".join(legs)])
+            legs.append(f"<span class='tag {kind}'>{leg.id} {escape(leg.state.value)}{took}</span>{why}")
+        rows.append([at, escape(command.kind.value), escape(command.sender), " ".join(legs)])
     return _table(["at s", "command", "from", "vehicles"], rows, numbers=(0,)) if rows else ""
 
 

@@ -10,21 +10,24 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from enum import Enum
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from onboard.core.game.referee import Score, Verdict, judge, opening, passage
 from onboard.core.math.vectors import ZERO, Vec, along, sub
-from onboard.wire.bus import messages as swarm
+from onboard.wire.bus.codec import M
 from onboard.wire.bus.messages import (
+    AgentStage,
     EvaderBrief,
     Health,
     Master,
     Message,
     Outcome,
+    OutcomeResult,
     Phase,
     PhaseChange,
     Role,
     Setup,
+    Triple,
 )
 from onboard.wire.bus.topics import EVADER_BRIEF, MASTER, OUTCOME, PHASE, SETUP, Topic
 
@@ -34,8 +37,12 @@ LEASE_EVERY_NS = NS // 2
 LISTEN_NS = 12 * NS // 10  # a master that holds the lease speaks twice in this time
 HEALTH_NS = 3 * NS  # an agent silent for longer is not there: six heartbeats lost in a row
 SUPERSEDED_NS = 15 * NS // 10  # an agent's earlier process counts as gone after this silence
-READY_STAGES = ("ready", "acting")
-_WORDS = {Verdict.CAPTURED: "captured", Verdict.ARRIVED: "arrived", Verdict.ESCAPED: "escaped"}
+READY_STAGES = (AgentStage.READY, AgentStage.ACTING)
+_RESULTS = {
+    Verdict.CAPTURED: OutcomeResult.CAPTURED,
+    Verdict.ARRIVED: OutcomeResult.ARRIVED,
+    Verdict.ESCAPED: OutcomeResult.ESCAPED,
+}
 
 
 class Standing(Enum):
@@ -58,7 +65,7 @@ class Timing(NamedTuple):
 class Publication(NamedTuple):
     """Something to be put on the bus."""
 
-    topic: Topic
+    topic: Topic[Any]
     message: Message
 
 
@@ -141,7 +148,7 @@ class GameMaster:
     def abort(self, wall_ns: int, now_ns: int, reason: str) -> None:
         """End the game without a verdict."""
         if self.outcome is None and self.standing is not Standing.YIELDED:
-            self._end("aborted", self._elapsed(wall_ns), 0, wall_ns, now_ns, reason)
+            self._end(OutcomeResult.ABORTED, self._elapsed(wall_ns), 0, wall_ns, now_ns, reason)
 
     # ------------------------------------------------------------------ time passes
 
@@ -181,7 +188,8 @@ class GameMaster:
             elif len(agent.nonces) > 1:
                 lacking[id] = "two agents with this id"
             elif agent.health.stage not in READY_STAGES:
-                lacking[id] = f"{agent.health.stage}: {', '.join(agent.health.lacks) or 'no reason given'}"
+                why = ", ".join(agent.health.lacks) or "no reason given"
+                lacking[id] = f"{agent.health.stage.value}: {why}"
         return lacking
 
     def observe(self, wall_ns: int, now_ns: int, positions: Mapping[int, Vec]) -> None:
@@ -224,7 +232,7 @@ class GameMaster:
             self._enter(Phase.READY, wall_ns, "")
         elif lacking and patience_ns > 0 and now_ns - self._staged_ns > patience_ns:
             missing = "; ".join(f"vehicle {id}: {reason}" for id, reason in sorted(lacking.items()))
-            self._end("aborted", 0.0, 0, wall_ns, now_ns, f"not ready in time: {missing}")
+            self._end(OutcomeResult.ABORTED, 0.0, 0, wall_ns, now_ns, f"not ready in time: {missing}")
 
     def _count_down(self, wall_ns: int, now_ns: int) -> None:
         lacking = self.lacking(now_ns)
@@ -248,7 +256,7 @@ class GameMaster:
             if silent or health is None:
                 continue
             if health.nonce == agent.acting_nonce:
-                if id in resume and health.stage == "acting":
+                if id in resume and health.stage is AgentStage.ACTING:
                     resume.discard(id)
             elif len(agent.nonces) == 1:
                 agent.acting_nonce = health.nonce
@@ -278,7 +286,7 @@ class GameMaster:
             self.nearest[id] = min(self.nearest.get(id, seen), seen)
         if score.verdict != Verdict.RUNNING:
             captor = ids[score.captor] if score.captor >= 0 else 0
-            self._end(_WORDS[Verdict(score.verdict)], score.time, captor, wall_ns, now_ns, "")
+            self._end(_RESULTS[Verdict(score.verdict)], score.time, captor, wall_ns, now_ns, "")
 
     def _judged(self, position: Vec) -> Vec:
         """Plane games and field profiles are judged horizontally."""
@@ -287,13 +295,15 @@ class GameMaster:
     def _elapsed(self, wall_ns: int) -> float:
         return max(0.0, (wall_ns - self.t0_ns) / NS) if self.phase is Phase.RUNNING else 0.0
 
-    def _end(self, verdict: str, time: float, captor: int, wall_ns: int, now_ns: int, reason: str) -> None:
+    def _end(
+        self, result: OutcomeResult, time: float, captor: int, wall_ns: int, now_ns: int, reason: str
+    ) -> None:
         smallest = self.score.smallest if self.score is not None else -1.0
-        self.outcome = Outcome(verdict, time, captor, smallest, wall_ns, reason)
+        self.outcome = Outcome(result, time, captor, smallest, wall_ns, reason)
         self._ended_ns = now_ns
         self._resume = ()
         self._put(OUTCOME, self.outcome)
-        self._enter(Phase.ENDED, wall_ns, reason or verdict)
+        self._enter(Phase.ENDED, wall_ns, reason or result.value)
 
     def _enter(self, phase: Phase, wall_ns: int, reason: str) -> None:
         self.phase = phase
@@ -303,10 +313,10 @@ class GameMaster:
     def _publish_phase(self, wall_ns: int, reason: str) -> None:
         self._put(PHASE, PhaseChange(self.phase, self.t0_ns, wall_ns, self._resume, reason))
 
-    def _triple_target(self) -> swarm.Triple | None:
+    def _triple_target(self) -> Triple | None:
         return None if self._target is None else (self._target.x, self._target.y, self._target.z)
 
-    def _put(self, topic: Topic, message: Message) -> None:
+    def _put(self, topic: Topic[M], message: M) -> None:
         self._outgoing.append(Publication(topic, message))
 
     def _say(self, line: str) -> None:

@@ -24,7 +24,7 @@ from onboard.config.strict import ConfigError
 from onboard.runtime.inbox import Inbox
 from onboard.runtime.patterns import intersects
 from onboard.runtime.protocols import Sample, Subscription
-from onboard.wire.bus.topics import ROOT, TOPICS, Delivery, topic_of
+from onboard.wire.bus.topics import TOPICS, Delivery
 
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
 EVENTS_KEPT = 256  # events a publisher keeps of each key
@@ -34,9 +34,7 @@ FIRST_ATTEMPT_S = 2.0  # `open_zenoh` returns at the latest after this, connecte
 CLOSE_S = 2.0
 _HEARTBEAT_S = 0.5  # of advanced publishers: how soon a lost last event is noticed
 _KEPT = (Delivery.CACHED, Delivery.EVENT)
-_KEPT_PATTERNS = tuple(
-    f"{ROOT}/*/{topic.suffix.format(id='*')}" for topic in TOPICS if topic.delivery in _KEPT
-)
+_KEPT_PATTERNS = tuple(topic.key("*") for topic in TOPICS if topic.delivery in _KEPT)
 
 
 class _Declared:
@@ -148,8 +146,8 @@ class ZenohBus:
                 return
             key = str(sample.key_expr)
             call = partial(deliver, Sample(key, sample.payload.to_bytes()))
-            topic = topic_of(key)
-            if topic is not None and topic.delivery is Delivery.LATEST and not every:
+            place = TOPICS.find(key)
+            if place is not None and place.topic.delivery is Delivery.LATEST and not every:
                 inbox.latest((slot, key), call)
             else:
                 inbox.queue(call)

@@ -21,10 +21,8 @@ from onboard.game.scenario import Scenario
 from onboard.game.staging import target_of
 from onboard.runtime.bus_zenoh import DEFAULT_ENDPOINT, ZenohBus
 from onboard.runtime.clock import RealClock
-from onboard.runtime.protocols import Sample
-from onboard.wire.bus import messages as swarm
-from onboard.wire.bus.messages import Event, Outcome, Phase, Severity
-from onboard.wire.bus.topics import DECISION, DEFAULT_GAME, key
+from onboard.wire.bus.messages import DecisionReport, Event, Outcome, Phase, Severity
+from onboard.wire.bus.topics import DECISION, DEFAULT_GAME, Dispatcher
 from sim_bridge.programs import run_folder
 from sim_bridge.programs.serve import Options as ServeOptions
 from sim_bridge.programs.serve import serve_scenario
@@ -132,7 +130,8 @@ class Show:
         self._recorder.hear(bus)
         self.bridge = bridge
         self.observer = Observer(self._scenario, self._seed, "real", DEFAULT_GAME, bus, self._heard)
-        bus.subscribe(key(DEFAULT_GAME, DECISION, self._scenario.ids[0]), self._decided)
+        hear = Dispatcher(self._drops).on(DECISION, self._decided)
+        bus.subscribe(DECISION.key(DEFAULT_GAME, self._scenario.ids[0]), hear)
         self.crew.ports = ports
         self.crew.aboard.set()
 
@@ -140,10 +139,8 @@ class Show:
         if event.severity is not Severity.INFO:
             self._say(f"  vehicle {event.id}: {event.text}")
 
-    def _decided(self, sample: Sample) -> None:
-        decision = swarm.DECISION.decode(sample.payload, self._drops)
-        if decision is not None:
-            self._rule = decision.rule.replace("_", " ")
+    def _decided(self, decision: DecisionReport) -> None:
+        self._rule = decision.rule.replace("_", " ")
 
     async def _tell(self) -> None:
         """What is going on, every few seconds."""

@@ -7,9 +7,8 @@ from pathlib import Path
 import pytest
 
 from onboard.game.scenario import ImpairmentSpec, Kind, SensorSpec
-from onboard.wire.bus import messages as swarm
-from onboard.wire.bus.messages import Phase
-from onboard.wire.bus.topics import EVADER_BRIEF, OUTCOME, key, topic_of, vehicle_of
+from onboard.wire.bus.messages import OutcomeResult, Phase
+from onboard.wire.bus.topics import EVADER_BRIEF, OUTCOME, TOPICS
 from onboard.wire.mavlink.tlog import read_tlog
 from tests.support.duels import GUIDED, HOLD, STORY, Heard, duel, phases
 from tests.support.flights import EVADER, MATE, PURSUER, game_of, mode, passes, place, speed
@@ -27,7 +26,7 @@ async def test_a_game_stages_starts_plays_and_ends_with_a_capture(kind: Kind) ->
         assert speed(game, EVADER) == pytest.approx(40.0 if kind is Kind.ARDUPLANE else 4.0, rel=0.1)
         outcome = await game.until_ended()
         await passes(game, 1.0)
-        assert (outcome.verdict, outcome.captor) == ("captured", PURSUER)
+        assert (outcome.verdict, outcome.captor) == (OutcomeResult.CAPTURED, PURSUER)
         assert 3.0 < outcome.time < (40.0 if kind is Kind.ARDUPLANE else 8.0)
         assert [phases(game, id) for id in (EVADER, PURSUER)] == [STORY, STORY]
         assert [mode(game, id) for id in (EVADER, PURSUER)] == [HOLD[kind]] * 2
@@ -53,7 +52,7 @@ async def test_with_three_in_ten_messages_lost_everywhere_it_still_plays_to_the_
         heard = Heard(game)
         outcome = await game.until_ended()
         await passes(game, 3.0)
-        assert (outcome.verdict, outcome.captor) == ("captured", PURSUER)
+        assert (outcome.verdict, outcome.captor) == (OutcomeResult.CAPTURED, PURSUER)
         for id in game.scenario.ids:
             assert phases(game, id)[-3:] == STORY[-3:], "what is cached arrives, be it late"
             counts = game.links[id].counters()
@@ -62,7 +61,7 @@ async def test_with_three_in_ten_messages_lost_everywhere_it_still_plays_to_the_
                 share = lost / (lost + sent) if way == "out" else lost / sent
                 assert share == pytest.approx(0.3, abs=0.06), way
         assert {mode(game, id) for id in game.scenario.ids} == {"LOITER"}
-        assert len({vehicle_of(sample.key) for sample in heard.samples}) > 3
+        assert len({TOPICS.find(sample.key).id for sample in heard.samples}) > 3
     log = [entry.packet for entry in read_tlog((tmp_path / "vehicle-2.tlog").read_bytes())]
     assert {packet.component for packet in log} == {1, 191}
     assert sum(packet.message.get_type() == "GLOBAL_POSITION_INT" for packet in log) > 80
@@ -77,12 +76,12 @@ async def test_no_agent_is_ever_handed_what_it_must_not_know_and_a_late_comer_le
             bus = game.start_agent(id).bus
             tap(bus, delivered[id])
         outcome = await game.until_ended()
-        brief = key(game.game, EVADER_BRIEF)
+        brief = EVADER_BRIEF.key(game.game)
         assert brief in delivered[EVADER]
         for id, keys in delivered.items():
-            others = {vehicle_of(k) for k in keys if "/vehicles/" in k and vehicle_of(k) != id}
+            others = {TOPICS.find(k).id for k in keys if "/vehicles/" in k and TOPICS.find(k).id != id}
             assert others == ({MATE if id == PURSUER else PURSUER} if id != EVADER else set())
-            assert {topic_of(k).suffix for k in keys if "/vehicles/" in k} <= {  # type: ignore[union-attr]
+            assert {TOPICS.find(k).topic.suffix for k in keys if "/vehicles/" in k} <= {  # type: ignore[union-attr]
                 "vehicles/{id}/state", "vehicles/{id}/health",
             }  # fmt: skip
             if id != EVADER:
@@ -90,10 +89,10 @@ async def test_no_agent_is_ever_handed_what_it_must_not_know_and_a_late_comer_le
         assert place(game, EVADER).x > 4.0
         heard: list[bytes] = []  # by somebody who comes when it is over
         late = game.broker.connect("late")
-        late.subscribe(key(game.game, OUTCOME), lambda sample: heard.append(sample.payload))
+        late.subscribe(OUTCOME.key(game.game), lambda sample: heard.append(sample.payload))
         assert await game.until(lambda: bool(heard), 1.0)
-        assert swarm.OUTCOME.decode(heard[0], game.observer.drops) == outcome
-        assert (outcome.verdict, outcome.time) == ("escaped", 2.0)
+        assert OUTCOME.decode(heard[0], game.observer.drops) == outcome
+        assert (outcome.verdict, outcome.time) == (OutcomeResult.ESCAPED, 2.0)
 
 
 def tap(bus: object, keys: set[str]) -> None:

@@ -18,9 +18,8 @@ from onboard.game.scenario import (
     VehicleSpec,
 )
 from onboard.runtime.loop import virtual_clock
-from onboard.wire.bus import messages as swarm
 from onboard.wire.bus.messages import Command, CommandKind, CommandReply, Phase
-from onboard.wire.bus.topics import COMMAND, key
+from onboard.wire.bus.topics import COMMAND
 from sim_bridge.rehearsal import Rehearsal
 from sim_bridge.vehicle.autopilot.autopilot import Autopilot
 
@@ -107,7 +106,7 @@ def command(kind: CommandKind, id: str = "c-1", sender: str = "tower") -> Comman
 
 async def order(game: Rehearsal, vehicle: int, what: Command, timeout_s: float = 0.5) -> CommandReply:
     """Send a command once; the reply."""
-    replies = await game.bus.request(key(game.game, COMMAND, vehicle), swarm.COMMAND.encode(what), timeout_s)
-    reply = swarm.COMMAND_REPLY.decode(replies[0], Counter())
+    replies = await game.bus.request(COMMAND.key(game.game, vehicle), COMMAND.encode(what), timeout_s)
+    reply = COMMAND.decode_reply(replies[0], Counter())
     assert reply is not None
     return reply

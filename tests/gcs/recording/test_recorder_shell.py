@@ -13,7 +13,7 @@ from gcs.recording.file import OsFile
 from gcs.recording.reader import Recording
 from gcs.recording.shell import Keeper
 from gcs.recording.tlog import TlogRecorder
-from gcs.station import Station
+from gcs.station import Station, StationSetup
 from onboard.config.strict import ConfigError
 from onboard.runtime.bus_memory import MemoryBroker
 from onboard.runtime.links import memory_pair
@@ -91,7 +91,7 @@ def test_a_full_disk_stops_a_log_and_room_continues_it_without_a_gap(tmp_path: P
 async def test_a_station_with_a_keeper_records_bus_journal_and_links(tmp_path: Path) -> None:
     clock = virtual_clock()
     broker = MemoryBroker()
-    station = Station(broker.connect(), clock, "field")
+    station = Station(broker.connect(), clock, StationSetup("field"))
     vehicle, ground = memory_pair("radio")
     folder = new_run(tmp_path, "field", station.now_ns())
     keeper = Keeper(station, folder, [ground])
@@ -103,7 +103,7 @@ async def test_a_station_with_a_keeper_records_bus_journal_and_links(tmp_path: P
         sender = Sender(2, 1)
         for item in chase(2.0, story=False):
             if item.key.split("/")[2] != "gcs":
-                agent.publish(item.key, item.payload, topics.topic_of(item.key).delivery)  # type: ignore[union-attr]
+                agent.publish(item.key, item.payload, topics.TOPICS.find(item.key).topic.delivery)  # type: ignore[union-attr]
                 published += 1
             if published % 20 == 0:
                 vehicle.send(heartbeat(sender))
@@ -134,7 +134,7 @@ class Plug(OsFile):
 async def test_a_full_disk_is_an_alert_of_the_station_until_there_is_room(tmp_path: Path) -> None:
     clock = virtual_clock()
     broker = MemoryBroker()
-    station = Station(broker.connect(), clock, "field")
+    station = Station(broker.connect(), clock, StationSetup("field"))
     station.open()
     keeper = Keeper(station, tmp_path, opener=Plug)
     Plug.full = True

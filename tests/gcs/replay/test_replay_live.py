@@ -9,7 +9,7 @@ from gcs.picture.values import Picture
 from gcs.recording.shell import Keeper
 from gcs.replay.player import Player
 from gcs.replay.source import open_run
-from gcs.station import Station
+from gcs.station import Station, StationSetup
 from onboard.runtime.bus_memory import MemoryBroker
 from onboard.runtime.loop import virtual_clock
 from onboard.wire.bus import topics
@@ -24,7 +24,7 @@ NS = 1_000_000_000
 async def test_a_replay_shows_what_the_live_station_showed(tmp_path: Path) -> None:
     clock = virtual_clock()
     broker = MemoryBroker()
-    station = Station(broker.connect(), clock, "field", new_id=lambda: "hold-1")
+    station = Station(broker.connect(), clock, StationSetup("field"), new_id=lambda: "hold-1")
     keeper = Keeper(station, tmp_path)
     agents = broker.connect()
     shown: list[Picture] = []
@@ -38,14 +38,14 @@ async def test_a_replay_shows_what_the_live_station_showed(tmp_path: Path) -> No
         running = [tasks.create_task(task) for task in (station.run(), keeper.run(), look())]
         began_ns = clock.wall_ns()
         for item in chase(20.0):
-            topic = topics.topic_of(item.key)
+            place = topics.TOPICS.find(item.key)
             flown_ns = item.stamp_ns - EPOCH_NS
-            if topic is None or ("/vehicles/2/" in item.key and 8 * NS < flown_ns < 11 * NS):
+            if place is None or ("/vehicles/2/" in item.key and 8 * NS < flown_ns < 11 * NS):
                 continue
             ahead = began_ns + flown_ns - clock.wall_ns()
             if ahead > 0:
                 await asyncio.sleep(ahead / NS)
-            agents.publish(item.key, item.payload, topic.delivery)
+            agents.publish(item.key, item.payload, place.topic.delivery)
             if flown_ns > 9.2 * NS and not station.picture().commands:
                 station.command(CommandKind.HOLD, (1, 2, 3))
                 station.acknowledge("")
