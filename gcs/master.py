@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 from gcs.picture.station_journal import SENT, Sent
 from gcs.station import Station
+from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec, along, sub
 from onboard.game.master import GameMaster, Standing, Timing
 from onboard.game.scenario import Scenario
@@ -33,12 +34,11 @@ from onboard.wire.bus.messages import (
 )
 from onboard.wire.bus.topics import Heard, Topic
 
-NS = 1_000_000_000
 NAME = "gcs"
 STEP_S = 0.05
 LAG_NS = 300_000_000  # the instant judged lies so far back; most messages are there by then
 KEPT = 64  # positions of each vehicle
-LATE_NS = 1 * NS  # a position is carried forward at most so far; then the vehicle is not judged
+LATE_NS = 1 * NS_PER_S  # a position is carried forward at most so far; then the vehicle is not judged
 RECOVERY_S = 3.0
 
 
@@ -76,7 +76,7 @@ def _at(fixes: deque[Fix], at_ns: int) -> Vec | None:
     newest = fixes[-1]
     if at_ns >= newest.at_ns:
         late = at_ns - newest.at_ns
-        return along(newest.position, newest.velocity, late / NS) if late <= LATE_NS else None
+        return along(newest.position, newest.velocity, late / NS_PER_S) if late <= LATE_NS else None
     after = newest
     for fix in reversed(fixes):
         if fix.at_ns <= at_ns:
@@ -180,7 +180,7 @@ class FieldMaster:
         self.rules.heard_master(master, now_ns)
 
     def _on_health(self, health: Health, now_ns: int) -> None:
-        self._offsets[health.id] = round(health.clock_offset_s * NS)
+        self._offsets[health.id] = round(health.clock_offset_s * NS_PER_S)
         self.rules.heard_health(health, now_ns)
 
     def _on_state(self, state: State, now_ns: int) -> None:

@@ -20,6 +20,7 @@ from gcs.picture.values import Leg, LegState, Picture
 from gcs.session import Session, on_air, version
 from gcs.settings import Settings
 from onboard.config.strict import ConfigError
+from onboard.core.math.constants import NS_PER_S
 from onboard.game.scenario import Scenario
 from onboard.runtime.clock import RealClock
 from onboard.wire.bus.messages import CommandKind, Role
@@ -101,17 +102,17 @@ async def command(settings: Settings, order: Order, *, sure: bool) -> int:
     """Give a command and wait for the confirmations."""
     async with on_air(settings, listen=False, record=False) as session:
         told: dict[int, str] = {}  # vehicle → command id
-        ends_ns = session.station.now_ns() + round(order.within_s * 1e9)
+        ends_ns = session.station.now_ns() + round(order.within_s * NS_PER_S)
         if order.kind is not CommandKind.ABORT:
             await _gather(session, order)
             ids = _whom(session, order)
             if ids and order.kind in ENDS_A_FLIGHT and not sure and not await _asked(order, ids):
                 print("gcs: not done", file=sys.stderr)
                 return 1
-            ends_ns = session.station.now_ns() + round(order.within_s * 1e9)
+            ends_ns = session.station.now_ns() + round(order.within_s * NS_PER_S)
         gathered_ns = session.station.now_ns()
         if order.kind is CommandKind.ABORT:
-            gathered_ns += round(GATHER_S * 1e9)
+            gathered_ns += round(GATHER_S * NS_PER_S)
         while session.station.now_ns() < ends_ns:
             fresh = [i for i in _whom(session, order) if i not in told]
             if fresh:  # an abort goes out at once, to whoever is known so far, and to the rest as it appears
@@ -226,7 +227,7 @@ def _print_through(player: Player) -> None:
             print(line)
         if player.ended:
             return
-        at_ns += 1_000_000_000
+        at_ns += NS_PER_S
 
 
 def decide_again(run: Path, strategies: dict[Role, str]) -> int:

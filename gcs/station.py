@@ -18,6 +18,7 @@ from gcs.picture.alert_rules import Thresholds
 from gcs.picture.courier import Courier
 from gcs.picture.reducer import GRID_NS, PictureReducer
 from gcs.picture.values import Picture
+from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.protocols import Bus, Clock, Sample, Subscription
 from onboard.wire.bus.codec import M
 from onboard.wire.bus.messages import Command, CommandKind, CommandReply, Role, Severity
@@ -25,7 +26,6 @@ from onboard.wire.bus.topics import ALIVE, DEFAULT_GAME, ROOT, Heard, Topic, eve
 
 Tap = Callable[[str, bytes, int], None]  # key, payload, now_ns
 Hearer = Callable[[Heard, int], None]  # what was heard, now_ns
-NS = 1_000_000_000
 
 
 class SteadyTime:
@@ -168,7 +168,7 @@ class Station:
         while True:
             self.reducer.tick(self.now_ns())
             self._count_overflow()
-            await asyncio.sleep(GRID_NS / NS)
+            await asyncio.sleep(GRID_NS / NS_PER_S)
 
     def _count_overflow(self) -> None:
         overflow = self.bus.counters().get("overflow", 0)

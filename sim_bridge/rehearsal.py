@@ -14,6 +14,7 @@ from typing import Any, BinaryIO
 from gcs.recording.recorder import Recorder
 from onboard.agent.agent import Agent
 from onboard.agent.config import AgentConfig
+from onboard.core.math.constants import NS_PER_S
 from onboard.game.master import GameMaster
 from onboard.game.scenario import Scenario
 from onboard.runtime.bus_memory import MemoryBroker, MemoryBus
@@ -153,7 +154,7 @@ class Rehearsal:
 
     async def until(self, holds: Callable[[], bool], within_s: float) -> bool:
         """Let time pass until a condition holds; False where it did not within `within_s`."""
-        end_ns = self.clock.monotonic_ns() + round(within_s * 1e9)
+        end_ns = self.clock.monotonic_ns() + round(within_s * NS_PER_S)
         while not holds():
             if self.clock.monotonic_ns() >= end_ns:
                 return False
@@ -234,7 +235,7 @@ class Rehearsal:
     def now(self) -> float:
         """Time since t₀ [s]; negative before it, 0 while it is not fixed."""
         t0 = self.master.t0_ns
-        return (self.clock.wall_ns() - t0) / 1e9 if t0 else 0.0
+        return (self.clock.wall_ns() - t0) / NS_PER_S if t0 else 0.0
 
     @property
     def master(self) -> GameMaster:

@@ -12,13 +12,14 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from gcs.picture.values import CommandView, Leg, LegState
+from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus.messages import Command, CommandKind, CommandReply
 
-NS = 1_000_000_000
 RETRY_NS = 80_000_000
-SLOW_AFTER_NS = 3 * NS
-SLOW_RETRY_NS = 1 * NS
-EXPIRY_NS = 5 * NS  # of `start` and `resume`: a vehicle that comes back later must not set off on its own
+SLOW_AFTER_NS = 3 * NS_PER_S
+SLOW_RETRY_NS = 1 * NS_PER_S
+# `start` and `resume` expire: a vehicle that comes back later must not set off on its own
+EXPIRY_NS = 5 * NS_PER_S
 KEPT = 50  # commands
 
 ENDS_A_FLIGHT = frozenset({CommandKind.RETURN, CommandKind.LAND})  # these ask twice; abort never does
@@ -146,7 +147,7 @@ class CommandBook:
                     reason=leg.reason,
                     mode=leg.mode,
                     obeyed=leg.obeyed,
-                    took_s=(end - order.issued_ns) / NS,
+                    took_s=(end - order.issued_ns) / NS_PER_S,
                 )
             )
         return CommandView(

@@ -6,7 +6,8 @@ import asyncio
 from collections import Counter
 from collections.abc import Callable
 
-from gcs.picture.command_book import NS, RETRY_NS, CommandBook, Due
+from gcs.picture.command_book import RETRY_NS, CommandBook, Due
+from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.protocols import Bus
 from onboard.wire.bus.messages import CommandReply
 from onboard.wire.bus.topics import COMMAND
@@ -46,7 +47,7 @@ class Courier:
                     await self._wake.wait()
                 for due in self._book.due(self._now_ns()):
                     requests.create_task(self._ask(due))
-                await asyncio.sleep(RETRY_NS / NS / 4)
+                await asyncio.sleep(RETRY_NS / NS_PER_S / 4)
 
     async def _ask(self, due: Due) -> None:
         key = COMMAND.key(self._game, due.id)

@@ -14,9 +14,10 @@ from collections.abc import Callable
 from typing import Any
 
 from gcs.picture.plausible import plausible
-from gcs.picture.records import NS, TrackRecord, VehicleRecord, age_s
+from gcs.picture.records import TrackRecord, VehicleRecord, age_s
 from gcs.picture.station_journal import HEARD_HERE, PRESENCE, REMARK, Presence, Remark
 from gcs.picture.values import GameView, LogLine, TrackView, VehicleView
+from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import (
     DecisionReport,
@@ -35,7 +36,7 @@ from onboard.wire.bus.messages import (
 from onboard.wire.bus.topics import Delivery, Heard, Party, Topic
 
 LOG_LENGTH = 500
-TRACK_KEPT_NS = 30 * NS
+TRACK_KEPT_NS = 30 * NS_PER_S
 MOST_VEHICLES = 250  # nothing on the bus can make the picture grow without end
 NO_PAYLOAD = (Delivery.REQUEST, Delivery.TOKEN)  # nobody publishes messages on such topics
 OWN_WORD = (Party.OWN_AGENT,)  # writers of what a vehicle's agent says of its vehicle
@@ -141,7 +142,7 @@ class Fleet:
 
     def _on_decision(self, decision: DecisionReport, now_ns: int) -> None:
         entry = self._life(decision.id, 0, now_ns)
-        if entry.decision is not None and decision.stamp_ns < entry.decision.stamp_ns - NS:
+        if entry.decision is not None and decision.stamp_ns < entry.decision.stamp_ns - NS_PER_S:
             entry.drops["late"] += 1
             return
         entry.decision, entry.decision_ns = decision, now_ns
@@ -162,7 +163,7 @@ class Fleet:
         if known is None:
             known = self._tracks[track.id] = TrackRecord(track, now_ns)
         known.rate.tick(now_ns)
-        restarted = now_ns - known.heard_ns > NS  # a sensor may come back with another clock
+        restarted = now_ns - known.heard_ns > NS_PER_S  # a sensor may come back with another clock
         if track.stamp_ns >= known.track.stamp_ns or restarted:
             known.track = track
             known.trail.add(track.position, now_ns)
@@ -198,7 +199,7 @@ class Fleet:
 
     def _on_master(self, master: Master, now_ns: int) -> None:
         if self._master is None or (master.name, master.nonce) != (self._master.name, self._master.nonce):
-            self._masters = {who: at for who, at in self._masters.items() if now_ns - at < 2 * NS}
+            self._masters = {who: at for who, at in self._masters.items() if now_ns - at < 2 * NS_PER_S}
             if len(self._masters) < 8:
                 self._masters[(master.name, master.nonce)] = now_ns
         else:
@@ -232,14 +233,14 @@ class Fleet:
         if outcome is not None and phase is not None and outcome.stamp_ns < phase.t0_ns:
             outcome = None  # cached from a game before this one
         t0_ns = phase.t0_ns if phase else 0
-        alive = sum(now_ns - at < 2 * NS for at in self._masters.values())
+        alive = sum(now_ns - at < 2 * NS_PER_S for at in self._masters.values())
         return GameView(
             name=self.name,
             setup=self._setup,
             phase=phase.phase if phase else None,
             reason=phase.reason if phase else "",
             t0_ns=t0_ns,
-            time_s=(now_ns - t0_ns) / NS if t0_ns else 0.0,
+            time_s=(now_ns - t0_ns) / NS_PER_S if t0_ns else 0.0,
             outcome=outcome,
             target=self._brief.target if self._brief else None,
             master=self._master,

@@ -16,14 +16,15 @@ from gcs.picture.alerts import Alerts, Finding
 from gcs.picture.assessment import assess
 from gcs.picture.command_book import CommandBook
 from gcs.picture.fleet import Fleet
-from gcs.picture.records import NS
 from gcs.picture.station_journal import Acknowledged, Remark, Replied, Sent
 from gcs.picture.values import Alert, LogLine, Picture
+from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus.messages import Severity
 from onboard.wire.bus.topics import Heard, Topic
 
-GRID_NS = NS // 10
-LONGEST_GAP_NS = 3600 * NS  # judged step by step; what a longer silence does to alerts is settled by then
+GRID_NS = NS_PER_S // 10
+# Judged step by step: what a longer silence does to alerts is settled by then.
+LONGEST_GAP_NS = 3600 * NS_PER_S
 
 
 class PictureReducer:

@@ -16,6 +16,7 @@ import msgspec
 from gcs.picture.station_journal import HEARD_HERE, REMARK, SENT, Remark, Sent
 from gcs.recording import foxglove as fox
 from gcs.recording.schemas import Layout
+from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import (
@@ -32,10 +33,10 @@ from onboard.wire.bus.messages import (
 )
 from onboard.wire.geodesy import Frame
 
-STEP_NS = fox.NS // 5
-SILENT_NS = 3 * fox.NS  # a vehicle not heard for this long is no longer drawn anew
+STEP_NS = NS_PER_S // 5
+SILENT_NS = 3 * NS_PER_S  # a vehicle not heard for this long is no longer drawn anew
 TRAIL_STEPS = 60  # of one second
-TRAIL_NS = 5 * fox.NS  # trails are drawn anew so often: they are most of a scene's bytes
+TRAIL_NS = 5 * NS_PER_S  # trails are drawn anew so often: they are most of a scene's bytes
 CONE_LENGTH = 25.0  # [m] blocked cones are drawn so far
 MOST_DRAWN = 250
 
@@ -164,7 +165,7 @@ class Views:
         if self._changed:
             entities += self._still(at)
             self._changed = False
-        whole_second = at_ns % fox.NS == 0
+        whole_second = at_ns % NS_PER_S == 0
         trails = at_ns % TRAIL_NS == 0
         for vehicle_id, drawn in sorted(self._vehicles.items()):
             if not drawn.state or at_ns - drawn.heard_ns > SILENT_NS:

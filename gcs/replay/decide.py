@@ -15,6 +15,7 @@ from math import degrees
 from typing import NamedTuple
 
 from gcs.recording.reader import Entry
+from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.states import Limits
 from onboard.core.math.vectors import NORTH, TINY, ZERO, Vec, along, angle_between, norm, unit
 from onboard.core.strategy.registry import EVADERS, PURSUERS
@@ -37,7 +38,6 @@ from onboard.wire.bus.messages import (
 )
 from onboard.wire.bus.topics import Dispatcher
 
-NS = 1_000_000_000
 ANGLE_DEG = 5.0  # directions closer than this are the same
 SPEED = 0.5  # [m/s] and speeds
 PAUSE_S = 0.5  # differences farther apart are told apart
@@ -221,7 +221,7 @@ class _Again:
         if report.rule in ("", "none"):
             self._skipped["the agent had nothing to decide"] += 1
             return
-        if state is None or abs(report.stamp_ns - state.stamp_ns) > OLD_STATE_S * NS:
+        if state is None or abs(report.stamp_ns - state.stamp_ns) > OLD_STATE_S * NS_PER_S:
             self._skipped["no state of the vehicle at that time"] += 1
             return
         wanted = self._strategies.get(state.role) or report.strategy
@@ -302,7 +302,7 @@ class _Again:
         )
 
     def _seconds(self, stamp_ns: int) -> float:
-        return (stamp_ns - self._base_ns) / NS
+        return (stamp_ns - self._base_ns) / NS_PER_S
 
 
 def _pilot(vehicle: int, role: Role, name: str) -> Pilot:

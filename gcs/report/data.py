@@ -20,7 +20,6 @@ from onboard.game.scenario import Scenario
 from onboard.wire.bus.messages import Fence, Member, Outcome, Role, Setup, Triple
 
 Array = NDArray[np.float64]
-NS = 1_000_000_000
 MOST_POINTS = 4000  # a vehicle's samples are thinned to so many
 
 

@@ -11,8 +11,9 @@ import numpy as np
 
 from gcs.picture.values import LegState
 from gcs.report import theme as look
-from gcs.report.data import NS, Run
+from gcs.report.data import Run
 from gcs.report.plotly_parts import Figure
+from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus.messages import Role, Severity
 
 # The browser itself refuses every request; plotly.js compiles functions of its own (`unsafe-eval`).
@@ -71,7 +72,7 @@ def page(run: Run, figures: list[Figure], plotly_js: str) -> str:
     tables = [table for table in tables if table[3]]
     anchors = [(f.name, f.title) for f in figures] + [(name, title) for name, title, _, _ in tables]
     title = escape(run.name)
-    began = datetime.fromtimestamp(run.t0_ns // NS, UTC).strftime("%Y-%m-%d %H:%M:%S UTC")
+    began = datetime.fromtimestamp(run.t0_ns // NS_PER_S, UTC).strftime("%Y-%m-%d %H:%M:%S UTC")
     parts = [
         "<!doctype html>\n<html lang='en'>\n<head>\n<meta charset='utf-8'>\n",
         f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">\n',
@@ -175,7 +176,7 @@ def commands(run: Run) -> str:
     """Each command with who confirmed it, and after what time."""
     rows = []
     for command in run.commands:
-        at = f"{(command.issued_ns - run.t0_ns) / NS:.1f}"
+        at = f"{(command.issued_ns - run.t0_ns) / NS_PER_S:.1f}"
         legs = []
         for leg in command.legs:
             kind = TAGS.get(leg.state, "warning")
@@ -190,10 +191,10 @@ def alerts(run: Run) -> str:
     """Each alert from when to when."""
     rows = []
     for alert in run.alerts:
-        end = f"{(alert.cleared_ns - run.t0_ns) / NS:.1f}" if alert.cleared_ns else "in force"
+        end = f"{(alert.cleared_ns - run.t0_ns) / NS_PER_S:.1f}" if alert.cleared_ns else "in force"
         rows.append(
             [
-                f"{(alert.raised_ns - run.t0_ns) / NS:.1f}",
+                f"{(alert.raised_ns - run.t0_ns) / NS_PER_S:.1f}",
                 end,
                 f"<span class='tag {alert.severity.value}'>{alert.severity.value}</span>",
                 escape(f"vehicle {alert.id}" if alert.id else ""),
@@ -209,7 +210,7 @@ def log(run: Run) -> str:
     """What happened."""
     rows = [
         [
-            f"{(line.at_ns - run.t0_ns) / NS:.2f}",
+            f"{(line.at_ns - run.t0_ns) / NS_PER_S:.2f}",
             f"<span class='tag {line.severity.value}'>{escape(line.kind)}</span>",
             escape(f"vehicle {line.id}" if line.id else ""),
             escape(line.text),

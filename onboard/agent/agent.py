@@ -20,7 +20,8 @@ from onboard.agent.mavlink_radio import Radio, Record
 from onboard.agent.route_player import Tracking
 from onboard.agent.timing import Timing
 from onboard.agent.vehicle_link import Craft
-from onboard.autopilot.base import NEVER, Stage, Telemetry, Way
+from onboard.autopilot.base import Stage, Telemetry, Way
+from onboard.core.math.constants import NEVER, NS_PER_S
 from onboard.runtime.protocols import Bus, Clock, Link
 from onboard.runtime.tasks import Pace, periodic
 from onboard.wire.bus.messages import (
@@ -42,7 +43,6 @@ DECISION_EVERY_S = 0.095
 LATE = 1.3  # periods after a step without a position: then the timer causes the next
 ADAPTER_EVERY_S = 0.075  # the adapter's own retries want 80 ms
 LEAVE_S = 1.4  # to leave the vehicle in a mode it can hold alone
-_NS = 1_000_000_000
 
 
 def to_stderr(line: str) -> None:
@@ -105,7 +105,7 @@ class Agent:
     @property
     def now(self) -> float:
         """Monotonic time [s]."""
-        return self.clock.monotonic_ns() / _NS
+        return self.clock.monotonic_ns() / NS_PER_S
 
     # ------------------------------------------------------------------ life
 

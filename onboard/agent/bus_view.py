@@ -12,6 +12,7 @@ from typing import Any
 
 from onboard.agent.clocks import MasterClock
 from onboard.agent.journal import Journal
+from onboard.core.math.constants import NEVER, NS_PER_S
 from onboard.core.math.vectors import Vec
 from onboard.pilot.setup import MateState
 from onboard.runtime.protocols import Bus, Clock, Sample, Subscription
@@ -31,8 +32,6 @@ from onboard.wire.bus.topics import Dispatcher
 
 MASTERS_MAX = 8
 SAY_AGAIN_S = 30.0  # a trouble that goes on is said again after this
-NEVER = -1e9
-_NS = 1_000_000_000
 
 
 class Heard:
@@ -120,7 +119,7 @@ class Table:
         return tuple(
             MateState(
                 heard.state.id,
-                (heard.state.stamp_ns - base_ns) / _NS,
+                (heard.state.stamp_ns - base_ns) / NS_PER_S,
                 Vec(*heard.state.position),
                 Vec(*heard.state.velocity),
             )
@@ -130,7 +129,7 @@ class Table:
     @property
     def now(self) -> float:
         """Monotonic time [s]."""
-        return self._clock.monotonic_ns() / _NS
+        return self._clock.monotonic_ns() / NS_PER_S
 
     def _take(self, sample: Sample) -> None:
         if sample.key != self._own_track:

@@ -15,8 +15,9 @@ from onboard.agent.participation import Part
 from onboard.agent.readiness import lacking
 from onboard.agent.takeoff import TakeOff
 from onboard.agent.vehicle_link import Craft
-from onboard.autopilot.base import NEVER, Setpoint, Stage, Telemetry, Way
+from onboard.autopilot.base import Setpoint, Stage, Telemetry, Way
 from onboard.config.strict import ConfigError
+from onboard.core.math.constants import NEVER, NS_PER_S
 from onboard.core.math.vectors import ZERO, Vec, along
 from onboard.core.safety.policy import Action, Cause, Mate, Seen
 from onboard.core.safety.supervisor import Verdict, Watch, supervise
@@ -34,7 +35,6 @@ SILENT_S = 1.0  # a link silent for longer explains that the autopilot changed t
 REGAIN_S = 6.0  # … for so long afterwards
 WIND_FRESH_S = 10.0
 TRAINING_SLICES = 2  # of about 1 ms, after each control step
-_NS = 1_000_000_000
 
 
 class Flying(NamedTuple):
@@ -127,16 +127,16 @@ class Acting:
 
     def measured(self, track: Track) -> None:
         """A measurement came: the predictor takes it now, so that no setpoint waits for that."""
-        at = (track.stamp_ns - self._base_ns) / _NS
+        at = (track.stamp_ns - self._base_ns) / NS_PER_S
         sample = TrackSample(track.id, at, Vec(*track.position), Vec(*track.velocity), track.covariance)
         self._memory.take((sample,))
         if self.thought is not None:  # in play: what the next step asks for is reckoned now
-            self._memory.predict(track.id, (self._clock.wall_ns() - self._base_ns) / _NS)
+            self._memory.predict(track.id, (self._clock.wall_ns() - self._base_ns) / NS_PER_S)
 
     def train(self, wall_ns: int) -> None:
         """Give the predictors a little time, after everything else is done."""
         if self.flying is not None:
-            self._memory.train((wall_ns - self._base_ns) / _NS, TRAINING_SLICES)
+            self._memory.train((wall_ns - self._base_ns) / NS_PER_S, TRAINING_SLICES)
 
     # ------------------------------------------------------------------ what the master says
 
@@ -268,7 +268,7 @@ class Acting:
         if self.side is Side.EVADER and table.target is not None and game.target != table.target:
             game = game._replace(has_target=True, target=table.target)
             self.flying = flying._replace(game=game)
-        at = (wall_ns - self._base_ns) / _NS
+        at = (wall_ns - self._base_ns) / NS_PER_S
         mates = table.mate_states(self._base_ns)
         thought, self._memory = flying.pilot.step(at, own, (), mates, game, wind, self._memory)
         return thought
@@ -280,7 +280,7 @@ class Acting:
         position = along(t.position, t.velocity, min(max(0.0, now - t.position_at), 0.5))
         try:
             self.thought = self._decide(now, wall_ns, Own(position, t.velocity), wind)
-            self._alive_at = self._clock.monotonic_ns() / _NS
+            self._alive_at = self._clock.monotonic_ns() / NS_PER_S
             self._failing = False
         except Exception as error:  # a strategy of another distribution may fail in any way
             self.failures += 1
@@ -288,7 +288,8 @@ class Acting:
                 self._journal.error("strategy", f"{type(error).__name__}: {error}")
             self._failing = True
         thought = self.thought
-        thinking = (self._clock.monotonic_ns() - begun_ns) / _NS  # a strategy that took too long has stalled
+        # A strategy that took too long has stalled.
+        thinking = (self._clock.monotonic_ns() - begun_ns) / NS_PER_S
         seen = Seen(
             now=now,
             id=self.config.id,

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from datetime import UTC, datetime
 
+from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.protocols import Clock
 from onboard.wire.bus.messages import DecisionLevel, DecisionModule, Event, Severity
 from onboard.wire.bus.topics import EVENTS, Delivery
 
 BURST = 20  # events of one kind within `WINDOW_S` before the rest are only counted
 WINDOW_S = 10.0
-_NS = 1_000_000_000
 
 
 class Journal:
@@ -52,7 +52,7 @@ class Journal:
     def say(self, severity: Severity, kind: str, text: str, level: str = "", module: str = "") -> None:
         """Publish and log one event; a flood of one kind is cut and counted."""
         now = self._clock.monotonic_ns()
-        recent = [at for at in self._recent.get(kind, ()) if now - at < WINDOW_S * _NS]
+        recent = [at for at in self._recent.get(kind, ()) if now - at < WINDOW_S * NS_PER_S]
         if len(recent) >= BURST:
             self._recent[kind] = recent
             self.suppressed += 1
@@ -66,5 +66,5 @@ class Journal:
             level=DecisionLevel(level), module=DecisionModule(module), nonce=self._nonce,
         )  # fmt: skip
         self._publish(self._key, EVENTS.encode(event), EVENTS.delivery)
-        when = datetime.fromtimestamp(stamp / _NS, UTC).strftime("%H:%M:%S.%f")[:-3]
+        when = datetime.fromtimestamp(stamp / NS_PER_S, UTC).strftime("%H:%M:%S.%f")[:-3]
         self._log(f"{when} {severity.value:7} vehicle {self._id} {kind}: {text}")

@@ -13,6 +13,7 @@ from collections.abc import Callable, Hashable, Sequence
 from functools import partial
 
 from onboard.autopilot.link_redundancy import Redundant
+from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.protocols import Clock, Link
 from onboard.wire.mavlink.frames import Framer, MavMessage, Packet, Sender
 from onboard.wire.mavlink.signing import Signing
@@ -20,7 +21,6 @@ from onboard.wire.mavlink.signing import Signing
 PEERS_MAX = 16  # framing states of one link
 AUTOPILOT = 1  # MAV_COMP_ID_AUTOPILOT1
 SETPOINTS = ("SET_POSITION_TARGET_LOCAL_NED", "SET_ATTITUDE_TARGET")
-_NS = 1_000_000_000
 
 Record = Callable[[int, bytes], None]  # (wall [ns], frame)
 
@@ -120,7 +120,7 @@ class Radio:
             framer = Framer(stream=line.stream, signing=self._signing, causes=self.causes)
             line.framers[peer] = framer
         wall = self._clock.wall_ns()
-        now = self._clock.monotonic_ns() / _NS
+        now = self._clock.monotonic_ns() / NS_PER_S
         for packet in framer.feed(data, wall):
             if packet.system == self._system and packet.component == AUTOPILOT:
                 line.peer = peer

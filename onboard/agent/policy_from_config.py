@@ -6,6 +6,7 @@ from math import asin, pi, radians, sin, tan
 
 from onboard.agent.config import AgentConfig
 from onboard.autopilot import base
+from onboard.core.math.constants import STANDARD_GRAVITY
 from onboard.core.math.states import Limits
 from onboard.core.math.vectors import Vec
 from onboard.core.safety.fence import fits
@@ -13,8 +14,6 @@ from onboard.core.safety.field_profile import capture_in_space_refused, field_po
 from onboard.core.safety.policy import Envelope, Fence, Policy
 from onboard.pilot.setup import GameSetup, Player, Side
 from onboard.wire.bus.messages import Member, Role, Setup
-
-G = 9.80665  # [m/s²]
 
 
 def envelope_of(config: AgentConfig, member: Member | None, hovers: bool) -> Envelope:
@@ -31,7 +30,7 @@ def envelope_of(config: AgentConfig, member: Member | None, hovers: bool) -> Env
     turn = radians(e.turn_rate_deg) if e.turn_rate_deg is not None else 0.0
     if turn == 0.0 and member is not None:
         turn = member.turn_rate
-    coordinated = G * tan(bank) / max(speed_max, 1.0)
+    coordinated = STANDARD_GRAVITY * tan(bank) / max(speed_max, 1.0)
     if turn <= 0.0:
         turn = coordinated
     radius = e.turn_radius if e.turn_radius is not None else speed_max / max(1e-3, min(turn, coordinated))

@@ -19,9 +19,10 @@ from onboard.agent.journal import Journal
 from onboard.agent.mavlink_radio import Radio
 from onboard.agent.program import close_bus, open_bus, open_links, signing_of
 from onboard.agent.vehicle_link import Craft
-from onboard.autopilot.base import NEVER, Telemetry
+from onboard.autopilot.base import Telemetry
 from onboard.autopilot.parameters import findings
 from onboard.config.strict import ConfigError
+from onboard.core.math.constants import NEVER, NS_PER_S
 from onboard.runtime.bus_zenoh import DEFAULT_ENDPOINT
 from onboard.runtime.clock import RealClock
 from onboard.runtime.protocols import Bus, Clock, Link
@@ -36,7 +37,6 @@ ENOUGH = 0.7  # of the position rate that was asked for
 DISK_MIN = 200e6  # bytes free, for logs
 HARMLESS = ("no_peer", "muted", "twin")  # counted, but no bad frames
 DIALECT = "pymavlink.dialects.v20.ardupilotmega"
-_NS = 1_000_000_000
 
 
 class Mark(Enum):
@@ -259,15 +259,15 @@ async def _listen(
     try:
         begun = clock.monotonic_ns()
         beats = 0
-        while (past := (clock.monotonic_ns() - begun) / _NS) < seconds:
-            craft.chores(clock.monotonic_ns() / _NS)
+        while (past := (clock.monotonic_ns() - begun) / NS_PER_S) < seconds:
+            craft.chores(clock.monotonic_ns() / NS_PER_S)
             if past >= beats:
                 beats += 1
                 craft.heartbeat()
                 if craft.version is None:
                     radio.send(commands.request_message(craft.to, VERSION_MESSAGE))
             await asyncio.sleep(0.05)
-        now = clock.monotonic_ns() / _NS
+        now = clock.monotonic_ns() / NS_PER_S
         found = craft.version
         return seen._replace(
             now=now,

@@ -16,6 +16,7 @@ from onboard.agent.agent import Agent, to_stderr
 from onboard.agent.config import AgentConfig
 from onboard.agent.version import version
 from onboard.config.strict import ConfigError
+from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.bus_zenoh import open_zenoh
 from onboard.runtime.clock import RealClock
 from onboard.runtime.links import open_link
@@ -26,7 +27,7 @@ from onboard.wire.mavlink.signing import Signing
 from onboard.wire.mavlink.tlog import TlogWriter
 
 CLOSE_S = 0.5  # for the bus to close; the process ends within 2 s of a signal
-FLUSH_NS = 1_000_000_000
+FLUSH_NS = NS_PER_S
 
 
 def fly(config: AgentConfig, timing: Path | None = None) -> int:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from onboard.agent.bus_view import Table
 from onboard.agent.vehicle_link import Craft
-from onboard.autopilot.base import NEVER
 from onboard.autopilot.health import Thresholds, read
+from onboard.core.math.constants import NEVER
 from onboard.core.safety.policy import Policy
 from onboard.wire.bus.messages import Role
 

@@ -17,6 +17,7 @@ from onboard.agent.readiness import vehicle_lacks
 from onboard.agent.vehicle_link import Craft
 from onboard.autopilot.base import Stage
 from onboard.config.strict import ConfigError
+from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec
 from onboard.core.route.choice import TrackMemory
 from onboard.game.route_file import load_route
@@ -26,8 +27,6 @@ from onboard.pilot.setup import Own
 from onboard.runtime.protocols import Clock
 from onboard.wire.bus.messages import Member
 from onboard.wire.geodesy import Frame
-
-_NS = 1_000_000_000
 
 
 class Tracking(Acting):
@@ -74,7 +73,7 @@ class Tracking(Acting):
 
     def game_time(self, wall_ns: int) -> float:
         """Seconds since the route's start."""
-        return (wall_ns - self._begun_ns) / _NS if self._begun_ns >= 0 else 0.0
+        return (wall_ns - self._begun_ns) / NS_PER_S if self._begun_ns >= 0 else 0.0
 
     def _follow(self, wall_ns: int) -> None:
         """Find the origin, once."""

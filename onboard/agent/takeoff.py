@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from onboard.agent.vehicle_link import Craft
 from onboard.autopilot.base import Stage
+from onboard.core.math.constants import NEVER
 from onboard.wire.mavlink import commands
 from onboard.wire.mavlink.frames import MavMessage
 from onboard.wire.mavlink.modes import Kind, custom_mode
@@ -11,7 +12,6 @@ from onboard.wire.mavlink.modes import Kind, custom_mode
 AGAIN_S = 2.0
 ON_GROUND = 1  # MAV_LANDED_STATE_ON_GROUND
 REACHED = 0.9  # of the height
-NEVER = -1e9
 
 
 class TakeOff:

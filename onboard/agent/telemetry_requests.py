@@ -7,6 +7,7 @@ from collections import Counter
 from onboard.autopilot.parameters import WANTED
 from onboard.autopilot.stream_rates import NEEDS, Asking, Need, capacity_of
 from onboard.autopilot.timesync import TimesyncEstimator
+from onboard.core.math.constants import NEVER, NS_PER_S
 from onboard.wire.mavlink import commands
 from onboard.wire.mavlink.commands import Target
 from onboard.wire.mavlink.frames import MavMessage
@@ -54,7 +55,7 @@ class Requests:
         self._to = to
         self._px4 = kind is Kind.PX4_MULTICOPTER
         self._arrived: Counter[str] = Counter()
-        self._reviewed = self._param_at = self._clock_at = -1e9
+        self._reviewed = self._param_at = self._clock_at = NEVER
         self._missing = list(WANTED.get(kind, ()))
         self._tries = 0
         self._buffer_free = 1.0
@@ -76,7 +77,7 @@ class Requests:
     def again(self) -> None:
         """Ask for everything anew: the autopilot has started again, or another link is used."""
         self._rates.forget()
-        self._reviewed = -1e9
+        self._reviewed = NEVER
 
     def due(self, now: float, quality: float) -> list[MavMessage]:
         """What to send at `now` [s, monotonic]; `quality`: share of the autopilot's frames that arrive.
@@ -85,7 +86,7 @@ class Requests:
         messages: list[MavMessage] = []
         span = now - self._reviewed
         if span >= REVIEW_S:
-            first = span > 1e8
+            first = self._reviewed == NEVER
             share = max(0.1, quality)
             rates = {name: count / span / share for name, count in self._arrived.items()}
             messages += self._rates.step(now, rates, self._buffer_free, share)
@@ -99,5 +100,5 @@ class Requests:
             messages += [commands.param_read(self._to, name) for name in self._missing]
         if now - self._clock_at >= CLOCK_EVERY_S:
             self._clock_at = now
-            messages.append(self.clock.ask(round(now * 1e9)))
+            messages.append(self.clock.ask(round(now * NS_PER_S)))
         return messages

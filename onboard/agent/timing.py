@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections import deque
 
+from onboard.core.math.constants import NS_PER_S
+
 KEPT = 4000  # last measurements
 
 
@@ -12,7 +14,7 @@ class Timing:
 
     def __init__(self, period_s: float) -> None:
         self.overruns = 0  # control steps longer than their period
-        self._period_ns = round(period_s * 1e9)
+        self._period_ns = round(period_s * NS_PER_S)
         self.latencies: deque[int] = deque(maxlen=KEPT)  # position datagram → setpoint
         self.timer_steps = 0  # control steps that no position caused
         self.steps = 0

@@ -8,10 +8,11 @@ from onboard.agent.config import AgentConfig
 from onboard.agent.journal import Journal
 from onboard.agent.mavlink_radio import Radio
 from onboard.agent.telemetry_requests import Requests
-from onboard.autopilot.base import NEVER, Adapter, Envelope, Refusal, Setpoint, Stage, Telemetry
+from onboard.autopilot.base import Adapter, Envelope, Refusal, Setpoint, Stage, Telemetry
 from onboard.autopilot.choose import adapter_for
 from onboard.autopilot.mavsdk import MavsdkAdapter
 from onboard.autopilot.telemetry_state import Observer
+from onboard.core.math.constants import NEVER, NS_PER_S
 from onboard.wire.bus.messages import Severity
 from onboard.wire.mavlink import commands
 from onboard.wire.mavlink.commands import Target
@@ -120,7 +121,7 @@ class Craft:
         elif isinstance(value, ParamValue) and self._asking is not None:
             self._asking.parameter(value)
         elif isinstance(value, Timesync) and self._asking is not None:
-            answer = self._asking.clock.take(round(now * 1e9), value)
+            answer = self._asking.clock.take(round(now * NS_PER_S), value)
             if answer is not None:
                 self.radio.send(answer)
         elif isinstance(value, RadioStatus) and self._asking is not None:

@@ -8,11 +8,13 @@ and the plain variant's course (43002) never does: so to end is to command LOITE
 
 from __future__ import annotations
 
-from math import atan, atan2, pi, tan
+from math import atan, atan2, isfinite, tan
 
-from onboard.autopilot.base import NEVER, Envelope, Note, Setpoint, Stage, Step, Telemetry, Way
-from onboard.autopilot.envelope import is_finite, within
+from onboard.autopilot.base import Envelope, Note, Setpoint, Stage, Step, Telemetry, Way
+from onboard.autopilot.envelope import within
 from onboard.autopilot.mode_control import Control
+from onboard.core.math.angles import wrap
+from onboard.core.math.constants import NEVER, STANDARD_GRAVITY
 from onboard.core.math.vectors import Vec, add, clamp, norm
 from onboard.wire.mavlink import commands
 from onboard.wire.mavlink.commands import Target
@@ -20,7 +22,6 @@ from onboard.wire.mavlink.frames import MavMessage
 from onboard.wire.mavlink.modes import Kind
 from onboard.wire.mavlink.values import CommandAck
 
-G = 9.80665  # [m/s²]
 GAIN = 1.1  # [1/s] turn rate for an error of the course
 ROLL_EVERY = 0.03  # [s] at least between two roll targets: every step of a 20 Hz loop passes
 COURSE_EVERY = 0.1  # [s] between two course commands of the plain variant
@@ -41,11 +42,6 @@ FAULTS = {
 WAYS = {Way.HOLD: "LOITER", Way.RETURN: "RTL", Way.LAND: "RTL"}  # how it lands is its mission's business
 
 
-def wrapped(angle: float) -> float:
-    """The angle in (−π, π]."""
-    return pi - (pi - angle) % (2.0 * pi)
-
-
 def bank_for(course: float, velocity: Vec, yaw: float, bank_max: float) -> float:
     """Bank [rad, right positive] that turns the flight over ground towards a course [rad].
 
@@ -53,12 +49,12 @@ def bank_for(course: float, velocity: Vec, yaw: float, bank_max: float) -> float
     """
     ground = (velocity.x * velocity.x + velocity.y * velocity.y) ** 0.5
     present = atan2(velocity.y, velocity.x) if ground > CREEP else yaw
-    rate = GAIN * wrapped(course - present)
-    return clamp(atan(max(ground, CREEP) * rate / G), -bank_max, bank_max)
+    rate = GAIN * wrap(course - present)
+    return clamp(atan(max(ground, CREEP) * rate / STANDARD_GRAVITY), -bank_max, bank_max)
 
 
 def _fault(setpoint: Setpoint) -> str:
-    if not (is_finite(setpoint.velocity) and is_finite(setpoint.wind)):
+    if not (isfinite(norm(setpoint.velocity)) and isfinite(norm(setpoint.wind))):
         return "not_finite"
     return "no_direction" if norm(setpoint.velocity) <= 1e-6 else ""
 
@@ -188,11 +184,11 @@ class ArduPlaneAdapter:
             bank = bank_for(course, telemetry.velocity, telemetry.yaw, self.envelope.bank_max)
             return [commands.roll_target(self._to, telemetry.time_boot_s, bank)]
         stale = now - self._turned_at >= 1.0  # it may have been lost
-        new = self._course == NEVER or abs(wrapped(course - self._course)) >= COURSE_STEP
+        new = self._course == NEVER or abs(wrap(course - self._course)) >= COURSE_STEP
         if now - self._turned_at < COURSE_EVERY or not (new or stale):
             return []
         self._turned_at, self._course = now, course
-        lateral = G * tan(self.envelope.bank_max)
+        lateral = STANDARD_GRAVITY * tan(self.envelope.bank_max)
         return [commands.change_heading(self._to, course, lateral)]
 
     def _climb(self, now: float, telemetry: Telemetry, ground: Vec) -> list[MavMessage]:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections import OrderedDict
 from typing import NamedTuple
 
-from onboard.autopilot.base import NEVER
+from onboard.core.math.constants import NEVER
 from onboard.wire.mavlink.frames import Packet
 
 LOSS = 0.25  # [s] of silence at 20 Hz telemetry: half of the age at which telemetry counts as lost

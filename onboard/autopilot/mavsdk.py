@@ -12,15 +12,16 @@ import os
 import subprocess
 import sys
 from importlib.util import find_spec
-from math import degrees
+from math import degrees, isfinite
 from struct import Struct
 from typing import Protocol
 
-from onboard.autopilot.base import NEVER, Envelope, Note, Setpoint, Stage, Step, Telemetry, Way
-from onboard.autopilot.envelope import Shaper, is_finite
+from onboard.autopilot.base import Envelope, Note, Setpoint, Stage, Step, Telemetry, Way
+from onboard.autopilot.envelope import Shaper
 from onboard.autopilot.mode_control import Control
 from onboard.autopilot.velocity import GUIDED, WAYS, yaw_along
-from onboard.core.math.vectors import add
+from onboard.core.math.constants import NEVER
+from onboard.core.math.vectors import add, norm
 from onboard.wire.mavlink.commands import Target
 from onboard.wire.mavlink.modes import Kind
 from onboard.wire.mavlink.values import CommandAck
@@ -174,7 +175,7 @@ class MavsdkAdapter:
             courier.send(LINE.pack(order, now, 0.0, 0.0, 0.0, 0.0))
         if setpoint is not None and stage in (Stage.ENTERING, Stage.ACTIVE):
             wanted = add(setpoint.velocity, setpoint.wind)
-            if is_finite(wanted):
+            if isfinite(norm(wanted)):
                 v = self._shaper.shape(now, wanted)
                 yaw = degrees(yaw_along(v, telemetry.yaw))
                 courier.send(LINE.pack(SETPOINT, now, v.x, v.y, v.z, yaw))

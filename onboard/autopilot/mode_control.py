@@ -11,7 +11,8 @@ refusal a second passes. From IDLE, LEFT and TAKEN the pilot hands (back) by cho
 
 from __future__ import annotations
 
-from onboard.autopilot.base import NEVER, Note, Stage, Telemetry, Way
+from onboard.autopilot.base import Note, Stage, Telemetry, Way
+from onboard.core.math.constants import NEVER
 from onboard.wire.mavlink import commands
 from onboard.wire.mavlink.commands import Target
 from onboard.wire.mavlink.frames import MavMessage

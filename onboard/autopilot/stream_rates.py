@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from math import sqrt
 from typing import NamedTuple
 
-from onboard.autopilot.base import NEVER
+from onboard.core.math.constants import NEVER
 from onboard.wire.mavlink.commands import Target, set_message_interval
 from onboard.wire.mavlink.frames import MavMessage, frame_size, message_number
 from onboard.wire.mavlink.modes import Kind

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from typing import TypeVar, cast
 
-from onboard.autopilot.base import NEVER, Telemetry
+from onboard.autopilot.base import Telemetry
+from onboard.core.math.constants import NEVER
 from onboard.core.math.vectors import ZERO, Vec
 from onboard.wire.geodesy import Frame
 from onboard.wire.mavlink.frames import Packet

@@ -8,12 +8,12 @@ east and down: a velocity needs no origin.
 
 from __future__ import annotations
 
-from math import atan2
+from math import atan2, isfinite
 
 from onboard.autopilot.base import Envelope, Note, Setpoint, Stage, Step, Telemetry, Way
-from onboard.autopilot.envelope import Shaper, is_finite
+from onboard.autopilot.envelope import Shaper
 from onboard.autopilot.mode_control import Control
-from onboard.core.math.vectors import Vec, add
+from onboard.core.math.vectors import Vec, add, norm
 from onboard.wire.mavlink import commands
 from onboard.wire.mavlink.commands import Target
 from onboard.wire.mavlink.modes import Kind
@@ -100,7 +100,7 @@ class VelocityAdapter:
         if setpoint is None or not self._may_send(px4):
             return Step(tuple(messages), tuple(notes))
         wanted = add(setpoint.velocity, setpoint.wind)
-        if not is_finite(wanted):
+        if not isfinite(norm(wanted)):
             if not self._complained:
                 notes.append(Note("error", "not_finite", "a setpoint that is no number was not sent"))
             self._complained = True

@@ -13,6 +13,7 @@ from enum import Enum
 from typing import Any, NamedTuple
 
 from onboard.core.game.referee import Score, Verdict, judge, opening, passage
+from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import ZERO, Vec, along, sub
 from onboard.wire.bus.codec import M
 from onboard.wire.bus.messages import (
@@ -31,12 +32,11 @@ from onboard.wire.bus.messages import (
 )
 from onboard.wire.bus.topics import EVADER_BRIEF, MASTER, OUTCOME, PHASE, SETUP, Topic
 
-NS = 1_000_000_000
 LEASE_S = 2.0
-LEASE_EVERY_NS = NS // 2
-LISTEN_NS = 12 * NS // 10  # a master that holds the lease speaks twice in this time
-HEALTH_NS = 3 * NS  # an agent silent for longer is not there: six heartbeats lost in a row
-SUPERSEDED_NS = 15 * NS // 10  # an agent's earlier process counts as gone after this silence
+LEASE_EVERY_NS = NS_PER_S // 2
+LISTEN_NS = 12 * NS_PER_S // 10  # a master that holds the lease speaks twice in this time
+HEALTH_NS = 3 * NS_PER_S  # an agent silent for longer is not there: six heartbeats lost in a row
+SUPERSEDED_NS = 15 * NS_PER_S // 10  # an agent's earlier process counts as gone after this silence
 READY_STAGES = (AgentStage.READY, AgentStage.ACTING)
 _RESULTS = {
     Verdict.CAPTURED: OutcomeResult.CAPTURED,
@@ -174,7 +174,7 @@ class GameMaster:
             self._count_down(wall_ns, now_ns)
         elif self.phase is Phase.RUNNING:
             self._look_after(wall_ns, now_ns)
-        elif self.phase is Phase.ENDED and now_ns - self._ended_ns >= round(self._timing.recovery_s * NS):
+        elif self.phase is Phase.ENDED and now_ns - self._ended_ns >= self._timing.recovery_s * NS_PER_S:
             self._enter(Phase.RECOVERY, wall_ns, "")
 
     def lacking(self, now_ns: int) -> dict[int, str]:
@@ -224,11 +224,11 @@ class GameMaster:
 
     def _stage(self, wall_ns: int, now_ns: int) -> None:
         lacking = self.lacking(now_ns)
-        patience_ns = self._timing.timeout_s * NS
+        patience_ns = self._timing.timeout_s * NS_PER_S
         if not lacking and self._started:
             for agent in self._agents.values():
                 agent.acting_nonce = agent.health.nonce if agent.health else 0
-            self.t0_ns = wall_ns + round(self._timing.ready_s * NS)
+            self.t0_ns = wall_ns + round(self._timing.ready_s * NS_PER_S)
             self._enter(Phase.READY, wall_ns, "")
         elif lacking and patience_ns > 0 and now_ns - self._staged_ns > patience_ns:
             missing = "; ".join(f"vehicle {id}: {reason}" for id, reason in sorted(lacking.items()))
@@ -269,7 +269,7 @@ class GameMaster:
     def _judge(self, wall_ns: int, now_ns: int, here: dict[int, Vec]) -> None:
         assert self.score is not None
         setup, evader = self.setup, self._evader
-        start, dt = (self._before_ns - self.t0_ns) / NS, (wall_ns - self._before_ns) / NS
+        start, dt = (self._before_ns - self.t0_ns) / NS_PER_S, (wall_ns - self._before_ns) / NS_PER_S
         ids = tuple(id for id in self._pursuers if id in self._before and id in here)
         before = tuple(self._before[id] for id in ids)
         after = tuple(here[id] for id in ids)
@@ -293,7 +293,7 @@ class GameMaster:
         return Vec(position.x, position.y, 0.0) if self._flat else position
 
     def _elapsed(self, wall_ns: int) -> float:
-        return max(0.0, (wall_ns - self.t0_ns) / NS) if self.phase is Phase.RUNNING else 0.0
+        return max(0.0, (wall_ns - self.t0_ns) / NS_PER_S) if self.phase is Phase.RUNNING else 0.0
 
     def _end(
         self, result: OutcomeResult, time: float, captor: int, wall_ns: int, now_ns: int, reason: str

@@ -15,6 +15,7 @@ import numpy.typing as npt
 from onboard.config.strict import ConfigError
 from onboard.core.game.advance import advance
 from onboard.core.game.referee import Verdict
+from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import ZERO, Vec, along, distance
 from onboard.game.scenario import Scenario, load
 from onboard.pilot.predictor import PredictorKind, TrackPredictor, Trainer
@@ -247,7 +248,7 @@ def simulate(scenario: Scenario, seed: int = 0) -> Recording:
     sensor = Sensor(spec, (1,), np.random.default_rng([scenario.seed, seed]))
     samples = []
     for t, state in zip(times, states, strict=True):
-        now = round(t * 1e9)
+        now = round(t * NS_PER_S)
         motion = Motion(state.position, state.velocity, state.speed, 0.0, 0.0, 0.0)
         for track in sensor.step(now, {1: motion}):
             of = track.stamp_ns * 1e-9

@@ -11,6 +11,7 @@ from math import asin, atan2, cos, sin, sqrt
 from typing import NamedTuple
 
 from gcs.picture import station_journal
+from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus import messages, topics
 from onboard.wire.bus.messages import (
     AgentStage,
@@ -27,8 +28,7 @@ from onboard.wire.bus.messages import (
     Triple,
 )
 
-NS = 1_000_000_000
-EPOCH_NS = 1_760_000_000 * NS
+EPOCH_NS = 1_760_000_000 * NS_PER_S
 TARGET = (400.0, 100.0, -60.0)
 
 
@@ -82,7 +82,7 @@ def chase(
     def item(topic: topics.Topic, vehicle: int | None, payload: bytes, at_ns: int) -> Item:
         return Item(topic.key(game, vehicle), payload, at_ns)
 
-    t0_ns = EPOCH_NS + 2 * NS
+    t0_ns = EPOCH_NS + 2 * NS_PER_S
     if not state_only:
         yield item(topics.SETUP, None, topics.SETUP.encode(plan), EPOCH_NS)
         yield item(
@@ -104,7 +104,7 @@ def chase(
     for step in range(steps):
         now_ns = EPOCH_NS + 10_000 + step * 50_000_000
         running = now_ns >= t0_ns and not captured
-        time = (now_ns - t0_ns) / NS
+        time = (now_ns - t0_ns) / NS_PER_S
         if not state_only:
             if step == 20:
                 yield item(

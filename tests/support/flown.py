@@ -6,6 +6,7 @@ from collections.abc import Callable
 from math import cos, radians, sin
 from typing import Any
 
+from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import ZERO, Vec
 from onboard.game.scenario import Kind, VehicleSpec
 from onboard.wire.geodesy import Frame
@@ -15,8 +16,7 @@ from sim_bridge.vehicle.autopilot.make import autopilot_for
 from sim_bridge.vehicle.flight.kinematic import kinematic, start_motion
 from sim_bridge.vehicle.motion import Air, Demand
 
-SECOND = 1_000_000_000
-EPOCH_NS = 1_700_000_000 * SECOND
+EPOCH_NS = 1_700_000_000 * NS_PER_S
 ORIGIN = Frame(47.397742, 8.545594, 488.0)
 MULTICOPTER = VehicleSpec(position=(0.0, 0.0, 50.0), speed=5.0, speed_max=8.0)
 PLANE = VehicleSpec(
@@ -49,7 +49,7 @@ class Flown:
         self.kind = kind
         self.system = system
         self.air = Air(wind, ZERO)
-        self.tick_ns = round(tick_s * SECOND)
+        self.tick_ns = round(tick_s * NS_PER_S)
         self.now_ns = 0
         spec = spec or (PLANE if kind == Kind.ARDUPLANE else MULTICOPTER)
         position = spec.start() if airborne else spec.start()._replace(z=0.0)
@@ -83,16 +83,16 @@ class Flown:
 
     def fly(self, seconds: float, *, every_s: float = 0.0, send: Callable[[], Any] | None = None) -> Flown:
         """Let time pass; `send()` gives a message to be sent every `every_s` seconds."""
-        end = self.now_ns + round(seconds * SECOND)
+        end = self.now_ns + round(seconds * NS_PER_S)
         next_ns = self.now_ns
         self._collect()
         while self.now_ns < end:
             if send is not None and self.now_ns >= next_ns:
                 self.send(send())
-                next_ns += round(every_s * SECOND)
+                next_ns += round(every_s * NS_PER_S)
             self.now_ns += self.tick_ns
             self.demand = self.autopilot.step(self.now_ns, self.airframe.motion, self.air)
-            self.airframe.step(self.demand, self.air, self.tick_ns / SECOND)
+            self.airframe.step(self.demand, self.air, self.tick_ns / NS_PER_S)
             self._collect()
         return self
 

@@ -9,13 +9,13 @@ from gcs.picture.alert_rules import Thresholds
 from gcs.picture.reducer import PictureReducer
 from gcs.picture.station_journal import HEARD_HERE
 from gcs.picture.values import Picture, VehicleView
+from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus import messages, topics
 from onboard.wire.bus.codec import M
 from onboard.wire.bus.messages import AgentStage, Message, Phase, Role
 from onboard.wire.bus.topics import Topic
 
-NS = 1_000_000_000
-START_NS = 1_700_000_000 * NS
+START_NS = 1_700_000_000 * NS_PER_S
 GAME = "test"
 
 TOPIC = {topic.message: topic for topic in HEARD_HERE}
@@ -120,7 +120,7 @@ class Tower:
 
     def wait(self, seconds: float) -> None:
         """Let time pass in silence."""
-        self.now_ns += round(seconds * NS)
+        self.now_ns += round(seconds * NS_PER_S)
         self.reducer.tick(self.now_ns)
 
     def fly(self, seconds: float, *ids: int, state_hz: int = 20, **changes: object) -> None:

@@ -7,14 +7,14 @@ from pathlib import Path
 
 from gcs.recording.recorder import Recorder
 from gcs.recording.tlog import TlogRecorder
+from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec
 from onboard.wire.bus import messages, topics
 from onboard.wire.geodesy import Frame
 from onboard.wire.mavlink.frames import Sender, dialect
 from tests.support.chase import EPOCH_NS, Item, chase, setup
 
-NS = 1_000_000_000
-SILENT = range(EPOCH_NS + 8 * NS, EPOCH_NS + 11 * NS)  # vehicle 2 says nothing: an alert
+SILENT = range(EPOCH_NS + 8 * NS_PER_S, EPOCH_NS + 11 * NS_PER_S)  # vehicle 2 says nothing: an alert
 SCENARIO = """
 name = "a chase"
 [evader]

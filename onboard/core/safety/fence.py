@@ -11,8 +11,8 @@ from __future__ import annotations
 from math import atan2, cos, pi, sin, sqrt
 from typing import NamedTuple
 
+from onboard.core.math.angles import wrap
 from onboard.core.math.vectors import TINY, Vec, clamp
-from onboard.core.safety.envelope import wrap
 from onboard.core.safety.policy import Cause, Envelope, Fence
 
 PASSES = 4  # of projection on the walls, before what is left is scaled down

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from enum import IntEnum
-from math import pi
+from math import inf, pi
 from typing import NamedTuple
 
 from onboard.core.math.vectors import ZERO, Vec
@@ -124,7 +124,7 @@ class Seen(NamedTuple):
     strategy_age: float = 0.0  # since the strategy's last sign of life
     track_sigma: float = 0.0  # [m]; 0 = no track is needed
     ground_age: float = 0.0
-    clock_jump_age: float = 1e9  # since the wall clock last jumped
+    clock_jump_age: float = inf  # since the wall clock last jumped
     battery: float = -1.0  # share left; −1 = unknown
     ekf_ok: bool = True
     gps_fix: int = 3

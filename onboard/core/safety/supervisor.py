@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from onboard.core.math.vectors import ZERO, Vec, add, along, clamp, norm, sub
-from onboard.core.safety.envelope import believable, bounded, finite, slewed
+from onboard.core.math.constants import NEVER
+from onboard.core.math.vectors import ZERO, Vec, add, along, clamp, is_finite, norm, sub
+from onboard.core.safety.envelope import believable, bounded, slewed
 from onboard.core.safety.fence import brake, keep_height, outside_by, turn
 from onboard.core.safety.field_profile import keep_layer
 from onboard.core.safety.health import Demand, health
@@ -32,12 +33,12 @@ class Watch(NamedTuple):
     action: Action = Action.PASS  # in force
     cause: Cause = Cause.NONE
     since: float = 0.0  # monotonic [s]
-    urged: float = -1e9  # when the action in force was last demanded [s]
-    named: float = -1e9  # when the cause in force was last demanded [s]
+    urged: float = NEVER  # when the action in force was last demanded [s]
+    named: float = NEVER  # when the cause in force was last demanded [s]
     floor: Action = Action.PASS  # latched: nothing milder until control is handed back
     floor_cause: Cause = Cause.NONE
     demand: Vec = ZERO  # last setpoint, relative to the air [m/s]
-    stamp: float = -1e9  # when that was [s]
+    stamp: float = NEVER  # when that was [s]
 
 
 class Verdict(NamedTuple):
@@ -65,16 +66,16 @@ def supervise(wanted: Vec, seen: Seen, policy: Policy, watch: Watch) -> Verdict:
     allowed = Allowed(ZERO, Cause.NONE)
     wind = ZERO if policy.envelope.hovers or not believable(ZERO, seen.wind) else seen.wind
     if demand.action < Action.HOLD:
-        if finite(wanted):
+        if is_finite(wanted):
             allowed = _allow(wanted, wind, seen, policy, watch)
-        if not finite(wanted) or not finite(allowed.air):
+        if not is_finite(wanted) or not is_finite(allowed.air):
             demand = Demand(Action.HOLD, Cause.NOT_FINITE, False)
         elif allowed.cause != Cause.NONE:
             demand = Demand(Action.CLIP, allowed.cause, False)
     after = advance(watch, demand, seen.handed_back, seen.now, policy.settle)
     changed = after.action != watch.action or after.cause != watch.cause
     if after.action >= Action.HOLD:
-        after = after._replace(demand=ZERO, stamp=-1e9)
+        after = after._replace(demand=ZERO, stamp=NEVER)
         return Verdict(after.action, after.cause, False, ZERO, ZERO, after, changed)
     after = after._replace(demand=allowed.air, stamp=seen.now)
     return Verdict(after.action, after.cause, True, add(allowed.air, wind), allowed.air, after, changed)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
-from typing import Any, Generic, TypeVar
+from typing import Generic, TypeVar
 
 import msgspec
 
 from onboard.wire.bus.messages import SCHEMA, Message
+from onboard.wire.finite import all_finite
 
 M = TypeVar("M", bound=Message)
 
@@ -37,7 +38,7 @@ class Codec(Generic[M]):
         if version != SCHEMA:
             drops["schema"] += 1
             return None
-        if not _finite(msgspec.structs.astuple(message)):
+        if not all_finite(msgspec.structs.astuple(message)):
             drops["not_finite"] += 1
             return None
         return message
@@ -48,17 +49,3 @@ class Codec(Generic[M]):
         except (msgspec.DecodeError, UnicodeDecodeError, RecursionError):
             return False
         return version != SCHEMA
-
-
-def _finite(items: tuple[Any, ...]) -> bool:
-    """Whether no number in `items`, however deep, is NaN or infinite: msgspec lets those pass."""
-    for item in items:
-        if isinstance(item, float):
-            if item - item != 0.0:  # NaN for both
-                return False
-        elif isinstance(item, tuple):
-            if item and not _finite(item):
-                return False
-        elif isinstance(item, Message) and not _finite(msgspec.structs.astuple(item)):
-            return False
-    return True

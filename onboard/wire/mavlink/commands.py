@@ -7,7 +7,7 @@ that are not finite are the caller's error (the supervisor lets none pass).
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import cos, degrees, isfinite, sin
+from math import cos, degrees, sin
 from typing import Any, NamedTuple
 
 from onboard.core.math.vectors import Vec, clamp
@@ -216,13 +216,3 @@ def timesync(asked_ns: int, answered_ns: int = 0) -> MavMessage:
 def status_text(severity: int, text: str) -> MavMessage:
     """STATUSTEXT, cut to 50 bytes."""
     return _new(dialect.MAVLink_statustext_message, severity, text.encode("ascii", errors="replace")[:50])
-
-
-def is_finite(message: MavMessage) -> bool:
-    """Whether no field of a message is NaN or infinite."""
-    for name in message.fieldnames:
-        value = getattr(message, name)
-        values = value if isinstance(value, list) else (value,)
-        if any(isinstance(number, float) and not isfinite(number) for number in values):
-            return False
-    return True

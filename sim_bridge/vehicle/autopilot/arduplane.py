@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import asin, atan, atan2, ceil, degrees, floor, hypot, isfinite, pi, radians, sin
 
+from onboard.core.math.constants import STANDARD_GRAVITY
 from onboard.core.math.vectors import ZERO, clamp
 from onboard.wire.mavlink.frames import Packet, dialect
 from onboard.wire.mavlink.modes import ARDUPLANE_MODES
@@ -17,7 +18,6 @@ from sim_bridge.vehicle.autopilot.ardupilot import ABOVE_HOME, ABSOLUTE, ArduPil
 from sim_bridge.vehicle.autopilot.command import ACCEPTED, DENIED, FAILED, Command
 from sim_bridge.vehicle.autopilot.parameters import Parameters
 from sim_bridge.vehicle.autopilot.setup import Setup
-from sim_bridge.vehicle.flight.kinematic import G
 from sim_bridge.vehicle.motion import Demand, Lateral
 
 M = ARDUPLANE_MODES
@@ -62,7 +62,7 @@ class ArduPlane(ArduPilot):
     def _new_parameters(self) -> Parameters:
         s = self.setup
         bank = min(85.0, s.bank_max_deg)
-        radius = 1.5 * s.speed_cruise * s.speed_cruise / (G * max(0.1, _tan_deg(bank)))
+        radius = 1.5 * s.speed_cruise * s.speed_cruise / (STANDARD_GRAVITY * max(0.1, _tan_deg(bank)))
         own = {
             "SYSID_THISMAV": float(self.system),
             "AIRSPEED_MIN": float(floor(s.speed_min)),

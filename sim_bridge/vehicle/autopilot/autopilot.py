@@ -12,6 +12,7 @@ from collections.abc import Callable, Hashable, Mapping
 from functools import partial
 from typing import ClassVar
 
+from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import ZERO, Vec
 from onboard.wire.geodesy import Frame, Geodetic
 from onboard.wire.mavlink.frames import Framer, MavMessage, Packet, Sender, dialect
@@ -26,8 +27,7 @@ from sim_bridge.vehicle.autopilot.streams import Streams
 from sim_bridge.vehicle.motion import CALM, Air, Demand, Motion
 
 COMPONENT = 1  # MAV_COMP_ID_AUTOPILOT1
-SECOND = 1_000_000_000
-HEARTBEAT_NS = SECOND
+HEARTBEAT_NS = NS_PER_S
 PEERS_MAX = 16  # framing states kept, least recently heard forgotten first
 PARAMETERS_A_STEP = 5
 FORCE = 21196  # param2 of 400: arm or disarm whatever the checks say

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import cos, isfinite, nan, sin
 
-from onboard.core.math.vectors import ZERO, Vec
+from onboard.core.math.vectors import ZERO, Vec, is_finite
 from onboard.wire.geodesy import Geodetic
 from onboard.wire.mavlink.frames import Packet, dialect
 from onboard.wire.mavlink.modes import PX4_MODES
@@ -240,7 +240,7 @@ class Px4Multicopter(Multicopter):
         elif m.coordinate_frame != LOCAL:
             self.counters["target_refused"] += 1
             return
-        elif not m.type_mask & NO_POSITION and _finite(position):
+        elif not m.type_mask & NO_POSITION and is_finite(position):
             position = self.game_from_local(position)
         self._take_setpoint(now_ns, m.type_mask, position, velocity)
 
@@ -256,8 +256,8 @@ class Px4Multicopter(Multicopter):
         self._take_setpoint(now_ns, m.type_mask, position, Vec(m.vx, m.vy, m.vz))
 
     def _take_setpoint(self, now_ns: int, mask: int, position: Vec, velocity: Vec) -> None:
-        with_position = not mask & NO_POSITION and _finite(position)
-        with_velocity = not mask & NO_VELOCITY and _finite(velocity)
+        with_position = not mask & NO_POSITION and is_finite(position)
+        with_velocity = not mask & NO_VELOCITY and is_finite(velocity)
         if with_position:
             self._setpoint = (Leg.GOTO, position, velocity if with_velocity else ZERO)
         elif with_velocity:
@@ -323,7 +323,3 @@ class Px4Multicopter(Multicopter):
 
 
 UNSUPPORTED_FRAME = 8  # MAV_RESULT_COMMAND_UNSUPPORTED_MAV_FRAME: newer than the dialect
-
-
-def _finite(v: Vec) -> bool:
-    return isfinite(v.x) and isfinite(v.y) and isfinite(v.z)

@@ -15,6 +15,7 @@ import numpy as np
 
 from onboard.config import strict as config
 from onboard.config.strict import ConfigError
+from onboard.core.math.constants import STANDARD_GRAVITY
 from onboard.core.math.states import Limits
 from onboard.runtime.resources import configs
 from sim_bridge.vehicle.flight.axis import AxisLaw
@@ -72,7 +73,7 @@ class SpeedSpec(Part, frozen=True, kw_only=True):
     acceleration_max: float  # [m/s²]
     engine_lag: float  # [s]
     drag: float  # a_x of (33) [1/s]
-    gravity: float = 9.80665  # a_θ of (33)
+    gravity: float = STANDARD_GRAVITY  # a_θ of (33)
 
 
 class FollowSpec(Part, frozen=True, kw_only=True):

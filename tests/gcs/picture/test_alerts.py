@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 from gcs.picture import station_journal
 from gcs.picture.alert_rules import SUPERVISOR, Thresholds, room_inside
 from gcs.picture.alerts import CLEAR_NS, Alerts, Finding
+from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec
 from onboard.wire.bus import messages
 from onboard.wire.bus.messages import AgentStage, CommandState, Phase, Severity
 from tests.support.radio import (
-    NS,
     START_NS,
     Tower,
     decision,
@@ -255,7 +255,7 @@ def test_however_a_cause_comes_and_goes_the_board_changes_at_most_once_in_the_ti
     finding = Finding("cause", 2, Severity.WARNING, "text", "advice")
     changes = []
     for step, wrong in enumerate(causes):
-        now_ns = step * NS // 10
+        now_ns = step * NS_PER_S // 10
         for alert in board.judge(lambda _, wrong=wrong: [finding] if wrong else [], now_ns):
             changes.append((now_ns, alert.cleared_ns > 0))
     assert bool(changes) == any(causes)
@@ -268,7 +268,7 @@ def test_a_cause_that_does_not_last_is_not_raised():
     board = Alerts()
     finding = Finding("cause", 0, Severity.WARNING, "text", "advice", hold_s=1.0)
     for now in range(9):
-        assert board.judge(lambda _: [finding], now * NS // 10) == []
-    assert board.judge(lambda _: [], 9 * NS // 10) == []
-    assert board.judge(lambda _: [finding], NS) == []
-    assert len(board.judge(lambda _: [finding], 2 * NS)) == 1
+        assert board.judge(lambda _: [finding], now * NS_PER_S // 10) == []
+    assert board.judge(lambda _: [], 9 * NS_PER_S // 10) == []
+    assert board.judge(lambda _: [finding], NS_PER_S) == []
+    assert len(board.judge(lambda _: [finding], 2 * NS_PER_S)) == 1

@@ -12,11 +12,11 @@ from gcs.picture.fleet import Fleet
 from gcs.picture.records import LOST_NS
 from gcs.picture.reducer import PictureReducer
 from gcs.picture.values import Presence
+from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus import messages, topics
 from onboard.wire.bus.messages import OutcomeResult, Phase, Role
 from tests.support.radio import (
     GAME,
-    NS,
     START_NS,
     Tower,
     decision,
@@ -95,7 +95,7 @@ def test_the_roster_is_expected_before_it_is_heard():
 
 def test_the_game_is_told_with_its_clock_and_outcome():
     tower = Tower()
-    t0 = START_NS + 5 * NS
+    t0 = START_NS + 5 * NS_PER_S
     tower.hear(setup(3), phase(Phase.READY, t0))
     assert tower.picture.game.clock == "T−5.0 s"
     tower.wait(7.5)
@@ -109,8 +109,8 @@ def test_the_game_is_told_with_its_clock_and_outcome():
 
 def test_the_outcome_of_an_earlier_game_is_not_shown_for_this_one():
     tower = Tower()
-    tower.hear(messages.Outcome(OutcomeResult.CAPTURED, 2.5, 3, 1.9, START_NS - 100 * NS))
-    tower.hear(setup(3), phase(Phase.ENDED, START_NS - 10 * NS))
+    tower.hear(messages.Outcome(OutcomeResult.CAPTURED, 2.5, 3, 1.9, START_NS - 100 * NS_PER_S))
+    tower.hear(setup(3), phase(Phase.ENDED, START_NS - 10 * NS_PER_S))
     assert tower.picture.game.outcome is None
 
 
@@ -131,7 +131,7 @@ def test_a_restart_is_told_from_two_agents_with_one_id():
 def test_a_late_state_is_life_but_does_not_move_the_vehicle_back():
     tower = Tower()
     tower.hear(state(2, START_NS, position=(10.0, 0.0, 0.0)))
-    tower.hear(state(2, START_NS - NS, position=(0.0, 0.0, 0.0)))
+    tower.hear(state(2, START_NS - NS_PER_S, position=(0.0, 0.0, 0.0)))
     assert tower.vehicle(2).position == (10.0, 0.0, 0.0)
     assert dict(tower.vehicle(2).dropped) == {"late": 1}
 

@@ -15,6 +15,7 @@ from gcs.recording.shell import Keeper
 from gcs.recording.tlog import TlogRecorder
 from gcs.station import Station, StationSetup
 from onboard.config.strict import ConfigError
+from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.bus_memory import MemoryBroker
 from onboard.runtime.links import memory_pair
 from onboard.runtime.loop import virtual_clock
@@ -26,8 +27,6 @@ from onboard.wire.mavlink.tlog import read_tlog
 from tests.support.chase import EPOCH_NS, chase
 from tests.support.virtual import virtual
 
-NS = 1_000_000_000
-
 
 def heartbeat(sender: Sender) -> bytes:
     return sender.pack(dialect.MAVLink_heartbeat_message(2, 3, 81, 4, 4, 3))
@@ -37,7 +36,7 @@ def test_each_vehicles_frames_land_in_its_own_log_and_pymavlink_reads_it(tmp_pat
     logs = TlogRecorder(tmp_path)
     one, two = Sender(1, 1), Sender(2, 1)
     for second in range(10):
-        at_ns = EPOCH_NS + second * NS
+        at_ns = EPOCH_NS + second * NS_PER_S
         logs.datagram(heartbeat(one), "a", at_ns)
         logs.datagram(heartbeat(two) + heartbeat(two), "b", at_ns + 1000)
         logs.datagram(b"noise", "c", at_ns)
@@ -49,7 +48,7 @@ def test_each_vehicles_frames_land_in_its_own_log_and_pymavlink_reads_it(tmp_pat
         assert (message.get_type(), message.get_srcSystem()) == ("HEARTBEAT", 2)
         stamps.append(message._timestamp)
     assert len(stamps) == 20
-    assert stamps[0] == pytest.approx(EPOCH_NS / NS, abs=1e-3)
+    assert stamps[0] == pytest.approx(EPOCH_NS / NS_PER_S, abs=1e-3)
     assert logs.causes["garbage_bytes"] == 50
 
 
@@ -76,11 +75,11 @@ def test_a_full_disk_stops_a_log_and_room_continues_it_without_a_gap(tmp_path: P
     logs = TlogRecorder(tmp_path, write=write)
     sender = Sender(1, 1)
     for second in range(10):
-        logs.datagram(heartbeat(sender), "a", EPOCH_NS + second * NS)
+        logs.datagram(heartbeat(sender), "a", EPOCH_NS + second * NS_PER_S)
     assert logs.trouble == "no space left on device"
     assert len(taken) == 100
     room = 10_000
-    logs.tick(EPOCH_NS + 20 * NS)
+    logs.tick(EPOCH_NS + 20 * NS_PER_S)
     assert logs.trouble == ""
     causes: Counter[str] = Counter()
     assert len(list(read_tlog(bytes(taken), causes))) == 10

@@ -10,8 +10,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from onboard.autopilot.arduplane import ArduPlaneAdapter, bank_for, wrapped
+from onboard.autopilot.arduplane import ArduPlaneAdapter, bank_for
 from onboard.autopilot.base import Envelope, Setpoint, Stage, Way
+from onboard.core.math.angles import wrap
 from onboard.core.math.vectors import ZERO, Vec, direction, norm, scale
 from onboard.wire.mavlink.commands import Target
 from onboard.wire.mavlink.modes import Kind
@@ -94,7 +95,7 @@ def test_it_follows_a_course_that_swings_by_70_degrees_in_wind(wind: Vec) -> Non
 
     path = fly(play, 120.0, wanted)[400:]
     course = [
-        wrapped(atan2(air.y + wind.y, air.x + wind.x) - atan2(ground.y, ground.x)) for air, ground in path
+        wrap(atan2(air.y + wind.y, air.x + wind.x) - atan2(ground.y, ground.x)) for air, ground in path
     ]
     climb = [air.z - ground.z for air, ground in path]
     assert degrees(sqrt(sum(e * e for e in course) / len(course))) < 13.0

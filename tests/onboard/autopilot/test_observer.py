@@ -5,9 +5,10 @@ from __future__ import annotations
 import pytest
 
 from onboard.autopilot import health
-from onboard.autopilot.base import NEVER, Refusal, Telemetry
+from onboard.autopilot.base import Refusal, Telemetry
 from onboard.autopilot.choose import adapter_for
 from onboard.autopilot.telemetry_state import Observer
+from onboard.core.math.constants import NEVER
 from onboard.core.math.vectors import norm
 from onboard.wire.geodesy import Frame
 from onboard.wire.mavlink.commands import Target

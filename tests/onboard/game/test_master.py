@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec
 from onboard.game.master import GameMaster, Publication, Standing, Timing
 from onboard.wire.bus import messages
@@ -27,8 +28,7 @@ from onboard.wire.bus.messages import (
 )
 from onboard.wire.bus.topics import EVADER_BRIEF, MASTER, PHASE, SETUP
 
-NS = 1_000_000_000
-WALL0 = 1_767_225_600 * NS
+WALL0 = 1_767_225_600 * NS_PER_S
 STEP = 10_000_000
 
 
@@ -69,13 +69,13 @@ class Range:
         self.news: list[str] = []
 
     def fly(self, seconds: float) -> None:
-        for _ in range(round(seconds * NS / STEP)):
+        for _ in range(round(seconds * NS_PER_S / STEP)):
             self.now += STEP
-            if self.now % (NS // 2) == 0:
+            if self.now % (NS_PER_S // 2) == 0:
                 for agent in self.agents.values():
                     self.master.heard_health(agent, self.now)
             for id, v in self.speeds.items():
-                p, dt = self.places[id], STEP / NS
+                p, dt = self.places[id], STEP / NS_PER_S
                 self.places[id] = Vec(p.x + v.x * dt, p.y + v.y * dt, p.z + v.z * dt)
             self.master.tick(WALL0 + self.now, self.now)
             self.master.observe(WALL0 + self.now, self.now, self.places)
@@ -118,7 +118,7 @@ def test_it_listens_then_stages_then_waits_for_everybody() -> None:
     field.fly(1.0)
     ready = field.phases()[-1]
     assert ready.phase is Phase.READY
-    assert ready.t0_ns == ready.stamp_ns + 2 * NS
+    assert ready.t0_ns == ready.stamp_ns + 2 * NS_PER_S
     field.fly(2.5)
     running = field.phases()[-1]
     assert running.phase is Phase.RUNNING
@@ -131,7 +131,7 @@ def test_the_lease_is_renewed_twice_a_second() -> None:
     field.fly(11.2)
     leases = [m for _, m in field.said if isinstance(m, Master)]
     assert len(leases) == 20  # the first 1.2 s it listened
-    assert {b.stamp_ns - a.stamp_ns for a, b in pairwise(leases)} == {NS // 2}
+    assert {b.stamp_ns - a.stamp_ns for a, b in pairwise(leases)} == {NS_PER_S // 2}
     assert {(m.name, m.nonce, m.lease_s) for m in leases} == {("bridge", 50, 2.0)}
 
 
@@ -139,7 +139,7 @@ def test_a_capture_is_judged_at_its_instant_between_two_steps() -> None:
     field = Range()
     field.begin()
     t0 = field.phases()[-1].t0_ns
-    elapsed = (WALL0 + field.now - t0) / NS
+    elapsed = (WALL0 + field.now - t0) / NS_PER_S
     field.places[2] = Vec(100.0, 0, -50)
     field.speeds[2] = Vec(-30.0, 0, 0)
     field.fly(8.0)

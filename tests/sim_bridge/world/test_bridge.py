@@ -7,11 +7,12 @@ from collections import Counter
 
 import pytest
 
+from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec
 from onboard.game.scenario import Flight, Kind, Parameters, Scenario, SensorSpec, VehicleSpec
 from onboard.game.staging import setup_of
 from onboard.runtime.bus_memory import MemoryBroker
-from onboard.runtime.loop import NS, run_virtual, virtual_clock
+from onboard.runtime.loop import run_virtual, virtual_clock
 from onboard.runtime.protocols import Bus
 from onboard.wire.bus.messages import Outcome, OutcomeResult, Phase, Role
 from onboard.wire.bus.topics import EVADER_BRIEF, MASTER, OUTCOME, SETUP, TOPICS, TRACK, everything
@@ -127,7 +128,7 @@ async def test_a_second_bridge_yields_and_its_world_goes_on() -> None:
     assert "another master is at work: sim-bridge; this one yields and publishes no game" in stage.news
     masters = [MASTER.decode(payload, Counter()) for payload in stage.payloads(MASTER.key(GAME))]
     assert {m.nonce for m in masters if m} == {5}
-    assert second.world.elapsed_ns >= 3 * NS
+    assert second.world.elapsed_ns >= 3 * NS_PER_S
 
 
 @virtual

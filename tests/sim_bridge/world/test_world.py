@@ -8,11 +8,12 @@ from math import hypot
 import pytest
 
 from onboard.config.strict import ConfigError
+from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import ZERO, Vec, distance, norm
 from onboard.game.scenario import AirframeKind, Flight, Kind, Scenario, VehicleSpec
 from onboard.runtime.clock import VirtualClock
 from onboard.runtime.links import MemoryLink, memory_pair
-from onboard.runtime.loop import EPOCH_NS, NS, run_virtual, virtual_clock
+from onboard.runtime.loop import EPOCH_NS, run_virtual, virtual_clock
 from onboard.runtime.tasks import Pace, periodic
 from onboard.wire.mavlink.commands import set_message_interval, set_mode, velocity_target
 from onboard.wire.mavlink.frames import dialect
@@ -189,7 +190,7 @@ def test_a_late_step_makes_up_for_lost_time_up_to_a_bound() -> None:
     world.step()
     assert world.elapsed_ns == 100_000_000
     assert world.wall_ns == clock.wall_ns()
-    clock.advance_to(60 * NS)  # stopped and continued
+    clock.advance_to(60 * NS_PER_S)  # stopped and continued
     world.step()
     assert world.elapsed_ns == 100_000_000 + BEHIND_MAX * world.step_ns
     assert world.lost_steps == 5990 - BEHIND_MAX

@@ -10,12 +10,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec, norm, sub
 from onboard.game.scenario import Kind
 from onboard.wire.mavlink.frames import Framer, Sender, dialect
 from onboard.wire.mavlink.signing import MemoryStore, Signing
 from sim_bridge.vehicle.autopilot.health import Fault
-from tests.support.flown import EPOCH_NS, ORIGIN, SECOND, Flown
+from tests.support.flown import EPOCH_NS, ORIGIN, Flown
 
 KINDS = pytest.mark.parametrize("kind", list(Kind), ids=lambda kind: kind.value)
 FLYING_MODE = {Kind.PX4: "HOLD", Kind.ARDUCOPTER: "LOITER", Kind.ARDUPLANE: "LOITER"}
@@ -159,7 +160,7 @@ def test_position_is_reported_in_its_own_frame_and_geodetically_alike(kind: Kind
     assert next(t for t, m in flown.heard if m is local) == at
     game = ORIGIN.ned_from_geodetic(world.lat * 1e-7, world.lon * 1e-7, world.alt * 1e-3)
     # The motion of that instant lies within a tick's way of the present one.
-    assert norm(sub(game, flown.position)) < 22.0 * (flown.now_ns - at) / SECOND + 0.5
+    assert norm(sub(game, flown.position)) < 22.0 * (flown.now_ns - at) / NS_PER_S + 0.5
     own = type(ORIGIN)(origin.latitude * 1e-7, origin.longitude * 1e-7, origin.altitude * 1e-3)
     seen = own.ned_from_geodetic(world.lat * 1e-7, world.lon * 1e-7, world.alt * 1e-3)
     assert norm(sub(seen, Vec(local.x, local.y, local.z))) < 0.05
@@ -257,7 +258,7 @@ def test_time_is_told(kind: Kind) -> None:
     flown = Flown(kind).fly(12.0)
     flown.send(dialect.MAVLink_timesync_message(0, 777))
     answer = flown.last("TIMESYNC")
-    assert (answer.tc1, answer.ts1) == (12 * SECOND, 777)
+    assert (answer.tc1, answer.ts1) == (12 * NS_PER_S, 777)
     heard = len(flown.heard)
     flown.send(dialect.MAVLink_timesync_message(1, 777))  # somebody's answer: nothing to say
     assert len(flown.heard) == heard
@@ -435,7 +436,7 @@ def test_with_a_key_it_obeys_signed_frames_alone_and_signs_its_own(kind: Kind) -
     flown.fly(0.1)
     assert flown.last("COMMAND_ACK").result == 0
     verifier = Framer(signing=Signing(key, MemoryStore()))
-    assert all(verifier.feed(frame, EPOCH_NS + SECOND) for frame in flown.frames[-3:])
+    assert all(verifier.feed(frame, EPOCH_NS + NS_PER_S) for frame in flown.frames[-3:])
 
 
 @KINDS

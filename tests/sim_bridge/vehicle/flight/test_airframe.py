@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from onboard.core.math.angles import wrap
 from onboard.core.math.states import Limits
 from onboard.core.math.vectors import ZERO, Vec, norm
 from sim_bridge.vehicle.flight.airframe import Plane, fixed_wing
-from sim_bridge.vehicle.flight.plane import wrap
 from sim_bridge.vehicle.motion import CALM, Air, Airframe, Demand, Lateral
 
 ALL = ["nose", "slip", "coordinated"]
