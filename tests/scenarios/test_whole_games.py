@@ -8,8 +8,9 @@ import pytest
 
 from onboard.game.scenario import ImpairmentSpec, Kind, SensorSpec
 from onboard.wire.bus.messages import OutcomeResult, Phase
-from onboard.wire.bus.topics import EVADER_BRIEF, OUTCOME, TOPICS
+from onboard.wire.bus.topics import EVADER_BRIEF, OUTCOME, TOPICS, Party
 from onboard.wire.mavlink.tlog import read_tlog
+from sim_bridge.rehearsal import Rehearsal
 from tests.support.duels import GUIDED, HOLD, STORY, Heard, duel, phases
 from tests.support.flights import EVADER, MATE, PURSUER, game_of, mode, passes, place, speed
 from tests.support.virtual import virtual
@@ -79,6 +80,8 @@ async def test_no_agent_is_ever_handed_what_it_must_not_know_and_a_late_comer_le
         brief = EVADER_BRIEF.key(game.game)
         assert brief in delivered[EVADER]
         for id, keys in delivered.items():
+            for key in keys:
+                assert parties(game, id, key) & {*TOPICS.find(key).topic.readers}, (id, key)
             others = {TOPICS.find(k).id for k in keys if "/vehicles/" in k and TOPICS.find(k).id != id}
             assert others == ({MATE if id == PURSUER else PURSUER} if id != EVADER else set())
             assert {TOPICS.find(k).topic.suffix for k in keys if "/vehicles/" in k} <= {  # type: ignore[union-attr]
@@ -93,6 +96,19 @@ async def test_no_agent_is_ever_handed_what_it_must_not_know_and_a_late_comer_le
         assert await game.until(lambda: bool(heard), 1.0)
         assert OUTCOME.decode(heard[0], game.observer.drops) == outcome
         assert (outcome.verdict, outcome.time) == (OutcomeResult.ESCAPED, 2.0)
+
+
+def parties(game: Rehearsal, id: int, key: str) -> set[Party]:
+    """As whom the agent of a vehicle may read a key: what an access rule of a secured bus grants."""
+    found = {Party.ANY_AGENT}
+    named = TOPICS.find(key).id
+    if id == EVADER:
+        found.add(Party.EVADER)
+    if named == id:
+        found.add(Party.OWN_AGENT)
+    if named in game.scenario.ids and (named == EVADER) == (id == EVADER):
+        found.add(Party.SAME_SIDE)
+    return found
 
 
 def tap(bus: object, keys: set[str]) -> None:
