@@ -20,9 +20,10 @@ def detail(picture: Picture, selected: int | None) -> list[Line]:
     grade = grades(picture)[vehicle.id]
     role = vehicle.role.value if vehicle.role else "role unknown"
     armed = "armed" if vehicle.armed else "disarmed"
+    kind = vehicle.health.autopilot if vehicle.health else None
     lines = [
         (f"{vehicle.id} {role}: {GRADE_WORDS[grade]}, heard {age(vehicle.age_s)} s ago", STYLES[grade]),
-        (f"{vehicle.mode or 'no mode'}, {armed}, {vehicle.health.autopilot if vehicle.health else ''}", ""),
+        (f"{vehicle.mode or 'no mode'}, {armed}, {kind.value if kind else ''}", ""),
     ]
     if vehicle.health is not None and vehicle.health.lacks:
         lines.append((f"waits for {', '.join(vehicle.health.lacks)}", "yellow"))

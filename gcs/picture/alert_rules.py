@@ -42,17 +42,17 @@ class Thresholds(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_onl
 
     state_stale_s: float = SUPERVISOR.telemetry_age  # own state older than this
     telemetry_stale_s: float = SUPERVISOR.telemetry_age  # the autopilot's, as the agent reports it
-    heartbeat_stale_s: float = SUPERVISOR.heartbeat_age
-    track_stale_s: float = 1.0
-    battery_low: float = 0.30  # share left: go home
+    heartbeat_stale_s: float = SUPERVISOR.heartbeat_age  # the autopilot's heartbeat, likewise
+    track_stale_s: float = 1.0  # the evader's track older than this, in a running game
+    battery_low: float = 0.30  # fraction left: go home
     battery_critical: float = SUPERVISOR.battery  # the supervisor acts
     battery_margin: float = 0.03  # above the limit, to clear
-    gps_fix: int = SUPERVISOR.gps_fix
-    link_low: float = 0.70  # share of expected telemetry that arrives
-    link_margin: float = 0.10
-    clock_offset_s: float = 0.05
+    gps_fix: int = SUPERVISOR.gps_fix  # the least, as MAVLink counts it: 3 = in space
+    link_low: float = 0.70  # fraction of expected telemetry that arrives
+    link_margin: float = 0.10  # above the limit, to clear
+    clock_offset_s: float = 0.05  # an agent's clock against the master's
     clock_unready_s: float = 0.2  # an agent is not ready beyond this
-    fence_near_m: float = SUPERVISOR.fence_margin
+    fence_near_m: float = SUPERVISOR.fence_margin  # nearer than this to a wall, floor or ceiling
     fence_clear_m: float = 2.0  # beyond the limit, to clear
     separation_clear: float = 1.15  # clears at this multiple of the separation
     confirm_s: float = 2.0  # a command not confirmed by then

@@ -34,8 +34,8 @@ MOST_CHANNELS = 4096  # MCAP numbers channels with 16 bits, and keys come from t
 OTHER = "apollonius/other"  # what has no channel of its own: MessagePack of [key, payload]
 
 
-class Status(msgspec.Struct, frozen=True):
-    """How the recorder is doing."""
+class RecorderStatus(msgspec.Struct, frozen=True):
+    """How a recorder is doing."""
 
     path: str
     recorded: int  # messages taken in
@@ -133,10 +133,10 @@ class Recorder:
             self._file.settle(final=True)
         self._file.close()
 
-    def status(self) -> Status:
+    def status(self) -> RecorderStatus:
         """How it is doing."""
         waiting = self._file.waiting_bytes if self._file.trouble else 0
-        return Status(
+        return RecorderStatus(
             str(self.path), self._recorded, self._lost, self._file.size, waiting, self._file.trouble
         )
 
@@ -165,7 +165,7 @@ class Recorder:
         return channel
 
 
-def remark_of(before: Status, now: Status) -> Remark | None:
+def remark_of(before: RecorderStatus, now: RecorderStatus) -> Remark | None:
     """What the station should say about the recorder, given how it was doing before; None = nothing new."""
     if now.trouble and not before.trouble:
         return Remark(

@@ -23,6 +23,7 @@ from onboard.pilot.memory import Memory
 from onboard.pilot.pilot import Pilot, Thought
 from onboard.pilot.setup import GameSetup, MateState, Own, Player, Side, TrackSample
 from onboard.runtime.plugins import evader_strategy, pursuer_strategy
+from onboard.wire.autopilot_kind import Kind
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import (
     DecisionReport,
@@ -43,7 +44,7 @@ SPEED = 0.5  # [m/s] and speeds
 PAUSE_S = 0.5  # differences farther apart are told apart
 OLD_STATE_S = 1.0
 SLICES = 2  # of training after each control step, as the agent gives them
-WINGED = frozenset({"arduplane"})  # autopilots whose vehicles fly in the moving air mass
+WINGED = frozenset({Kind.ARDUPLANE})  # autopilots whose vehicles fly in the moving air mass
 STEP_S = 0.05
 
 
@@ -159,7 +160,7 @@ class _Again:
         self._step(state)
 
     def _take_health(self, health: Health) -> None:
-        if health.autopilot.lower() in WINGED:
+        if health.autopilot in WINGED:
             self._winged.add(health.id)
 
     def _take_setup(self, setup: Setup) -> None:

@@ -329,7 +329,7 @@ class Agent:
             stamp_ns=self.clock.wall_ns(),
             stage=self.stage,
             lacks=self.lacks,
-            autopilot=self.craft.adapter.kind.value if self.craft.adapter is not None else "",
+            autopilot=self.craft.adapter.kind if self.craft.adapter is not None else None,
             mode=t.mode,
             armed=t.armed,
             battery=t.battery,

@@ -58,7 +58,7 @@ class Observer:
                 VehicleSummary(
                     id=id,
                     role="evader" if spec is self.scenario.evader else "pursuer",
-                    autopilot=health.autopilot if health else "",
+                    autopilot=health.autopilot.value if health and health.autopilot else "",
                     stage=health.stage.value if health else "never heard",
                     mode=health.mode if health else "",
                     smallest_distance=kept(master.nearest.get(id)),

@@ -31,7 +31,18 @@ def as_schema_1(message: Any) -> Any:
     return message
 
 
+def without_autopilot_as_word(message: Any) -> Any:
+    """A health message in which an autopilot that was not found is an empty word, and not null."""
+    match message:
+        case [schema, [*body]] if len(body) > AUTOPILOT_AT and body[AUTOPILOT_AT] is None:
+            return [schema, [*body[:AUTOPILOT_AT], "", *body[AUTOPILOT_AT + 1 :]]]
+    return message
+
+
+AUTOPILOT_AT = 5  # place of the autopilot's kind in a health message as recorded
+
 TRANSLATIONS: tuple[Translation, ...] = (
+    Translation(r"vehicles/[0-9]+/health", without_autopilot_as_word, "the kind of autopilot became an enum"),
     Translation(r"(game|roles|vehicles|tracks|gcs)/.*", as_schema_1, "enums raised the schema version to 2"),
 )
 

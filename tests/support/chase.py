@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from gcs.picture import station_journal
 from onboard.core.math.constants import NS_PER_S
+from onboard.wire.autopilot_kind import Kind
 from onboard.wire.bus import messages, topics
 from onboard.wire.bus.messages import (
     AgentStage,
@@ -254,7 +255,7 @@ def _health(member: messages.Member, step: int, running: bool, at_ns: int) -> me
         at_ns,
         AgentStage.ACTING if running else AgentStage.READY,
         (),
-        "ArduCopter",
+        Kind.ARDUCOPTER,
         "GUIDED",
         True,
         battery,

@@ -10,6 +10,7 @@ from gcs.picture.reducer import PictureReducer
 from gcs.picture.station_journal import HEARD_HERE
 from gcs.picture.values import Picture, VehicleView
 from onboard.core.math.constants import NS_PER_S
+from onboard.wire.autopilot_kind import Kind
 from onboard.wire.bus import messages, topics
 from onboard.wire.bus.codec import M
 from onboard.wire.bus.messages import AgentStage, Message, Phase, Role
@@ -46,7 +47,7 @@ def health(i: int, stamp_ns: int = START_NS, **changes: object) -> messages.Heal
     """A vehicle in full health that acts."""
     base = messages.Health(
         id=i, role=role_of(i), stamp_ns=stamp_ns, stage=AgentStage.ACTING, lacks=(),
-        autopilot="ArduCopter", mode="GUIDED", armed=True, battery=0.9, link_quality=1.0,
+        autopilot=Kind.ARDUCOPTER, mode="GUIDED", armed=True, battery=0.9, link_quality=1.0,
         telemetry_rate_hz=20.0, setpoint_rate_hz=20.0, clock_offset_s=0.0, gps_fix=3, ekf_ok=True,
         supervisor=messages.SupervisorAction.OK, version="0.1.0", counters={}, nonce=1000 + i,
     )  # fmt: skip

@@ -7,7 +7,8 @@ from collections import Counter
 
 from onboard.runtime.protocols import Bus, Clock, Sample
 from onboard.runtime.tasks import Pace, periodic
-from onboard.wire.bus.messages import AgentStage, Health, Phase, PhaseChange, Role
+from onboard.wire.autopilot_kind import Kind
+from onboard.wire.bus.messages import AgentStage, Health, Phase, PhaseChange, Role, SupervisorAction
 from onboard.wire.bus.topics import HEALTH, PHASE
 
 
@@ -42,8 +43,8 @@ class ScriptedAgent:
         stage = AgentStage.WAITING if waiting else AgentStage.ACTING if running else AgentStage.READY
         role = Role.EVADER if self.id == 1 else Role.PURSUER
         health = Health(
-            self.id, role, self._clock.wall_ns(), stage, ("resume",) if waiting else (), "arducopter",
-            "GUIDED", True, 1.0, 1.0, 20.0, 20.0, 0.0, 3, True, "ok", "0", {}, nonce=self._nonce,
+            self.id, role, self._clock.wall_ns(), stage, ("resume",) if waiting else (), Kind.ARDUCOPTER,
+            "GUIDED", True, 1.0, 1.0, 20.0, 20.0, 0.0, 3, True, SupervisorAction.OK, "0", {}, nonce=self._nonce,
         )  # fmt: skip
         self.bus.publish(HEALTH.key(self._game, self.id), HEALTH.encode(health), HEALTH.delivery)
 

@@ -13,6 +13,8 @@ from enum import Enum
 
 import msgspec
 
+from onboard.wire.autopilot_kind import Kind
+
 SCHEMA = 2
 
 Triple = tuple[float, float, float]
@@ -226,7 +228,7 @@ class Health(Message, frozen=True):
     stamp_ns: int
     stage: AgentStage
     lacks: tuple[str, ...]  # what an agent with no game waits for
-    autopilot: str  # kind, "" = none found
+    autopilot: Kind | None  # None = none found
     mode: str
     armed: bool
     battery: float  # fraction 0…1, −1 = unknown

@@ -6,7 +6,7 @@ import asyncio
 from pathlib import Path
 
 from gcs.picture.values import Picture
-from gcs.recording.shell import Keeper
+from gcs.recording.shell import StationRecorder
 from gcs.replay.player import Player
 from gcs.replay.source import open_run
 from gcs.station import Station, StationSetup
@@ -24,7 +24,7 @@ async def test_a_replay_shows_what_the_live_station_showed(tmp_path: Path) -> No
     clock = virtual_clock()
     broker = MemoryBroker()
     station = Station(broker.connect(), clock, StationSetup("field"), new_id=lambda: "hold-1")
-    keeper = Keeper(station, tmp_path)
+    recorder = StationRecorder(station, tmp_path)
     agents = broker.connect()
     shown: list[Picture] = []
 
@@ -34,7 +34,7 @@ async def test_a_replay_shows_what_the_live_station_showed(tmp_path: Path) -> No
             shown.append(station.picture())
 
     async with asyncio.TaskGroup() as tasks:
-        running = [tasks.create_task(task) for task in (station.run(), keeper.run(), look())]
+        running = [tasks.create_task(task) for task in (station.run(), recorder.run(), look())]
         began_ns = clock.wall_ns()
         for item in chase(20.0):
             place = topics.TOPICS.find(item.key)

@@ -15,6 +15,7 @@ from onboard.config.strict import convert
 from onboard.runtime.clock import SkewedClock
 from onboard.runtime.links import memory_pair
 from onboard.runtime.patterns import matches
+from onboard.wire.autopilot_kind import Kind
 from onboard.wire.bus.messages import AgentStage, Master, Role, Track
 from onboard.wire.bus.topics import DECISION, EVADER_BRIEF, MASTER, SETUP, STATE, TRACK, Delivery
 from tests.support.flights import (
@@ -86,7 +87,7 @@ async def test_an_agent_with_no_game_waits_visibly_and_names_what_it_lacks() -> 
         assert health.stage == AgentStage.WAITING
         assert "a game's setup" in health.lacks
         assert "a master" in health.lacks
-        assert health.autopilot == "ArduCopter"
+        assert health.autopilot is Kind.ARDUCOPTER
         assert not flies(agent)
 
 

@@ -11,6 +11,7 @@ import pytest
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec
 from onboard.game.master import GameMaster, Publication, Standing, Timing
+from onboard.wire.autopilot_kind import Kind
 from onboard.wire.bus import messages
 from onboard.wire.bus.messages import (
     AgentStage,
@@ -25,6 +26,7 @@ from onboard.wire.bus.messages import (
     PhaseChange,
     Role,
     Setup,
+    SupervisorAction,
 )
 from onboard.wire.bus.topics import EVADER_BRIEF, MASTER, PHASE, SETUP
 
@@ -47,11 +49,13 @@ def setup(**changes: object) -> Setup:
     return Setup(**(fields | changes))  # type: ignore[arg-type]
 
 
-def health(id: int, stage: str = AgentStage.READY, nonce: int = 0, lacks: tuple[str, ...] = ()) -> Health:
+def health(
+    id: int, stage: AgentStage = AgentStage.READY, nonce: int = 0, lacks: tuple[str, ...] = ()
+) -> Health:
     role = Role.EVADER if id == 1 else Role.PURSUER
     return Health(
-        id, role, 0, stage, lacks, "arducopter", "GUIDED", True, 1.0, 1.0, 20.0, 20.0, 0.0, 3, True, "ok",
-        "0", {}, nonce=nonce or 100 + id,
+        id, role, 0, stage, lacks, Kind.ARDUCOPTER, "GUIDED", True, 1.0, 1.0, 20.0, 20.0, 0.0, 3, True,
+        SupervisorAction.OK, "0", {}, nonce=nonce or 100 + id,
     )  # fmt: skip
 
 
