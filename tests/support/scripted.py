@@ -44,7 +44,8 @@ class ScriptedAgent:
         role = Role.EVADER if self.id == 1 else Role.PURSUER
         health = Health(
             self.id, role, self._clock.wall_ns(), stage, ("resume",) if waiting else (), Kind.ARDUCOPTER,
-            "GUIDED", True, 1.0, 1.0, 20.0, 20.0, 0.0, 3, True, SupervisorAction.OK, "0", {}, nonce=self._nonce,
+            "GUIDED", True, 1.0, 1.0, 20.0, 20.0, 0.0, 3, True, SupervisorAction.OK, "0", {},
+            nonce=self._nonce,
         )  # fmt: skip
         self.bus.publish(HEALTH.key(self._game, self.id), HEALTH.encode(health), HEALTH.delivery)
 
