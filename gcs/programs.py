@@ -33,13 +33,12 @@ GATHER_S = 1.5  # to learn who is there
 
 
 class Order(NamedTuple):
-    """A command from a shell."""
+    """A command from a shell, to the vehicles named, to those of a role, or to all."""
 
     kind: CommandKind
-    ids: tuple[int, ...]
+    ids: tuple[int, ...]  # empty: all that are known, of `role` if that is given
     role: Role | None
-    everybody: bool
-    within_s: float
+    within_s: float  # how long confirmations are waited for
 
 
 async def watch(settings: Settings, *, record: bool, plain: bool) -> int:
@@ -171,12 +170,13 @@ async def _asked(order: Order, ids: tuple[int, ...]) -> bool:
     return answer.strip().lower() == "yes"
 
 
-async def play(settings: Settings, scenario: Scenario, *, record: bool, plain: bool, auto_start: bool) -> int:
-    """A game with the ground station as its master."""
+async def play(settings: Settings, scenario: Scenario, *, plain: bool, auto_start: bool) -> int:
+    """Play a game with the ground station as its master; exit code 0 when it ended with a verdict."""
     from gcs.master import FieldMaster
 
     _demand_terminal(plain)
-    async with on_air(settings, listen=settings.bus.listen, record=record) as session:
+    listen, record = settings.bus.listen, settings.recording.enabled
+    async with on_air(settings, listen=listen, record=record) as session:
         master = FieldMaster(session.station, scenario, auto_start=auto_start)
         session.extra = master.status
         async with asyncio.TaskGroup() as tasks:

@@ -31,7 +31,6 @@ from onboard.wire.bus.messages import Track
 from onboard.wire.bus.topics import DEFAULT_GAME, TRACK
 from onboard.wire.geodesy import Frame
 from onboard.wire.mavlink.frames import Framer
-from onboard.wire.mavlink.telemetry import decode
 from onboard.wire.mavlink.values import AdsbVehicle
 
 ADSB_SIGMA = 30.0  # [m] what a position of a small ADS-B transmitter is worth, unless told
@@ -168,7 +167,7 @@ async def hear_adsb(feed: Feed, url: str, bus: Bus, game: str) -> None:
 
     def arrived(data: bytes, _peer: object) -> None:
         for packet in framer.feed(data):
-            value = decode(packet.message)
+            value = packet.value
             if isinstance(value, AdsbVehicle):
                 stamp_ns = clock.wall_ns() - round(value.age_s * NS_PER_S)
                 report = from_adsb(value, stamp_ns / NS_PER_S)

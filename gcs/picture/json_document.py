@@ -10,7 +10,7 @@ import msgspec
 
 from gcs.picture.values import Picture
 
-FORMAT = 1  # of this document; raised when a field changes its meaning or goes
+FORMAT = 2  # of this document; raised when a field changes its meaning or goes
 LEFT_OUT = frozenset({"trail", "past_alerts"})
 
 
@@ -39,6 +39,8 @@ def _plain(value: Any) -> Any:
     if isinstance(value, dict):
         return {key: _plain(inner) for key, inner in value.items()}
     if isinstance(value, tuple):
+        if hasattr(value, "_asdict"):  # a NamedTuple, such as the rules of a game
+            return {name.rstrip("_"): _plain(inner) for name, inner in value._asdict().items()}
         if value and all(map(_is_count, value)):
             return dict(value)
         return [_plain(inner) for inner in value]

@@ -25,8 +25,8 @@ def _track(track: Track) -> bool:
 
 
 def _setup(setup: Setup) -> bool:
-    lengths = (setup.capture_radius, setup.safety_distance, setup.separation)
-    sizes = (*lengths, *(member.speed_max for member in setup.roster))
+    lengths = (setup.rules.R, setup.rules.rho, setup.rules.separation)
+    sizes = (*lengths, *(member.speed for member in setup.roster))
     return _sane(*sizes) and min(sizes) >= 0.0
 
 

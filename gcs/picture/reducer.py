@@ -23,8 +23,7 @@ from onboard.wire.bus.messages import Severity
 from onboard.wire.bus.topics import Heard, Topic
 
 GRID_NS = NS_PER_S // 10
-# Judged step by step: what a longer silence does to alerts is settled by then.
-LONGEST_GAP_NS = 3600 * NS_PER_S
+LONGEST_GAP_NS = 3600 * NS_PER_S  # judged step by step; a longer silence changes no alert any more
 
 
 class PictureReducer:

@@ -200,7 +200,7 @@ class Views:
         color = COLORS[state.role]
         spheres: tuple[fox.Sphere, ...] = ()
         if self._setup is not None and state.role is Role.PURSUER:
-            across = 2.0 * self._setup.capture_radius
+            across = 2.0 * self._setup.rules.R
             faint = fox.Color(color.r, color.g, color.b, 0.2)
             spheres = (fox.Sphere(fox.Pose(pose.position), fox.Vector3(across, across, across), faint),)
         rule = f" {decision.rule}" if decision is not None and decision.rule else ""

@@ -15,14 +15,15 @@ from math import degrees
 from typing import NamedTuple
 
 from gcs.recording.reader import Entry
+from onboard.core.game.rules import NO_TARGET, Target
 from onboard.core.math.constants import NS_PER_S
-from onboard.core.math.states import Limits
+from onboard.core.math.states import MateState, carried
 from onboard.core.math.vectors import NORTH, TINY, ZERO, Vec, along, angle_between, norm, unit
 from onboard.core.strategy.registry import EVADERS, PURSUERS
+from onboard.game.plugins import evader_strategy, pursuer_strategy
 from onboard.pilot.memory import Memory
-from onboard.pilot.pilot import Pilot, Thought
-from onboard.pilot.setup import GameSetup, MateState, Own, Player, Side, TrackSample
-from onboard.runtime.plugins import evader_strategy, pursuer_strategy
+from onboard.pilot.pilot import Pilot, PilotDecision
+from onboard.pilot.setup import GameSetup, Own, Player, Side, TrackSample
 from onboard.wire.autopilot_kind import Kind
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import (
@@ -45,7 +46,6 @@ PAUSE_S = 0.5  # differences farther apart are told apart
 OLD_STATE_S = 1.0
 SLICES = 2  # of training after each control step, as the agent gives them
 WINGED = frozenset({Kind.ARDUPLANE})  # autopilots whose vehicles fly in the moving air mass
-STEP_S = 0.05
 
 
 class Difference(NamedTuple):
@@ -104,14 +104,14 @@ class _Mind:
         self.pilot = pilot
         self.memory = Memory(wanted=opponents)
         self.samples: list[TrackSample] = []
-        self.thought: Thought | None = None
+        self.thought: PilotDecision | None = None
         self.thought_ns = 0  # the step that it is of
 
 
 class _Open:
     """A difference that may still go on."""
 
-    def __init__(self, report: DecisionReport, thought: Thought, angle: float, speed: float) -> None:
+    def __init__(self, report: DecisionReport, thought: PilotDecision, angle: float, speed: float) -> None:
         self.start = self.end = report.t
         self.decisions = 1
         self.recorded, self.now = report.rule, thought.rule
@@ -237,24 +237,25 @@ class _Again:
             return
         self._judge(report, thought)
 
-    def _think(self, mind: _Mind, state: State, at_ns: int, setup: Setup) -> Thought:
+    def _think(self, mind: _Mind, state: State, at_ns: int, setup: Setup) -> PilotDecision:
         self._heights.setdefault(state.id, -state.position[2])
         now = self._seconds(at_ns)
         late = min(max(0.0, now - self._seconds(state.stamp_ns)), 0.5)
-        own = Own(along(Vec(*state.position), Vec(*state.velocity), late), Vec(*state.velocity))
         wind = Vec(*state.wind) if state.id in self._winged else ZERO
+        own = Own(along(Vec(*state.position), Vec(*state.velocity), late), Vec(*state.velocity), wind)
         mates = tuple(
-            MateState(s.id, self._seconds(s.stamp_ns), Vec(*s.position), Vec(*s.velocity))
+            carried(MateState(s.id, self._seconds(s.stamp_ns), Vec(*s.position), Vec(*s.velocity)), now)
             for s in self._states.values()
             if s.role is state.role and s.id != state.id
         )
         game = self._game(setup, state.role is Role.EVADER)
-        thought, mind.memory = mind.pilot.step(now, own, tuple(mind.samples), mates, game, wind, mind.memory)
+        mind.memory.take(tuple(mind.samples))
         mind.samples.clear()
+        thought = mind.pilot.step(now, own, mates, game, mind.memory)
         mind.thought, mind.thought_ns = thought, at_ns
         return thought
 
-    def _judge(self, report: DecisionReport, thought: Thought) -> None:
+    def _judge(self, report: DecisionReport, thought: PilotDecision) -> None:
         was = Vec(*report.velocity)
         angle = 0.0
         if norm(was) > TINY and norm(thought.velocity) > TINY:
@@ -281,8 +282,8 @@ class _Again:
             Player(
                 m.id,
                 Side.EVADER if m.role is Role.EVADER else Side.PURSUER,
-                m.speed_max,
-                Limits(m.speed_min, m.speed_max, m.pitch_min, m.pitch_max),
+                m.speed,
+                m.limits.core(),
                 -m.start[2] if -m.start[2] >= 1.0 else self._heights.get(m.id, -m.start[2]),
             )
             for m in setup.roster
@@ -291,15 +292,8 @@ class _Again:
         target = self._target if evader else None
         return GameSetup(
             roster=players,
-            R=setup.capture_radius,
-            rho=setup.safety_distance,
-            lambda_=setup.lambda_,
-            beta=setup.beta,
-            separation=setup.separation,
-            planar=setup.planar or setup.field_profile,
-            has_target=target is not None,
-            target=Vec(*target) if target is not None else ZERO,
-            dt=STEP_S,
+            rules=setup.rules.core()._replace(planar=setup.flat),
+            target=NO_TARGET if target is None else Target(True, Vec(*target)),
         )
 
     def _seconds(self, stamp_ns: int) -> float:

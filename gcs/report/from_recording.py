@@ -93,16 +93,7 @@ class _Collector:
 
     def _health(self, health: Health) -> None:
         battery = health.battery if health.battery >= 0 else nan
-        self._vehicle(health.id).health.append(
-            (
-                health.stamp_ns,
-                health.link_quality,
-                battery,
-                health.telemetry_rate_hz,
-                health.setpoint_rate_hz,
-                health.clock_offset_s,
-            )
-        )
+        self._vehicle(health.id).health.append((health.stamp_ns, health.link_quality, battery))
 
 
 def _extend(bands: list[_OpenBand], stamp_ns: int, rule: str, why: str) -> None:

@@ -13,7 +13,6 @@ from onboard.config.strict import ConfigError
 from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus.messages import Role, Triple
 from onboard.wire.geodesy import Frame
-from onboard.wire.mavlink.telemetry import decode
 from onboard.wire.mavlink.tlog import read_tlog
 from onboard.wire.mavlink.values import AirData, GlobalPosition, SysStatus, Wind
 
@@ -91,7 +90,7 @@ def _read(path: Path, system: int) -> _Log:
     for stamp_ns, packet in read_tlog(data, log.causes):
         if packet.system != system:
             continue
-        value = decode(packet.message)
+        value = packet.value
         if isinstance(value, GlobalPosition):
             log.places.append((stamp_ns, value))
         elif isinstance(value, AirData):
@@ -140,6 +139,4 @@ def _at(t: Array, samples: list[tuple[int, float]], zero_ns: int) -> Array:
 
 def _link(log: _Log, zero_ns: int) -> Link:
     t = np.array([(stamp - zero_ns) / NS_PER_S for stamp, _ in log.batteries])
-    unknown = np.full(len(t), nan)
-    battery = np.array([value for _, value in log.batteries])
-    return Link(t, unknown, battery, unknown, unknown, unknown)
+    return Link(t, np.full(len(t), nan), np.array([value for _, value in log.batteries]))

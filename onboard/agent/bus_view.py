@@ -13,8 +13,8 @@ from typing import Any
 from onboard.agent.clocks import MasterClock
 from onboard.agent.journal import Journal
 from onboard.core.math.constants import NEVER, NS_PER_S
+from onboard.core.math.states import MateState
 from onboard.core.math.vectors import Vec
-from onboard.pilot.setup import MateState
 from onboard.runtime.protocols import Bus, Clock, Sample, Subscription
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import (

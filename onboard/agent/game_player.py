@@ -15,18 +15,20 @@ from onboard.agent.participation import Part
 from onboard.agent.readiness import lacking
 from onboard.agent.takeoff import TakeOff
 from onboard.agent.vehicle_link import Craft
-from onboard.autopilot.base import Setpoint, Stage, Telemetry, Way
+from onboard.autopilot.base import ReleaseMode, Setpoint, Stage, Telemetry
 from onboard.config.strict import ConfigError
+from onboard.core.game.rules import Target
 from onboard.core.math.constants import NEVER, NS_PER_S
+from onboard.core.math.states import Mate, carried
 from onboard.core.math.vectors import ZERO, Vec, along
-from onboard.core.safety.policy import Action, Cause, Mate, Seen
+from onboard.core.safety.policy import Action, Cause, Seen
 from onboard.core.safety.supervisor import Verdict, Watch, supervise
 from onboard.core.safety.words import ACTIONS, CAUSES
 from onboard.core.strategy.registry import EVADERS, PURSUERS
+from onboard.game.plugins import evader_strategy, pursuer_strategy
 from onboard.pilot.memory import Memory
-from onboard.pilot.pilot import Pilot, Thought
+from onboard.pilot.pilot import Pilot, PilotDecision
 from onboard.pilot.setup import GameSetup, Own, Side, TrackSample
-from onboard.runtime.plugins import evader_strategy, pursuer_strategy
 from onboard.runtime.protocols import Clock
 from onboard.wire.bus.messages import Phase, PhaseChange, Role, Setup, Severity, Track
 from onboard.wire.geodesy import Frame
@@ -56,7 +58,7 @@ class Acting:
         self.policy = limits.policy_of(config, None, True)
         self.flying: Flying | None = None
         self.why_not = ""  # why the setup at hand was refused
-        self.thought: Thought | None = None
+        self.thought: PilotDecision | None = None
         self.verdict: Verdict | None = None
         self.setpoint = ZERO  # [m/s; ground] let through in this step
         self.failures = 0  # of the strategy
@@ -236,7 +238,7 @@ class Acting:
             adapter.leave(now, orders.way)
         elif self.over:
             if adapter.stage in (Stage.ACTIVE, Stage.ENTERING):
-                adapter.leave(now, Way.HOLD)
+                adapter.leave(now, ReleaseMode.HOLD)
         elif self.engaged and self._may_control() and self._near() and idle:
             adapter.enter(now)
         if orders.resumed:
@@ -259,19 +261,18 @@ class Acting:
 
     # ------------------------------------------------------------------ think, supervise, send
 
-    def _decide(self, now: float, wall_ns: int, own: Own, wind: Vec) -> Thought | None:
+    def _decide(self, now: float, wall_ns: int, own: Own) -> PilotDecision | None:
         """Ask the pilot."""
         flying, table = self.flying, self._table
         if flying is None:
             return None
         game = flying.game
-        if self.side is Side.EVADER and table.target is not None and game.target != table.target:
-            game = game._replace(has_target=True, target=table.target)
+        if self.side is Side.EVADER and table.target is not None and game.target.position != table.target:
+            game = game._replace(target=Target(True, table.target))
             self.flying = flying._replace(game=game)
         at = (wall_ns - self._base_ns) / NS_PER_S
-        mates = table.mate_states(self._base_ns)
-        thought, self._memory = flying.pilot.step(at, own, (), mates, game, wind, self._memory)
-        return thought
+        mates = tuple(carried(mate, at) for mate in table.mate_states(self._base_ns))
+        return flying.pilot.step(at, own, mates, game, self._memory)
 
     def _think(self, now: float, wall_ns: int, t: Telemetry, begun_ns: int) -> None:
         craft = self._craft
@@ -279,7 +280,7 @@ class Acting:
         wind = t.wind if not hovers and now - t.wind_at < WIND_FRESH_S else ZERO
         position = along(t.position, t.velocity, min(max(0.0, now - t.position_at), 0.5))
         try:
-            self.thought = self._decide(now, wall_ns, Own(position, t.velocity), wind)
+            self.thought = self._decide(now, wall_ns, Own(position, t.velocity, wind))
             self._alive_at = self._clock.monotonic_ns() / NS_PER_S
             self._failing = False
         except Exception as error:  # a strategy of another distribution may fail in any way
@@ -336,10 +337,10 @@ class Acting:
             if hovers:
                 setpoint = Setpoint(ZERO)
             elif ours:
-                adapter.leave(now, Way.HOLD)
+                adapter.leave(now, ReleaseMode.HOLD)
         elif verdict.action is Action.RETURN:
             if ours or adapter.stage is Stage.LEAVING:
-                adapter.leave(now, Way.RETURN)
+                adapter.leave(now, ReleaseMode.RETURN)
         elif verdict.cause is not Cause.PILOT:
             adapter.end(now)
         self._craft.step(now, setpoint)

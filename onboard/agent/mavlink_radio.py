@@ -15,12 +15,12 @@ from functools import partial
 from onboard.autopilot.link_redundancy import Redundant
 from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.protocols import Clock, Link
-from onboard.wire.mavlink.frames import Framer, MavMessage, Packet, Sender
+from onboard.wire.mavlink.commands import Outgoing, SetpointMessage
+from onboard.wire.mavlink.frames import Framer, Packet, Sender
+from onboard.wire.mavlink.ids import AUTOPILOT, COMPANION
 from onboard.wire.mavlink.signing import Signing
 
 PEERS_MAX = 16  # framing states of one link
-AUTOPILOT = 1  # MAV_COMP_ID_AUTOPILOT1
-SETPOINTS = ("SET_POSITION_TARGET_LOCAL_NED", "SET_ATTITUDE_TARGET")
 
 Record = Callable[[int, bytes], None]  # (wall [ns], frame)
 
@@ -44,7 +44,7 @@ class Radio:
         system: int,
         clock: Clock,
         *,
-        component: int = 191,
+        component: int = COMPANION,
         signing: Signing | None = None,
         link_id: int = 0,
         record: Record | None = None,
@@ -75,7 +75,7 @@ class Radio:
         """The link that is used for sending."""
         return self._lines[self._redundant.active].link.name
 
-    def send(self, message: MavMessage) -> None:
+    def send(self, message: Outgoing) -> None:
         """Send to the autopilot. Nothing leaves while mute, or while it is not known who of several it is."""
         if self.mute:
             self.causes["muted"] += 1
@@ -83,7 +83,7 @@ class Radio:
         wall = self._clock.wall_ns()
         frame = self._sender.pack(message, wall)
         lines = self._lines
-        if len(lines) > 1 and message.get_type() in SETPOINTS:
+        if len(lines) > 1 and isinstance(message, SetpointMessage):
             lines = [lines[self._redundant.active]]
         for line in lines:
             if line.peer is None and len(line.framers) > 1:

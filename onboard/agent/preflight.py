@@ -23,16 +23,16 @@ from onboard.autopilot.base import Telemetry
 from onboard.autopilot.parameters import findings
 from onboard.config.strict import ConfigError
 from onboard.core.math.constants import NEVER, NS_PER_S
-from onboard.runtime.bus_zenoh import DEFAULT_ENDPOINT
 from onboard.runtime.clock import RealClock
 from onboard.runtime.protocols import Bus, Clock, Link
+from onboard.runtime.zenoh_config import DEFAULT_ENDPOINT
 from onboard.wire.bus.topics import Delivery
 from onboard.wire.mavlink import commands
 from onboard.wire.mavlink.frames import Packet
+from onboard.wire.mavlink.ids import MessageId
 from onboard.wire.mavlink.modes import Kind
 from onboard.wire.mavlink.signing import Signing
 
-VERSION_MESSAGE = 148  # AUTOPILOT_VERSION
 ENOUGH = 0.7  # of the position rate that was asked for
 DISK_MIN = 200e6  # bytes free, for logs
 HARMLESS = ("no_peer", "muted", "twin")  # counted, but no bad frames
@@ -265,7 +265,7 @@ async def _listen(
                 beats += 1
                 craft.heartbeat()
                 if craft.version is None:
-                    radio.send(commands.request_message(craft.to, VERSION_MESSAGE))
+                    radio.send(commands.request_message(craft.to, MessageId.AUTOPILOT_VERSION))
             await asyncio.sleep(0.05)
         now = clock.monotonic_ns() / NS_PER_S
         found = craft.version

@@ -9,7 +9,7 @@ from onboard.core.math.vectors import Vec
 from onboard.core.safety.policy import Action
 from onboard.core.safety.supervisor import Verdict
 from onboard.core.safety.words import ACTIONS, CAUSES
-from onboard.pilot.pilot import Thought, drawing
+from onboard.pilot.pilot import PilotDecision, drawing
 from onboard.pilot.setup import Side
 from onboard.wire.bus.messages import (
     DecisionLevel,
@@ -43,7 +43,13 @@ def state_of(id: int, role: Role, stamp_ns: int, t: Telemetry, nonce: int) -> St
 
 
 def decision_of(
-    id: int, side: Side, stamp_ns: int, game_time: float, thought: Thought, verdict: Verdict, setpoint: Vec
+    id: int,
+    side: Side,
+    stamp_ns: int,
+    game_time: float,
+    thought: PilotDecision,
+    verdict: Verdict,
+    setpoint: Vec,
 ) -> DecisionReport:
     """`vehicles/<id>/decision`: with the pictures of what was decided, and what became of it."""
     cones, circles = drawing(thought, side)

@@ -18,14 +18,13 @@ from onboard.agent.vehicle_link import Craft
 from onboard.autopilot.base import Stage
 from onboard.config.strict import ConfigError
 from onboard.core.math.constants import NS_PER_S
-from onboard.core.math.vectors import Vec
 from onboard.core.route.choice import TrackMemory
 from onboard.game.route_file import load_route
-from onboard.pilot.pilot import Thought
+from onboard.pilot.pilot import PilotDecision
 from onboard.pilot.route_pilot import ORDERS, TrackPilot
 from onboard.pilot.setup import Own
 from onboard.runtime.protocols import Clock
-from onboard.wire.bus.messages import Member
+from onboard.wire.bus.messages import LimitsMessage, Member
 from onboard.wire.geodesy import Frame
 
 
@@ -90,8 +89,8 @@ class Tracking(Acting):
             return
         e = self.route.limits
         member = Member(
-            id=self.config.id, role=self.config.role, speed_max=e.speed_max, start=(0.0, 0.0, 0.0),
-            speed_min=e.speed_min, pitch_min=e.pitch_min, pitch_max=e.pitch_max,
+            id=self.config.id, role=self.config.role, speed=e.speed_max, start=(0.0, 0.0, 0.0),
+            limits=LimitsMessage(*e),
         )  # fmt: skip
         envelope = limits.envelope_of(self.config, member, craft.hovers)
         self.policy = limits.policy_of(self.config, setup, craft.hovers)._replace(envelope=envelope)
@@ -112,10 +111,10 @@ class Tracking(Acting):
             self._journal.info("route", f"{self.route.name} begins")
         return True
 
-    def _decide(self, now: float, wall_ns: int, own: Own, wind: Vec) -> Thought | None:
+    def _decide(self, now: float, wall_ns: int, own: Own) -> PilotDecision | None:
         leg = self._track.leg if self._track is not None else 1
         time = self.game_time(wall_ns)
-        thought, self._track, finished = self._pilot_of_route.step(time, own, wind, self._track)
+        thought, self._track, finished = self._pilot_of_route.step(time, own, self._track)
         if self._track.leg != leg:
             late = time - self.route.waypoints[leg].time
             text = f"{leg} passed, {late:+.1f} s off its time"

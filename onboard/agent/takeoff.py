@@ -6,7 +6,7 @@ from onboard.agent.vehicle_link import Craft
 from onboard.autopilot.base import Stage
 from onboard.core.math.constants import NEVER
 from onboard.wire.mavlink import commands
-from onboard.wire.mavlink.frames import MavMessage
+from onboard.wire.mavlink.commands import CommandLong
 from onboard.wire.mavlink.modes import Kind, custom_mode
 
 AGAIN_S = 2.0
@@ -45,7 +45,7 @@ class TakeOff:
                 craft.radio.send(message)
         return True
 
-    def _next(self, craft: Craft) -> MavMessage | None:
+    def _next(self, craft: Craft) -> CommandLong | None:
         t, adapter = craft.telemetry, craft.adapter
         assert adapter is not None
         if adapter.kind is Kind.ARDUPLANE:

@@ -9,14 +9,14 @@ from onboard.agent.journal import Journal
 from onboard.agent.mavlink_radio import Radio
 from onboard.agent.telemetry_requests import Requests
 from onboard.autopilot.base import Adapter, Envelope, Refusal, Setpoint, Stage, Telemetry
-from onboard.autopilot.choose import adapter_for
+from onboard.autopilot.choose import AdapterOptions, adapter_for
 from onboard.autopilot.mavsdk import MavsdkAdapter
 from onboard.autopilot.telemetry_state import Observer
 from onboard.core.math.constants import NEVER, NS_PER_S
 from onboard.wire.bus.messages import Severity
-from onboard.wire.mavlink import commands
-from onboard.wire.mavlink.commands import Target
+from onboard.wire.mavlink.commands import OwnHeartbeat, Target
 from onboard.wire.mavlink.frames import Packet
+from onboard.wire.mavlink.ids import AUTOPILOT
 from onboard.wire.mavlink.values import (
     CommandAck,
     GlobalPosition,
@@ -28,7 +28,6 @@ from onboard.wire.mavlink.values import (
     Version,
 )
 
-AUTOPILOT = 1  # MAV_COMP_ID_AUTOPILOT1
 RATE_WINDOW_S = 2.0  # over which rates are measured
 _SEVERITIES = {"info": Severity.INFO, "warning": Severity.WARNING, "error": Severity.ERROR}
 
@@ -108,7 +107,7 @@ class Craft:
             return False
         value = self.observer.take(now, packet)
         if self._asking is not None:
-            self._asking.arrived(packet.message.get_type())
+            self._asking.arrived(packet.name)
         if value is None:
             return False
         if isinstance(value, GlobalPosition):
@@ -202,7 +201,7 @@ class Craft:
 
     def heartbeat(self) -> None:
         """Our own heartbeat, at 1 Hz."""
-        self.radio.send(commands.heartbeat())
+        self.radio.send(OwnHeartbeat())
 
     def _discover(self, heartbeat: Heartbeat) -> None:
         known = self._heartbeat
@@ -214,12 +213,14 @@ class Craft:
         found = adapter_for(
             heartbeat,
             self.to,
-            scheme=self.config.autopilot.value,
-            envelope=self._envelope,
-            parameters=self.parameters,
-            may_arm=self.config.may_arm,
-            hold_mode=self.config.hold_mode,
-            mavsdk_url=self.config.mavsdk,
+            AdapterOptions(
+                self.config.autopilot.value,
+                self.config.may_arm,
+                self.config.hold_mode,
+                self.config.mavsdk,
+                self._envelope,
+            ),
+            self.parameters,
         )
         if isinstance(found, Refusal):
             if found.reason != self.refusal:

@@ -17,7 +17,7 @@ from typing import NamedTuple, Protocol
 
 from onboard.core.math.constants import NEVER
 from onboard.core.math.vectors import ZERO, Vec
-from onboard.wire.mavlink.frames import MavMessage
+from onboard.wire.mavlink.commands import Outgoing
 from onboard.wire.mavlink.modes import Kind
 from onboard.wire.mavlink.values import UNKNOWN, CommandAck
 
@@ -96,8 +96,8 @@ class Stage(Enum):
     TAKEN = "taken"  # somebody else changed the mode: hands off
 
 
-class Way(Enum):
-    """How to leave."""
+class ReleaseMode(Enum):
+    """What the autopilot shall do alone when this agent leaves."""
 
     HOLD = "hold"
     RETURN = "return"
@@ -115,7 +115,7 @@ class Note(NamedTuple):
 class Step(NamedTuple):
     """What one step wants done: messages to send, in order, and notes."""
 
-    messages: tuple[MavMessage, ...] = ()
+    messages: tuple[Outgoing, ...] = ()
     notes: tuple[Note, ...] = ()
 
 
@@ -157,7 +157,7 @@ class Adapter(Protocol):
         """Ask for the guided mode until the heartbeat reports it. Also takes control back after TAKEN."""
         ...
 
-    def leave(self, now: float, way: Way) -> None:
+    def leave(self, now: float, mode: ReleaseMode) -> None:
         """End the setpoints and ask for a mode the autopilot can hold alone, until it reports it."""
         ...
 

@@ -59,7 +59,7 @@ class Redundant:
             self.active = link
             self.take_overs += before != link and self._heard_at[before] != NEVER
         took_over = self.active != before
-        once = packet.message.get_type() in ONCE
+        once = packet.name in ONCE
         if self._seen(now, _content(packet.raw) if once else packet.raw):
             self.duplicates += 1
             return Heard(False, took_over)

@@ -6,8 +6,8 @@ from time import process_time
 
 from onboard.core.math.vectors import Vec
 from onboard.game.scenario import Kind
-from onboard.wire.mavlink.frames import Sender, dialect
-from tests.support.flown import Flown
+from onboard.wire.mavlink.dialect import DialectSender, dialect
+from tests.support.flown_autopilot import FlownAutopilot
 
 SECONDS = 10
 TICKS_A_SECOND = 100
@@ -17,7 +17,7 @@ RATES = ((33, 20), (32, 20), (30, 10), (74, 5), (1, 2))  # message number, Hz: w
 def test_six_autopilots_and_airframes_beside_bare_encoding_of_what_they_send() -> None:
     """Their share must leave most of a core to the agents at ten times real time."""
     for kind in Kind:
-        flown = Flown(kind, tick_s=1.0 / TICKS_A_SECOND)
+        flown = FlownAutopilot(kind, tick_s=1.0 / TICKS_A_SECOND)
         for number, hz in RATES:
             assert flown.command(511, number, 1e6 / hz) == 0
         autopilot, airframe, air = flown.autopilot, flown.airframe, flown.air
@@ -35,7 +35,7 @@ def test_six_autopilots_and_airframes_beside_bare_encoding_of_what_they_send() -
             airframe.step(autopilot.step(now_ns, airframe.motion, air), air, flown.tick_ns * 1e-9)
             frames += len(autopilot.outgoing())
         taken = process_time() - began
-        sender = Sender(1, 1)
+        sender = DialectSender(1, 1)
         began = process_time()
         for number in range(frames):
             sender.pack(dialect.MAVLink_local_position_ned_message(number, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0))

@@ -64,14 +64,15 @@ def sent_beside(scenario_file: Path, frames: Sequence[tuple[int, bytes]], after_
 
 def spatial_rows(name: str, seeds: Sequence[int]) -> dict[tuple[int, str], SpatialRow]:
     """The compiled games of a shipped spatial scenario: by seed and way of the evader's flying."""
-    from sim_bridge.campaign import spatial_campaign as games
+    from sim_bridge.campaign.spatial_campaign import play_seed, spatial
+    from sim_bridge.campaign.spatial_game import Evasion
 
-    scenario = games.spatial(name)
+    scenario = spatial(name)
     rows: dict[tuple[int, str], SpatialRow] = {}
     for seed in seeds:
-        for way, brave in (("strategy", False), ("straight", True)):
-            p = games.play_seed(scenario, seed, brave)
-            rows[seed, way] = SpatialRow(
+        for evasion in Evasion:
+            p = play_seed(scenario, seed, evasion)
+            rows[seed, evasion.name.lower()] = SpatialRow(
                 p.verdict.name.lower(), float(p.time), float(p.smallest), p.reversals, p.decided_reversals,
                 float(p.play.envelope.lowest),
             )  # fmt: skip

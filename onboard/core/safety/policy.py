@@ -6,6 +6,7 @@ from enum import IntEnum
 from math import inf, pi
 from typing import NamedTuple
 
+from onboard.core.math.states import Mate
 from onboard.core.math.vectors import ZERO, Vec
 
 
@@ -99,15 +100,6 @@ class Policy(NamedTuple):
     battery: float = 0.2  # share left; 0 = off
     gps_fix: int = 3  # least acceptable (MAVLink GPS_FIX_TYPE); 0 = off
     settle: float = 1.0  # a cause must be gone for so long before its action ends [s]
-
-
-class Mate(NamedTuple):
-    """A team mate, carried forward to now."""
-
-    id: int
-    position: Vec  # [m; NED]
-    velocity: Vec  # [m/s; ground]
-    age: float  # since it was heard [s]
 
 
 class Seen(NamedTuple):

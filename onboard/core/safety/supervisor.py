@@ -148,10 +148,9 @@ def _allow(wanted: Vec, wind: Vec, seen: Seen, policy: Policy, watch: Watch) -> 
             cause = height.cause
     ground = add(bounded(sub(ground, wind), before, e).velocity, wind)
     if e.hovers:
-        walls = brake(ground, position, policy.fences, policy.fence_margin, policy.reaction, e)
+        walls = brake(ground, position, policy)
     else:
-        walls = turn(ground, position, seen.velocity, policy.fences, policy.fence_margin,
-                     policy.reaction, norm(wind), e)
+        walls = turn(ground, position, seen.velocity, norm(wind), policy)
     if walls.cause != Cause.NONE:
         cause = walls.cause
     return Allowed(bounded(sub(walls.velocity, wind), before, e).velocity, cause)

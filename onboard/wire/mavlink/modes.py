@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from onboard.wire.autopilot_kind import Kind as Kind
-from onboard.wire.mavlink.frames import dialect
+from onboard.wire.mavlink.dialect import dialect
 
 _MULTICOPTERS = frozenset(
     (

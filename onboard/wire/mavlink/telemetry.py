@@ -13,7 +13,7 @@ from typing import Any
 
 from onboard.core.math.vectors import Vec
 from onboard.wire.finite import all_finite
-from onboard.wire.mavlink.frames import MavMessage, dialect
+from onboard.wire.mavlink.dialect import MavMessage, dialect
 from onboard.wire.mavlink.modes import kind_of, mode_name
 from onboard.wire.mavlink.values import (
     UNKNOWN,

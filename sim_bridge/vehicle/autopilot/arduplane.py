@@ -10,7 +10,7 @@ from math import asin, atan, atan2, ceil, degrees, floor, hypot, isfinite, pi, r
 
 from onboard.core.math.constants import STANDARD_GRAVITY
 from onboard.core.math.vectors import ZERO, clamp
-from onboard.wire.mavlink.frames import Packet, dialect
+from onboard.wire.mavlink.dialect import DialectPacket, dialect
 from onboard.wire.mavlink.modes import ARDUPLANE_MODES
 from sim_bridge.vehicle.autopilot import default_parameters as tables
 from sim_bridge.vehicle.autopilot import telemetry
@@ -36,7 +36,7 @@ ALTITUDE_ONLY = 0xFFFB  # bits of a type_mask beside the altitude's
 
 
 class ArduPlane(ArduPilot):
-    """ArduPlane 4.5."""
+    """ArduPlane 4.5: modes, failsafes, guided roll, course, altitude and airspeed."""
 
     vehicle_type = dialect.MAV_TYPE_FIXED_WING
     modes = M
@@ -75,9 +75,9 @@ class ArduPlane(ArduPilot):
             "TECS_SINK_MAX": max(5.0, s.speed_cruise * sin(radians(-s.pitch_min_deg))),
             "WP_LOITER_RAD": float(ceil(max(60.0, radius))),
         }
-        return Parameters(tables.ARDUPLANE, own | dict(s.parameters), bytewise=False)
+        return Parameters(tables.ARDUPLANE, own | dict(s.options.parameters), bytewise=False)
 
-    def _message_handlers(self) -> dict[int, Callable[[int, Packet], None]]:
+    def _message_handlers(self) -> dict[int, Callable[[int, DialectPacket], None]]:
         return super()._message_handlers() | {
             dialect.MAVLINK_MSG_ID_SET_ATTITUDE_TARGET: self._on_attitude_target,
             dialect.MAVLINK_MSG_ID_SET_POSITION_TARGET_LOCAL_NED: self._on_local_target,
@@ -246,7 +246,7 @@ class ArduPlane(ArduPilot):
 
     # ------------------------------------------------------------------ setpoints
 
-    def _on_attitude_target(self, now_ns: int, packet: Packet) -> None:
+    def _on_attitude_target(self, now_ns: int, packet: DialectPacket) -> None:
         m = packet.message
         if not self.is_mode("GUIDED"):
             self.counters["target_outside_guided"] += 1
@@ -266,11 +266,11 @@ class ArduPlane(ArduPilot):
             self._throttle = clamp(m.thrust, 0.0, 1.0)
             self._throttle_ns = now_ns
 
-    def _on_local_target(self, now_ns: int, packet: Packet) -> None:
+    def _on_local_target(self, now_ns: int, packet: DialectPacket) -> None:
         """ArduPlane has no velocity targets."""
         self.counters["target_not_supported"] += 1
 
-    def _on_global_target(self, now_ns: int, packet: Packet) -> None:
+    def _on_global_target(self, now_ns: int, packet: DialectPacket) -> None:
         """Only the altitude is heeded, whatever else the mask says: a velocity mask is read as altitude 0."""
         m = packet.message
         if not self.is_mode("GUIDED"):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from onboard.wire.mavlink.frames import Packet, dialect
+from onboard.wire.mavlink.dialect import DialectPacket, dialect
 
 ACCEPTED: int = dialect.MAV_RESULT_ACCEPTED
 LATER: int = dialect.MAV_RESULT_TEMPORARILY_REJECTED
@@ -29,37 +29,19 @@ class Command(NamedTuple):
     component: int
 
 
-def from_long(packet: Packet) -> Command:
-    """Of a COMMAND_LONG."""
+def from_long(packet: DialectPacket) -> Command:
+    """The command of a COMMAND_LONG; its params 5 and 6 are taken for a place in degrees."""
     m = packet.message
     return Command(
-        m.command,
-        m.param1,
-        m.param2,
-        m.param3,
-        m.param4,
-        m.param5,
-        m.param6,
-        m.param7,
-        -1,
-        packet.system,
-        packet.component,
-    )
+        m.command, m.param1, m.param2, m.param3, m.param4, m.param5, m.param6, m.param7, -1,
+        packet.system, packet.component,
+    )  # fmt: skip
 
 
-def from_int(packet: Packet) -> Command:
-    """Of a COMMAND_INT."""
+def from_int(packet: DialectPacket) -> Command:
+    """The command of a COMMAND_INT, whose place is in 1e-7 degrees."""
     m = packet.message
     return Command(
-        m.command,
-        m.param1,
-        m.param2,
-        m.param3,
-        m.param4,
-        m.x * 1e-7,
-        m.y * 1e-7,
-        m.z,
-        m.frame,
-        packet.system,
-        packet.component,
-    )
+        m.command, m.param1, m.param2, m.param3, m.param4, m.x * 1e-7, m.y * 1e-7, m.z, m.frame,
+        packet.system, packet.component,
+    )  # fmt: skip

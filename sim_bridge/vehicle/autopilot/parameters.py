@@ -10,7 +10,7 @@ from math import isfinite
 from struct import pack, unpack
 from typing import NamedTuple
 
-from onboard.wire.mavlink.frames import MavMessage, dialect
+from onboard.wire.mavlink.dialect import MavMessage, dialect
 
 INT8: int = dialect.MAV_PARAM_TYPE_INT8
 INT16: int = dialect.MAV_PARAM_TYPE_INT16
@@ -22,7 +22,7 @@ RANGES = {INT8: (-(2**7), 2**7 - 1), INT16: (-(2**15), 2**15 - 1), INT32: (-(2**
 
 
 class Parameter(NamedTuple):
-    """One parameter as delivered."""
+    """One parameter: name, value as delivered and type on the wire."""
 
     name: str
     default: float

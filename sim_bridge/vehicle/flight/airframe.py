@@ -6,7 +6,7 @@ from math import asin, cos, sin, tan
 
 from onboard.core.math.angles import wrap
 from onboard.core.math.constants import STANDARD_GRAVITY
-from onboard.core.math.states import Limits
+from onboard.core.math.states import VehicleLimits
 from onboard.core.math.vectors import ZERO, Vec, clamp, norm, yaw_of
 from sim_bridge.vehicle.flight.aircraft import named, within
 from sim_bridge.vehicle.flight.plane import (
@@ -67,7 +67,7 @@ class Plane:
 
     @property
     def model(self) -> PlaneModel:
-        """The aircraft's model."""
+        """Everything fixed about the aircraft, as the kernel steps it."""
         return self._model
 
     @property
@@ -77,7 +77,7 @@ class Plane:
 
     @property
     def motion(self) -> Motion:
-        """Where it is now."""
+        """Motion at the end of the last step."""
         return self._motion
 
     def step(self, demand: Demand, air: Air, dt: float) -> Motion:
@@ -116,7 +116,7 @@ class Plane:
 
 
 def fixed_wing(
-    name: str, limits: Limits, position: Vec, heading: float, speed: float, wind: Vec = ZERO
+    name: str, limits: VehicleLimits, position: Vec, heading: float, speed: float, wind: Vec = ZERO
 ) -> Plane:
     """The configured aircraft `name` (nose, slip, coordinated) under a vehicle's own limits.
 

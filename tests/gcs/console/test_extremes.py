@@ -14,7 +14,7 @@ from gcs.console.vehicle_table import line, rows
 from gcs.picture.json_document import to_json
 from onboard.wire.bus import messages
 from onboard.wire.bus.messages import Phase, Role
-from tests.support.radio import START_NS, Tower, decision, health, phase, setup, state, track
+from tests.support.sample_messages import START_NS, Tower, decision, health, phase, setup, state, track
 
 number = st.floats(allow_nan=False, allow_infinity=False) | st.sampled_from([0.0, 1e-300, 1.7e308, -1.7e308])
 triple = st.tuples(number, number, number)
@@ -41,7 +41,7 @@ said = st.one_of(
     }).map(lambda d: decision(2, **d)),
     st.fixed_dictionaries({"position": triple, "velocity": triple}).map(lambda d: track(1, **d)),
     st.fixed_dictionaries({
-        "capture_radius": number, "safety_distance": number, "separation": number, "fence": st.none() | fence,
+        "R": number, "rho": number, "separation": number, "fence": st.none() | fence,
         "planar": st.booleans(), "pursuer_speed": number,
     }).map(lambda d: setup(3, **d)),
     st.builds(messages.Outcome, st.sampled_from(messages.OutcomeResult), number, whole, number, whole),

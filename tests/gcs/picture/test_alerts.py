@@ -14,7 +14,7 @@ from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec
 from onboard.wire.bus import messages
 from onboard.wire.bus.messages import AgentStage, CommandState, Phase, Severity
-from tests.support.radio import (
+from tests.support.sample_messages import (
     START_NS,
     Tower,
     decision,

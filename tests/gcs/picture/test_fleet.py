@@ -15,7 +15,7 @@ from gcs.picture.values import Presence
 from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus import messages, topics
 from onboard.wire.bus.messages import OutcomeResult, Phase, Role
-from tests.support.radio import (
+from tests.support.sample_messages import (
     GAME,
     START_NS,
     Tower,

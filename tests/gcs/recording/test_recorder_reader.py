@@ -13,8 +13,8 @@ from gcs.recording.reader import Recording
 from gcs.recording.recorder import FORMAT, METADATA, Recorder
 from onboard.config.strict import ConfigError
 from onboard.wire.bus.messages import SCHEMA
-from tests.support.chase import chase
-from tests.support.recordings import read
+from tests.support.chase_messages import chase
+from tests.support.recording_process import read
 
 FLOWN = list(chase(3.0))
 

@@ -16,9 +16,11 @@ from onboard.runtime.clock import SkewedClock
 from onboard.runtime.links import memory_pair
 from onboard.runtime.patterns import matches
 from onboard.wire.autopilot_kind import Kind
+from onboard.wire.bus import messages, topics
 from onboard.wire.bus.messages import AgentStage, Master, Role, Track
 from onboard.wire.bus.topics import DECISION, EVADER_BRIEF, MASTER, SETUP, STATE, TRACK, Delivery
-from tests.support.flights import (
+from tests.support.virtual_time import virtual
+from tests.support.whole_games import (
     EVADER,
     MATE,
     PURSUER,
@@ -28,7 +30,6 @@ from tests.support.flights import (
     passes,
     under_way,
 )
-from tests.support.virtual import virtual
 
 
 @virtual
@@ -61,7 +62,7 @@ async def test_the_setpoint_leaves_before_anything_is_published() -> None:
         send, publish = agent.radio.send, agent.bus.publish
 
         def sending(message: Any) -> None:
-            order.append(message.get_type())
+            order.append(type(message).__name__)
             send(message)
 
         def publishing(key: str, payload: bytes, delivery: Delivery) -> None:
@@ -74,7 +75,7 @@ async def test_the_setpoint_leaves_before_anything_is_published() -> None:
             await passes(game, 0.049)
             order.clear()
             agent.step(agent.now)
-            assert order[0] == "SET_POSITION_TARGET_LOCAL_NED"
+            assert order[0] == "VelocityTarget"
 
 
 @virtual
@@ -203,8 +204,8 @@ async def test_a_setup_from_another_than_the_master_is_ignored() -> None:
         await under_way(game, 1.0)
         agent = game.agents[PURSUER]
         assert agent.table.setup is not None
-        other = replace(agent.table.setup, master="usurper", capture_radius=99.0, safety_distance=199.0)
-        game.bus.publish(SETUP.key(game.game), SETUP.encode(other), SETUP.delivery)
+        other = replace(agent.table.setup, master="usurper", rules=messages.RulesMessage(99.0, 199.0))
+        game.bus.publish(SETUP.key(game.game), topics.SETUP.encode(other), SETUP.delivery)
         await passes(game, 1.0)
         assert agent.table.setup.master == "sim-bridge"
         assert "two_masters" in game.kinds(PURSUER)

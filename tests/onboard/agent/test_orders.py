@@ -5,11 +5,12 @@ from __future__ import annotations
 import pytest
 
 from onboard.agent.command_book import Orders
-from onboard.autopilot.base import Stage, Way
+from onboard.autopilot.base import ReleaseMode, Stage
 from onboard.core.safety.policy import Action
 from onboard.game.scenario import Kind
 from onboard.wire.bus.messages import AgentStage, CommandKind, CommandState
-from tests.support.flights import (
+from tests.support.virtual_time import virtual
+from tests.support.whole_games import (
     PURSUER,
     autopilot,
     chase,
@@ -24,7 +25,6 @@ from tests.support.flights import (
     speed,
     under_way,
 )
-from tests.support.virtual import virtual
 
 WORDS = {
     Kind.PX4: {"hold": "HOLD", "return": "RTL", "land": "LAND", "abort": "HOLD"},
@@ -129,7 +129,7 @@ async def test_a_later_order_supersedes_an_open_one_and_bytes_that_are_none_are_
 
 
 def test_what_is_not_obeyed_confirms_nothing() -> None:
-    orders = Orders(Way.HOLD)
+    orders = Orders(ReleaseMode.HOLD)
     entry, new = orders.give(command(CommandKind.HOLD), "no autopilot")
     assert (entry.state, new, orders.action) == (CommandState.REFUSED, True, Action.PASS)
     assert orders.review(Stage.LEFT) is None

@@ -46,7 +46,7 @@ def opened(*wires: Wire, signing: Signing | None = None, mute: bool = False) -> 
 
 def beat(system: int = 2, component: int = 1, signing: Signing | None = None) -> bytes:
     """A heartbeat of somebody's."""
-    return Sender(system, component, signing=signing).pack(commands.heartbeat(), EPOCH_NS)
+    return Sender(system, component, signing=signing).pack(commands.OwnHeartbeat(), EPOCH_NS)
 
 
 def test_answers_go_to_the_autopilots_peer_and_to_nobody_elses() -> None:
@@ -54,7 +54,7 @@ def test_answers_go_to_the_autopilots_peer_and_to_nobody_elses() -> None:
     radio, heard = opened(wire)
     wire.hear(beat(), ("127.0.0.1", 5760))
     wire.hear(beat(system=255, component=190), ("10.0.0.9", 14550))
-    radio.send(commands.heartbeat())
+    radio.send(commands.OwnHeartbeat())
     assert len(heard) == 2
     assert wire.sent[-1][1] == ("127.0.0.1", 5760)
 
@@ -74,7 +74,7 @@ def test_a_crowd_of_peers_is_bounded_and_the_autopilot_is_not_forgotten() -> Non
     wire.hear(beat(), "autopilot")
     for n in range(100):
         wire.hear(b"\x00", n)
-    radio.send(commands.heartbeat())
+    radio.send(commands.OwnHeartbeat())
     assert wire.sent[-1][1] == "autopilot"
     assert radio.counters()["peers_forgotten"] > 50
 
@@ -93,7 +93,7 @@ def test_with_a_key_only_signed_frames_count_and_ours_are_signed() -> None:
     assert len(heard) == 1
     assert radio.counters()["signature_replayed"] == 1
     assert radio.counters()["signature_wrong"] == 1
-    radio.send(commands.heartbeat())
+    radio.send(commands.OwnHeartbeat())
     assert wire.sent[-1][0][2] & 1  # the frame says it is signed
 
 
@@ -101,6 +101,6 @@ def test_mute_sends_nothing_and_counts_it() -> None:
     wire = Wire()
     radio, _ = opened(wire, mute=True)
     wire.hear(beat(), "a")
-    radio.send(commands.heartbeat())
+    radio.send(commands.OwnHeartbeat())
     assert wire.sent == []
     assert radio.counters()["muted"] == 1

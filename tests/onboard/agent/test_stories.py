@@ -8,7 +8,8 @@ from onboard.autopilot.base import Stage
 from onboard.game.scenario import Kind
 from onboard.runtime.impairment import CLEAR, CUT
 from onboard.wire.bus.messages import AgentStage, Phase
-from tests.support.flights import (
+from tests.support.virtual_time import virtual
+from tests.support.whole_games import (
     EVADER,
     MATE,
     PURSUER,
@@ -25,7 +26,6 @@ from tests.support.flights import (
     speed,
     under_way,
 )
-from tests.support.virtual import virtual
 
 KINDS = pytest.mark.parametrize("kind", list(Kind), ids=lambda kind: kind.value)
 GUIDED = {Kind.PX4: "OFFBOARD", Kind.ARDUCOPTER: "GUIDED", Kind.ARDUPLANE: "GUIDED"}

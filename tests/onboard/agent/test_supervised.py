@@ -16,7 +16,8 @@ from onboard.runtime.impairment import CLEAR, CUT, Impaired
 from onboard.runtime.links import memory_pair
 from sim_bridge.vehicle.autopilot.health import Fault
 from sim_bridge.world.staging import generator
-from tests.support.flights import (
+from tests.support.virtual_time import virtual
+from tests.support.whole_games import (
     EVADER,
     MATE,
     PURSUER,
@@ -31,7 +32,6 @@ from tests.support.flights import (
     speed,
     under_way,
 )
-from tests.support.virtual import virtual
 
 
 def cause(agent: Agent) -> Cause:

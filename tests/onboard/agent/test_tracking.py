@@ -7,13 +7,13 @@ import asyncio
 import pytest
 
 from onboard.agent.agent import Agent
-from onboard.agent.config import AgentConfig, check
+from onboard.agent.config import AgentConfig, load
 from onboard.config.strict import ConfigError
 from onboard.core.math.vectors import Vec, distance
 from onboard.game.scenario import Kind
 from onboard.wire.bus.messages import Role
-from tests.support.flights import EVADER, chase, choose_mode, flies, game_of, mode, passes, place
-from tests.support.virtual import virtual
+from tests.support.virtual_time import virtual
+from tests.support.whole_games import EVADER, chase, choose_mode, flies, game_of, mode, passes, place
 
 ROUTE = """
 name = "round"
@@ -40,9 +40,7 @@ async def test_a_route_is_flown_in_time_and_the_vehicle_holds_at_its_end(
     file = tmp_path_factory.mktemp("route") / "route.toml"
     file.write_text(text, encoding="utf-8")
     async with game_of(chase(kind), agents=False) as game:
-        config = AgentConfig(
-            id=EVADER, role=Role.TRACKER, route=str(file), take_control=True, game=game.game
-        )
+        config = AgentConfig(id=EVADER, role=Role.TRACKER, route=str(file), take_control=True, game=game.game)
         agent = Agent(
             config, game.clock, [game.links[EVADER]], game.broker.connect("t"), nonce=3, log=lambda line: None
         )
@@ -66,9 +64,7 @@ async def test_a_pilot_takes_the_tracker_over_and_gives_it_back(
     file = tmp_path_factory.mktemp("route") / "route.toml"
     file.write_text(COPTER, encoding="utf-8")
     async with game_of(chase(), agents=False) as game:
-        config = AgentConfig(
-            id=EVADER, role=Role.TRACKER, route=str(file), take_control=True, game=game.game
-        )
+        config = AgentConfig(id=EVADER, role=Role.TRACKER, route=str(file), take_control=True, game=game.game)
         agent = Agent(
             config, game.clock, [game.links[EVADER]], game.broker.connect("t"), nonce=3, log=lambda line: None
         )
@@ -84,4 +80,4 @@ async def test_a_pilot_takes_the_tracker_over_and_gives_it_back(
 
 def test_a_tracker_without_a_route_is_refused() -> None:
     with pytest.raises(ConfigError, match="route: found none, expected a tracker's route file"):
-        check(AgentConfig(role=Role.TRACKER), "options")
+        load(None, {"role": "tracker"})

@@ -7,10 +7,10 @@ from math import radians
 import pytest
 
 from onboard.autopilot.base import Envelope, Refusal
-from onboard.autopilot.choose import adapter_for
+from onboard.autopilot.choose import AdapterOptions, adapter_for
 from onboard.autopilot.parameters import envelope_from, findings, gcs_failsafe
 from onboard.wire.mavlink.commands import Target
-from onboard.wire.mavlink.frames import dialect
+from onboard.wire.mavlink.dialect import dialect
 from onboard.wire.mavlink.modes import Kind
 from onboard.wire.mavlink.telemetry import decode
 from onboard.wire.mavlink.values import Heartbeat
@@ -58,7 +58,7 @@ def test_each_autopilot_gets_its_own(
 def test_what_cannot_be_flown_is_refused_with_the_reason(
     autopilot: int, vehicle: int, scheme: str, reason: str
 ) -> None:
-    refusal = adapter_for(heartbeat(autopilot, vehicle), Target(2), scheme=scheme)
+    refusal = adapter_for(heartbeat(autopilot, vehicle), Target(2), AdapterOptions(scheme))
     assert isinstance(refusal, Refusal)
     assert reason in refusal.reason
 
@@ -76,13 +76,27 @@ def test_the_plain_variant_needs_a_failsafe_that_watches_the_agent(
     change: dict[str, float | None], reason: str
 ) -> None:
     plane = heartbeat(3, 1)
-    good = adapter_for(plane, Target(2), scheme="arduplane-plain", parameters=WATCHED)
+    good = adapter_for(plane, Target(2), AdapterOptions("arduplane-plain"), WATCHED)
     assert not isinstance(good, Refusal)
     assert good.name == "arduplane-plain"
     parameters = {k: v for k, v in {**WATCHED, **change}.items() if v is not None}
-    refusal = adapter_for(plane, Target(2), scheme="arduplane-plain", parameters=parameters)
+    refusal = adapter_for(plane, Target(2), AdapterOptions("arduplane-plain"), parameters)
     assert isinstance(refusal, Refusal)
     assert reason in refusal.reason
+
+
+@pytest.mark.parametrize(
+    ("hold_mode", "autopilot", "flown"),
+    [("BRAKE", 3, True), ("BREAK", 3, False), ("GUIDED", 3, False), ("BRAKE", 12, False), ("HOLD", 12, True)],
+)
+def test_a_mode_to_hold_in_that_the_autopilot_does_not_have_is_refused(
+    hold_mode: str, autopilot: int, flown: bool
+) -> None:
+    found = adapter_for(heartbeat(autopilot, 2), Target(2), AdapterOptions(hold_mode=hold_mode))
+    assert isinstance(found, Refusal) != flown
+    if isinstance(found, Refusal):
+        assert f"hold_mode '{hold_mode}' is no mode" in found.reason
+        assert "expected one of" in found.reason
 
 
 def test_parameters_that_defeat_a_failsafe_are_found() -> None:

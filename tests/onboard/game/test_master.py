@@ -25,6 +25,7 @@ from onboard.wire.bus.messages import (
     Phase,
     PhaseChange,
     Role,
+    RulesMessage,
     Setup,
     SupervisorAction,
 )
@@ -43,8 +44,7 @@ def setup(**changes: object) -> Setup:
     )
     fields: dict[str, object] = dict(
         game="g", scenario="story", scenario_hash="0" * 16, master="bridge", origin=Origin(47.0, 8.0, 400.0),
-        roster=members, capture_radius=5.0, safety_distance=10.0, lambda_=100.0, beta=1.0, epsilon_min=1.0,
-        horizon=30.0,
+        roster=members, rules=RulesMessage(5.0, 10.0, horizon=30.0),
     )  # fmt: skip
     return Setup(**(fields | changes))  # type: ignore[arg-type]
 
@@ -183,16 +183,15 @@ def test_an_evader_that_nobody_catches_has_escaped_at_the_horizon() -> None:
     assert field.outcome().time == 30.0
 
 
-@pytest.mark.parametrize(
-    ("changes", "verdict"),
-    [
-        ({}, OutcomeResult.ESCAPED),
-        ({"planar": True}, OutcomeResult.CAPTURED),
-        ({"field_profile": True}, OutcomeResult.CAPTURED),
-    ],
-)
+PLANE = RulesMessage(5.0, 10.0, horizon=30.0, planar=True)
+
+
+@pytest.mark.parametrize(("changes", "verdict"), [({}, OutcomeResult.ESCAPED),
+    ({"rules": PLANE}, OutcomeResult.CAPTURED),
+    ({"field_profile": True}, OutcomeResult.CAPTURED),
+])  # fmt: skip
 def test_plane_games_and_altitude_layers_are_judged_level(
-    changes: dict[str, bool], verdict: OutcomeResult
+    changes: dict[str, Any], verdict: OutcomeResult
 ) -> None:
     field = Range(**changes)
     field.begin()

@@ -15,12 +15,20 @@ from onboard.runtime.bus_memory import MemoryBroker
 from onboard.runtime.loop import run_virtual, virtual_clock
 from onboard.runtime.protocols import Bus
 from onboard.wire.bus.messages import Outcome, OutcomeResult, Phase, Role
-from onboard.wire.bus.topics import EVADER_BRIEF, MASTER, OUTCOME, SETUP, TOPICS, TRACK, everything
-from sim_bridge.world.bridge import Bridge
-from tests.support.buses import Heard
-from tests.support.scripted import ScriptedAgent, for_a_while
-from tests.support.virtual import virtual
-from tests.support.waiting import until
+from onboard.wire.bus.topics import (
+    EVADER_BRIEF,
+    MASTER,
+    OUTCOME,
+    SETUP,
+    TOPICS,
+    TRACK,
+    everything,
+)
+from sim_bridge.world.bridge import Bridge, Options
+from tests.support.bus_stages import Heard
+from tests.support.real_time import until
+from tests.support.scripted_agents import ScriptedAgent, for_a_while
+from tests.support.virtual_time import virtual
 
 GAME = "range"
 
@@ -55,7 +63,7 @@ class Stage:
 
     def another(self, nonce: int) -> Bridge:
         bus = self.broker.connect("bridge")
-        return Bridge(self.scenario, self.clock, bus, {}, nonce=nonce, game=GAME, say=self.news.append)
+        return Bridge(self.scenario, self.clock, bus, {}, Options(nonce, GAME), self.news.append)
 
     async def play(self, seconds: float) -> None:
         await for_a_while(seconds, self.bridge.run(), *(agent.run() for agent in self.agents.values()))
@@ -91,7 +99,7 @@ async def test_the_setup_says_everything_but_the_target() -> None:
     setup = SETUP.decode(setups.payloads[0], Counter())
     assert setup == setup_of(scenario(), GAME, "sim-bridge")
     assert setup is not None
-    assert [(m.id, m.role, m.speed_max) for m in setup.roster] == [
+    assert [(m.id, m.role, m.speed) for m in setup.roster] == [
         (1, Role.EVADER, 4.0), (2, Role.PURSUER, 5.0), (3, Role.PURSUER, 5.0),
     ]  # fmt: skip
     assert setup.roster[1].start == (30.0, 0.0, -50.0)  # a plane game is flown at its height

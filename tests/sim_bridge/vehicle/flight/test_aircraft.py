@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from onboard.config.strict import ConfigError
-from onboard.core.math.states import Limits
+from onboard.core.math.states import VehicleLimits
 from onboard.runtime.resources import configs
 from sim_bridge.vehicle.flight.aircraft import load, named, within
 from sim_bridge.vehicle.flight.plane import PathModel
@@ -32,7 +32,7 @@ BAD = [
     ("rate_gain = -1.2", "rate_gain = 1.2", "yaw_loop.rate_gain", "sign"),
     ("rate_gain = -1.2", "rate_gain = -60.0", "yaw_loop", "unstable"),
     ("rate_hz = 100.0", "rate_hz = 50.0", "rate_hz", "[100, 2000] Hz"),
-    ('path = "nose"', 'path = "tail"', "path", "one of nose, slip, coordinated"),
+    ('path = "nose"', 'path = "tail"', "path", "one of: nose, slip, coordinated"),
     ("limit_deg = 25.0", "limit_deg = -25.0", "elevator.limit_deg", "positive"),
     ("acceleration_min = -4.0", "acceleration_min = 4.0", "speed.acceleration_min", "negative"),
     ("pitch_max_deg = 25.0", "pitch_max_deg = -30.0", "limits.pitch_min_deg", "min < max"),
@@ -62,7 +62,7 @@ def test_what_cannot_fly_is_refused_with_its_reason(
 
 def test_a_vehicle_s_own_limits_narrow_those_of_the_aircraft() -> None:
     model = named("nose").model
-    narrow = within(model, Limits(30.0, 50.0, radians(-10.0), radians(60.0)))
+    narrow = within(model, VehicleLimits(30.0, 50.0, radians(-10.0), radians(60.0)))
     assert (narrow.speed_min, narrow.speed_max) == (30.0, 50.0)
     assert narrow.pitch_min == radians(-10.0)
     assert narrow.pitch_max == model.pitch_max
