@@ -20,7 +20,7 @@ from gcs.console.help import HelpScreen
 from gcs.console.source import Source
 from gcs.console.vehicle_table import Row, rows
 from gcs.console.widgets import AlertBoard, Detail, LogPanel, Plan, Prompt, StatusBar, VehicleTable
-from gcs.picture.commands import ENDS_A_FLIGHT
+from gcs.picture.command_book import ENDS_A_FLIGHT
 from gcs.picture.values import Picture
 from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus.messages import CommandKind

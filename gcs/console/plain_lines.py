@@ -65,7 +65,7 @@ def status(picture: Picture) -> list[str]:
             vehicle.role.value if vehicle.role else "role unknown",
             GRADE_WORDS[graded[vehicle.id]],
             vehicle.mode or "no mode",
-            health.stage if health else "no health",
+            health.stage.value if health else "no health",
             f"battery {health.battery:.0%}" if health and health.battery >= 0 else "battery unknown",
             f"heard {age(vehicle.age_s)} s ago",
         ]

@@ -18,7 +18,7 @@ import pytest
 from gcs import cli, options, settings
 from gcs.console.plain_lines import Plain
 from gcs.picture.alert_rules import Thresholds
-from gcs.picture.plain_data import document
+from gcs.picture.json_document import document
 from onboard.config import strict as config
 from onboard.runtime.bus_zenoh import open_zenoh
 from onboard.runtime.clock import RealClock

@@ -9,7 +9,7 @@ from gcs.console import command_parser as words
 from gcs.console import plan
 from gcs.console.vehicle_table import COLUMNS, age, column_at, heading, line
 from gcs.picture.values import Picture
-from onboard.wire.bus import messages as swarm
+from onboard.wire.bus import messages
 from onboard.wire.bus.messages import CommandKind
 from tests.support.sample_messages import START_NS, Tower, decision, setup, state, track
 
@@ -59,8 +59,8 @@ def test_arrows_point_where_vehicles_go():
 
 def test_target_aim_fence_circles_tracks_and_trails_are_drawn():
     tower = Tower()
-    fence = swarm.Fence(((-90.0, -90.0), (90.0, -90.0), (90.0, 190.0), (-90.0, 190.0)), 0.0, 100.0)
-    tower.hear(setup(3, fence=fence), swarm.EvaderBrief((60.0, 60.0, 0.0), START_NS))
+    fence = messages.Fence(((-90.0, -90.0), (90.0, -90.0), (90.0, 190.0), (-90.0, 190.0)), 0.0, 100.0)
+    tower.hear(setup(3, fence=fence), messages.EvaderBrief((60.0, 60.0, 0.0), START_NS))
     tower.hear(state(2, position=(0.0, 0.0, -50.0)), track(1, position=(0.0, 150.0, -50.0)))
     view = plan.fitted(plan.START, tower.picture, 60, 20)
     plain = text(tower.picture, view)
@@ -107,7 +107,7 @@ numbers = st.floats(-1e7, 1e7)
     st.integers(0, 90), st.integers(0, 40), st.floats(0.01, 1e4), st.integers(1, 6),
 )  # fmt: skip
 def test_whatever_is_on_the_field_the_plan_has_its_size(places, width, height, scale, selected):
-    fence = swarm.Fence(((-1e6, 0.0), (5.0, 1e6), (0.0, 0.0)), 0.0, 1.0)
+    fence = messages.Fence(((-1e6, 0.0), (5.0, 1e6), (0.0, 0.0)), 0.0, 1.0)
     picture = field(*places, fence=fence)
     view = plan.fitted(plan.View(0.0, 0.0, scale), picture, width, height)
     for look in (view, plan.START):

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from gcs.picture.reducer import PictureReducer
 from gcs.picture.values import Picture
-from gcs.picture.watch import Watch
 from gcs.recording.recorder import Recorder
 from gcs.replay.player import Player
 from gcs.replay.source import ReplaySource, open_run
@@ -38,7 +38,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def live(at_ns: int) -> Picture:
     """What the station showed at an instant."""
-    watch = Watch("field")
+    watch = PictureReducer("field")
     for item in flight_with_trouble():
         if item.stamp_ns <= at_ns:
             watch.apply(*item)
@@ -47,7 +47,7 @@ def live(at_ns: int) -> Picture:
 
 def test_a_replay_gives_the_live_picture_alert_for_alert(run: Path) -> None:
     player = Player(open_run(run))
-    watch = Watch("field")
+    watch = PictureReducer("field")
     flown = iter(flight_with_trouble())
     item = next(flown)
     shown = set()
