@@ -16,7 +16,7 @@ from onboard.runtime.clock import SkewedClock
 from onboard.runtime.links import memory_pair
 from onboard.runtime.patterns import matches
 from onboard.wire.autopilot_kind import Kind
-from onboard.wire.bus import messages
+from onboard.wire.bus import messages, topics
 from onboard.wire.bus.messages import AgentStage, Master, Role, Track
 from onboard.wire.bus.topics import DECISION, EVADER_BRIEF, MASTER, SETUP, STATE, TRACK, Delivery
 from tests.support.small_scenarios import EVADER, MATE, PURSUER, chase
@@ -39,7 +39,7 @@ async def test_no_agent_listens_to_an_opponents_state_or_to_the_evaders_brief() 
             assert sorted(asked[id]) == sorted(agent.table.keys())
             for secret in secrets[id]:
                 assert not any(matches(pattern, secret) for pattern in asked[id]), (id, secret)
-                for decision in (DECISION.EVADER.key(game.game), DECISION.PURSUER.key(game.game)):
+                for decision in (DECISION.key(game.game, EVADER), DECISION.key(game.game, PURSUER)):
                     assert not any(matches(pattern, decision) for pattern in asked[id])
         assert any(matches(p, STATE.key(game.game, MATE)) for p in asked[PURSUER])
         assert any(matches(p, EVADER_BRIEF.key(game.game)) for p in asked[EVADER])
@@ -188,7 +188,7 @@ async def test_two_masters_are_reported_and_the_first_ones_clock_counts() -> Non
         await under_way(game, 1.0)
         for _ in range(8):
             wrong = Master("usurper", game.clock.wall_ns() - 10**10, 2.0, 1 << 48)
-            game.bus.publish(MASTER.key(game.game), MASTER.encode(wrong), MASTER.delivery)
+            game.bus.publish(MASTER.key(game.game), topics.MASTER.encode(wrong), MASTER.delivery)
             await game.forward(0.25)
         agent = game.agents[PURSUER]
         assert game.kinds(PURSUER).count("two_masters") == 1
@@ -205,7 +205,7 @@ async def test_a_setup_from_another_than_the_master_is_ignored() -> None:
         agent = game.agents[PURSUER]
         assert agent.table.setup is not None
         other = replace(agent.table.setup, master="usurper", rules=messages.RulesMessage(99.0, 199.0))
-        game.bus.publish(SETUP.key(game.game), SETUP.encode(other), SETUP.delivery)
+        game.bus.publish(SETUP.key(game.game), topics.SETUP.encode(other), SETUP.delivery)
         await game.forward(1.0)
         assert agent.table.setup.master == "sim-bridge"
         assert "two_masters" in game.kinds(PURSUER)
@@ -249,8 +249,8 @@ async def test_garbage_on_the_bus_is_counted_by_cause_and_changes_nothing() -> N
         nan = Track(EVADER, 0, (float("nan"), 0.0, 0.0), position, (1.0,) * 6)  # type: ignore[arg-type]
         bus = game.bus
         bus.publish(TRACK.key(game.game, EVADER), b"\xff\x00\x01", TRACK.delivery)
-        bus.publish(TRACK.key(game.game, EVADER), TRACK.encode(nan), TRACK.delivery)
-        bus.publish(TRACK.key(game.game, MATE), TRACK.encode(foreign), TRACK.delivery)
+        bus.publish(TRACK.key(game.game, EVADER), topics.TRACK.encode(nan), TRACK.delivery)
+        bus.publish(TRACK.key(game.game, MATE), topics.TRACK.encode(foreign), TRACK.delivery)
         bus.publish(SETUP.key(game.game), b"\x92\x63\x90", SETUP.delivery)
         await game.forward(1.0)
         assert agent.table.drops["undecodable"] == 1

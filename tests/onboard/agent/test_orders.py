@@ -58,8 +58,9 @@ async def test_resume_gives_the_game_back_to_the_agent() -> None:
         assert speed(game, PURSUER) < 0.5
         await order(game, PURSUER, command(CommandKind.RESUME, "c-2"))
         await game.forward(3.0)
-        reply = await order(game, PURSUER, command(CommandKind.RESUME, "c-2"))
-        assert reply.state == CommandState.CONFIRMED
+        assert (
+            await order(game, PURSUER, command(CommandKind.RESUME, "c-2"))
+        ).state == CommandState.CONFIRMED
         assert flies(game.agents[PURSUER])
         assert speed(game, PURSUER) > 3.0
 
