@@ -31,7 +31,7 @@ class View(NamedTuple):
 
 
 class Options(NamedTuple):
-    """What is drawn."""
+    """What the plan shows beside the vehicles."""
 
     trails: bool = True
     circles: bool = True
@@ -98,6 +98,7 @@ class _Canvas:
         return (east - v.east) / v.scale + self.width, (v.north - north) / v.scale + 2 * self.height
 
     def dot(self, x: float, y: float, style: str) -> None:
+        """A braille dot at dot coordinates; nothing outside the view."""
         if 0 <= x < 2 * self.width and 0 <= y < 4 * self.height:
             column, row = int(x), int(y)
             self.dots[row // 4][column // 2] |= BRAILLE[row % 4][column % 2]
@@ -117,6 +118,7 @@ class _Canvas:
             self.dot(x0 + (x1 - x0) * step / steps, y0 + (y1 - y0) * step / steps, style)
 
     def circle(self, north: float, east: float, radius: float, style: str) -> None:
+        """A circle about a place [m], unless it is too small or too large to be seen as one."""
         r = radius / self.view.scale
         if not 1.5 <= r < FAR:
             return
@@ -127,6 +129,7 @@ class _Canvas:
             self.dot(x + r * sin(angle), y - r * cos(angle), style)
 
     def text(self, column: int, row: int, text: str, style: str) -> None:
+        """Text from a character cell on to the right; what leaves the view is cut off."""
         if not 0 <= row < self.height:
             return
         for offset, sign in enumerate(text):
@@ -142,6 +145,7 @@ class _Canvas:
             self.text(max(0, min(column, self.width - len(text))), row, text, style)
 
     def rows(self) -> list[list[Run]]:
+        """All rows from the top, each as runs of one style."""
         rows = []
         for signs, dots, styles in zip(self.signs, self.dots, self.styles, strict=True):
             runs: list[Run] = []
