@@ -35,12 +35,12 @@ class HelpScreen(ModalScreen[None]):
 
     def __init__(self, keys: Iterable[tuple[str, str, str]], own: Iterable[Key]) -> None:
         super().__init__()
-        self._text = help_text(keys, own)
+        self.text = help_text(keys, own)
 
     def compose(self) -> ComposeResult:
         """The text in a frame that scrolls."""
         with VerticalScroll(id="help"):
-            yield Static(self._text)
+            yield Static(self.text)
 
 
 def help_text(keys: Iterable[tuple[str, str, str]], own: Iterable[Key]) -> Text:

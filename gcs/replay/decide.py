@@ -20,10 +20,10 @@ from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.states import MateState, carried
 from onboard.core.math.vectors import NORTH, TINY, ZERO, Vec, along, angle_between, norm, unit
 from onboard.core.strategy.registry import EVADERS, PURSUERS
+from onboard.game.plugins import evader_strategy, pursuer_strategy
 from onboard.pilot.memory import Memory
 from onboard.pilot.pilot import Pilot, PilotDecision
 from onboard.pilot.setup import GameSetup, Own, Player, Side, TrackSample
-from onboard.runtime.plugins import evader_strategy, pursuer_strategy
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import (

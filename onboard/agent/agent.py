@@ -20,7 +20,7 @@ from onboard.agent.mavlink_radio import Radio, Record
 from onboard.agent.route_player import Tracking
 from onboard.agent.timing import Timing
 from onboard.agent.vehicle_link import Craft
-from onboard.autopilot.base import Stage, Telemetry, Way
+from onboard.autopilot.base import ReleaseMode, Stage, Telemetry
 from onboard.core.math.constants import NEVER, NS_PER_S
 from onboard.core.safety.words import ACTIONS
 from onboard.runtime.protocols import Bus, Clock, Link
@@ -78,7 +78,8 @@ class Agent:
         )
         self.craft = Craft(config, self.radio, self.journal)
         self.table = Table(config.game, config.id, config.role, nonce, clock, bus, self.journal)
-        self.orders = Orders(Way.RETURN if config.safety.abort is KnockOff.RETURN else Way.HOLD)
+        back = config.safety.abort is KnockOff.RETURN
+        self.orders = Orders(ReleaseMode.RETURN if back else ReleaseMode.HOLD)
         part = Tracking if config.role is Role.TRACKER else Acting
         self.acting = part(config, clock, self.craft, self.table, self.orders, self.journal)
         self.timing = Timing(1.0 / config.control_rate_hz)
@@ -144,7 +145,7 @@ class Agent:
             self.journal.info("stopped", "the vehicle was not under this agent's control")
         else:
             until = self.now + LEAVE_S
-            adapter.leave(self.now, Way.HOLD)
+            adapter.leave(self.now, ReleaseMode.HOLD)
             while self.now < until and self.craft.stage is Stage.LEAVING:
                 craft.look(self.now)
                 craft.step(self.now, None)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import OrderedDict
 from enum import Enum
 
-from onboard.autopilot.base import Stage, Way
+from onboard.autopilot.base import ReleaseMode, Stage
 from onboard.core.safety.policy import Action
 from onboard.wire.bus.messages import Command, CommandKind
 
@@ -36,8 +36,8 @@ class Orders:
     `way` is what is in force: how the vehicle has to leave the agent's control, or None.
     """
 
-    def __init__(self, abort: Way) -> None:
-        self.way: Way | None = None
+    def __init__(self, abort: ReleaseMode) -> None:
+        self.way: ReleaseMode | None = None
         self.granted = False  # a start or resume gave the agent control
         self.resumed = False  # set by a resume until the supervisor has heard of it
         self.obeyed = ""
@@ -50,7 +50,7 @@ class Orders:
         """The order in force, as the supervisor knows it."""
         if self.way is None:
             return Action.PASS
-        return Action.HOLD if self.way is Way.HOLD else Action.RETURN
+        return Action.HOLD if self.way is ReleaseMode.HOLD else Action.RETURN
 
     def give(self, command: Command, refusal: str) -> tuple[Entry, bool]:
         """Take a command; `refusal` says why it cannot be obeyed now ('' if it can). True for a new one."""
@@ -75,9 +75,9 @@ class Orders:
             self.resumed = True
         else:
             self.way = {
-                CommandKind.HOLD: Way.HOLD,
-                CommandKind.RETURN: Way.RETURN,
-                CommandKind.LAND: Way.LAND,
+                CommandKind.HOLD: ReleaseMode.HOLD,
+                CommandKind.RETURN: ReleaseMode.RETURN,
+                CommandKind.LAND: ReleaseMode.LAND,
                 CommandKind.ABORT: self._abort,
             }[kind]
         return entry, True

@@ -15,7 +15,7 @@ from onboard.agent.participation import Part
 from onboard.agent.readiness import lacking
 from onboard.agent.takeoff import TakeOff
 from onboard.agent.vehicle_link import Craft
-from onboard.autopilot.base import Setpoint, Stage, Telemetry, Way
+from onboard.autopilot.base import ReleaseMode, Setpoint, Stage, Telemetry
 from onboard.config.strict import ConfigError
 from onboard.core.game.rules import Target
 from onboard.core.math.constants import NEVER, NS_PER_S
@@ -25,10 +25,10 @@ from onboard.core.safety.policy import Action, Cause, Seen
 from onboard.core.safety.supervisor import Verdict, Watch, supervise
 from onboard.core.safety.words import ACTIONS, CAUSES
 from onboard.core.strategy.registry import EVADERS, PURSUERS
+from onboard.game.plugins import evader_strategy, pursuer_strategy
 from onboard.pilot.memory import Memory
 from onboard.pilot.pilot import Pilot, PilotDecision
 from onboard.pilot.setup import GameSetup, Own, Side, TrackSample
-from onboard.runtime.plugins import evader_strategy, pursuer_strategy
 from onboard.runtime.protocols import Clock
 from onboard.wire.bus.messages import Phase, PhaseChange, Role, Setup, Severity, Track
 from onboard.wire.geodesy import Frame
@@ -238,7 +238,7 @@ class Acting:
             adapter.leave(now, orders.way)
         elif self.over:
             if adapter.stage in (Stage.ACTIVE, Stage.ENTERING):
-                adapter.leave(now, Way.HOLD)
+                adapter.leave(now, ReleaseMode.HOLD)
         elif self.engaged and self._may_control() and self._near() and idle:
             adapter.enter(now)
         if orders.resumed:
@@ -337,10 +337,10 @@ class Acting:
             if hovers:
                 setpoint = Setpoint(ZERO)
             elif ours:
-                adapter.leave(now, Way.HOLD)
+                adapter.leave(now, ReleaseMode.HOLD)
         elif verdict.action is Action.RETURN:
             if ours or adapter.stage is Stage.LEAVING:
-                adapter.leave(now, Way.RETURN)
+                adapter.leave(now, ReleaseMode.RETURN)
         elif verdict.cause is not Cause.PILOT:
             adapter.end(now)
         self._craft.step(now, setpoint)

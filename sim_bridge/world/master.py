@@ -61,7 +61,7 @@ class BridgeMaster:
         self.rules.abort(self._clock.wall_ns(), self._clock.monotonic_ns(), reason)
 
     def close(self) -> None:
-        """Hear no more."""
+        """Leave the bus: hear and say no more."""
         for subscription in self._subscriptions:
             subscription.close()
 

@@ -11,8 +11,8 @@ from onboard.runtime.protocols import Bus, Link, Sample
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus.messages import Event, Health, Outcome
 from onboard.wire.bus.topics import EVENTS, HEALTH, key
-from sim_bridge.programs.summary import Summary, VehicleSummary, kept, reached
 from sim_bridge.world.sensor import Sensor
+from sim_bridge.world.summary import Summary, VehicleSummary, kept, reached
 
 EVENTS_MAX = 100_000
 MEASURED = ("overrun", "skipped", "worst")  # counters with a part of the wall clock in them: timing.json's
@@ -48,7 +48,7 @@ class Observer:
     def summary(
         self, master: GameMaster, outcome: Outcome | None, sensor: Sensor, links: Mapping[int, Link]
     ) -> Summary:
-        """The run in figures."""
+        """Everything that the game's summary tells; `links` give their counters, by vehicle id."""
         vehicles = []
         for id, spec in zip(self.scenario.ids, self.scenario.vehicles, strict=True):
             health = self.health.get(id)

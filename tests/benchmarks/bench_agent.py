@@ -39,9 +39,9 @@ from onboard.wire.bus.messages import Master, Phase, PhaseChange, Role, State, T
 from onboard.wire.mavlink.dialect import DialectSender
 from onboard.wire.mavlink.signing import MemoryStore, Signing
 from sim_bridge.world.world import World
-from tests.support import measured
-from tests.support.buses import free_port
-from tests.support.stopwatch import Stopwatch
+from tests.support import benchmark_record
+from tests.support.bus_stages import free_port
+from tests.support.setpoint_stopwatch import Stopwatch
 
 GAME = "bench"
 EVADER, PURSUER = 21, 22  # beyond the numbered ports: other games may be played on this machine
@@ -207,7 +207,9 @@ class Stage:
         self.world = World(what, self._clock, {PURSUER: [watch]})
         autopilot = self.world.vehicles[PURSUER].autopilot
         if signing is not None:
-            autopilot.setup = autopilot.setup._replace(signing=signing)
+            autopilot.setup = autopilot.setup._replace(
+                options=autopilot.setup.options._replace(signing=signing)
+            )
             autopilot._sender = DialectSender(PURSUER, 1, signing=signing)
         self._begun_ns = self._clock.wall_ns()
 
@@ -355,7 +357,8 @@ def report() -> tuple[list[Taken], dict[str, float]]:
             f"| {medians[kind] / medians['echo']:.2f} | {promises.get(kind, '–')} |"
         )
     print("\n".join(lines))
-    measured.write("agent.md", "An agent's cost and latency", "python -m tests.benchmarks.bench_agent", lines)
+    command = "python -m tests.benchmarks.bench_agent"
+    benchmark_record.write("agent.md", "An agent's cost and latency", command, lines)
     return taken, medians
 
 

@@ -19,8 +19,8 @@ import pytest
 from gcs.picture.watch import Watch
 from gcs.recording.reader import Recording
 from gcs.recording.recorder import Recorder
-from tests.support.chase import Item, chase
-from tests.support.recordings import kill_while_recording
+from tests.support.chase_messages import Item, chase
+from tests.support.recording_process import kill_while_recording
 
 SECONDS = 20.0
 KILLS = 100

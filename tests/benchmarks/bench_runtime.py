@@ -16,9 +16,9 @@ from onboard.runtime.loop import run_virtual, virtual_clock
 from onboard.runtime.protocols import Sample
 from onboard.runtime.tasks import Pace, periodic
 from onboard.wire.bus.topics import STATE, key
-from tests.support.buses import free_port
-from tests.support.scripted import for_a_while
-from tests.support.waiting import until
+from tests.support.bus_stages import free_port
+from tests.support.real_time import until
+from tests.support.scripted_agents import for_a_while
 
 TASKS, RATE_HZ = 6, 20.0
 PAYLOAD = b"x" * 200

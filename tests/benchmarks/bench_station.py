@@ -24,9 +24,9 @@ from gcs.session import on_air
 from gcs.settings import BusSettings, RecordingSettings, Settings
 from onboard.runtime.bus_zenoh import open_zenoh
 from onboard.wire.bus import topics
-from tests.support.buses import free_port
-from tests.support.radio import GAME, decision, health, on_bus, state, track
-from tests.support.waiting import until
+from tests.support.bus_stages import free_port
+from tests.support.real_time import until
+from tests.support.sample_messages import GAME, decision, health, on_bus, state, track
 
 SECONDS = 10.0
 RATE_HZ = 20

@@ -25,18 +25,18 @@ from onboard.runtime.clock import RealClock
 from onboard.runtime.resources import configs
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import CommandKind, Phase
-from tests.support.crews import Crew
-from tests.support.radio import GAME, START_NS, Tower, on_bus, phase, setup
+from tests.support.answering_agents import AnsweringAgent
+from tests.support.real_time import patience
+from tests.support.sample_messages import GAME, START_NS, Tower, on_bus, phase, setup
 
 ROOT = Path(cli.__file__).parent.parent
-PATIENCE_S = 30.0
 
 
 def gcs(*arguments: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
     """Run the program to its end."""
     return subprocess.run(
         [sys.executable, "-m", "gcs.cli", *arguments],
-        capture_output=True, text=True, timeout=PATIENCE_S, cwd=cwd, env=environment(), check=False,
+        capture_output=True, text=True, timeout=patience(20.0), cwd=cwd, env=environment(), check=False,
         stdin=subprocess.DEVNULL,
     )  # fmt: skip
 
@@ -77,7 +77,7 @@ def test_a_mistake_is_one_line_and_exit_code_2(tmp_path, arguments, message):
 def test_the_help_loads_no_console_no_recorder_and_no_bus():
     done = subprocess.run(
         [sys.executable, "-c", "import gcs.cli, sys; print(sorted(sys.modules))"],
-        capture_output=True, text=True, timeout=PATIENCE_S, env=environment(), check=True,
+        capture_output=True, text=True, timeout=patience(20.0), env=environment(), check=True,
     )  # fmt: skip
     for heavy in ("textual", "rich.console", "mcap", "plotly", "matplotlib", "zenoh", "scipy", "numba"):
         assert f"'{heavy}'" not in done.stdout
@@ -115,7 +115,7 @@ async def field(endpoint: str, count: int = 3, deaf: int = 0):
     """`count` vehicles on a bus that listens, and `deaf` more in the game that are not there."""
     bus = await open_zenoh(endpoint, listen=True)
     clock = RealClock()
-    crews = [Crew(bus, clock, i) for i in range(1, count + 1)]
+    crews = [AnsweringAgent(bus, clock, i) for i in range(1, count + 1)]
     bus.publish(*on_bus(setup(count + deaf)), topics.SETUP.delivery)
     bus.publish(*on_bus(phase(Phase.STAGING)), topics.PHASE.delivery)
 
@@ -141,7 +141,7 @@ async def shell(*arguments: str, endpoint: str) -> tuple[int, str, str]:
         stdin=asyncio.subprocess.DEVNULL, stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE,
         env=environment(),
     )  # fmt: skip
-    async with asyncio.timeout(PATIENCE_S):
+    async with asyncio.timeout(patience(20.0)):
         out, err = await process.communicate()
     assert process.returncode is not None
     return process.returncode, out.decode(), err.decode()
@@ -204,7 +204,7 @@ async def test_lines_for_logs_and_a_recording_until_it_is_told_to_stop(free_endp
         )  # fmt: skip
         assert process.stdout is not None
         seen = []
-        async with asyncio.timeout(PATIENCE_S):
+        async with asyncio.timeout(patience(20.0)):
             while not any("STATUS vehicle 3" in line for line in seen):
                 seen.append((await process.stdout.readline()).decode())
             process.send_signal(signal.SIGTERM)

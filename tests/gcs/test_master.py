@@ -21,9 +21,9 @@ from onboard.runtime.protocols import Bus
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import CommandKind, Phase
-from tests.support.crews import Crew
-from tests.support.radio import GAME, health, on_bus, state, track
-from tests.support.virtual import virtual
+from tests.support.answering_agents import AnsweringAgent
+from tests.support.sample_messages import GAME, health, on_bus, state, track
+from tests.support.virtual_time import virtual
 
 MEETING = Scenario(
     name="meeting",
@@ -155,7 +155,7 @@ async def test_who_never_becomes_ready_ends_the_game_with_the_reason():
 @virtual
 async def test_a_game_can_wait_for_the_word_start():
     async with field(auto_start=False) as (station, _, _, broker):
-        crews = [Crew(broker.connect(), virtual_clock(), i) for i in (1, 2, 3)]
+        crews = [AnsweringAgent(broker.connect(), virtual_clock(), i) for i in (1, 2, 3)]
         await asyncio.sleep(30.0)
         assert station.picture().game.phase is Phase.STAGING
         station.command(CommandKind.START, (1, 2, 3))

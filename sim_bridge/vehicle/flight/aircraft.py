@@ -118,7 +118,7 @@ class FollowSpec(StrictConfig, frozen=True):
 
 
 class LimitSpec(StrictConfig, frozen=True):
-    """(2)–(3)."""
+    """Limits (2)–(3) of pitch [deg] and airspeed [m/s]."""
 
     pitch_min_deg: PathDeg = -25.0
     pitch_max_deg: PathDeg = 25.0
@@ -133,7 +133,7 @@ class LimitSpec(StrictConfig, frozen=True):
 
 
 class Spec(StrictConfig, frozen=True, kw_only=True):
-    """An aircraft file."""
+    """Everything that an aircraft file says."""
 
     name: Title
     path: PathName
@@ -165,13 +165,13 @@ class Aircraft(NamedTuple):
 
 
 def pitch_transfer(spec: Spec) -> AxisTransfer:
-    """(36) of a file."""
+    """The pitch axis's transfer functions (36) of an aircraft file."""
     p = spec.pitch
     return AxisTransfer(p.denominator, p.elevator, p.wind_x, p.wind_y)
 
 
 def yaw_transfer(spec: Spec) -> AxisTransfer:
-    """(37) of a file."""
+    """The yaw axis's transfer functions (37) of an aircraft file."""
     y = spec.yaw
     return AxisTransfer(y.denominator, y.rudder, y.wind_z, (0.0,))
 

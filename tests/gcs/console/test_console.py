@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import pytest
+from textual.strip import Strip
 
 from gcs.console.app import CONFIRM_S, REFRESH_HZ, Console
 from gcs.console.help import HelpScreen
@@ -15,7 +16,7 @@ from gcs.picture import journal
 from gcs.picture.values import Picture
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus.messages import Command, CommandKind, CommandReply, Phase
-from tests.support.radio import START_NS, Tower, decision, health, phase, setup, state
+from tests.support.sample_messages import START_NS, Tower, decision, health, phase, setup, state
 
 
 class Desk:
@@ -62,8 +63,12 @@ def desk(count: int = 6, **changes: object) -> Desk:
 
 def screen(app: Console) -> str:
     """What is on the terminal, as text."""
-    strips = app.screen._compositor.render_strips()
-    return "\n".join("".join(segment.text for segment in strip) for strip in strips)
+    return "\n".join("".join(segment.text for segment in strip) for strip in strips(app))
+
+
+def strips(app: Console) -> list[Strip]:
+    """The lines of the terminal; Textual gives them away in no public place."""
+    return app.screen._compositor.render_strips()
 
 
 async def test_the_whole_picture_is_on_80_by_24():
@@ -288,7 +293,7 @@ async def test_the_help_names_every_key_and_command_and_is_left_again():
         await pilot.press("question_mark")
         assert isinstance(app.screen, HelpScreen)
         assert "ABORT ALL" in screen(app)
-        text = app.screen._text.plain
+        text = app.screen.text.plain
         for kind in CommandKind:
             assert f"\n  {kind.value} [WHOM]" in text
         for binding in app.BINDINGS:
@@ -338,7 +343,7 @@ async def test_a_source_brings_keys_of_its_own():
         assert app.query_one(Prompt).said == "did faster"
         assert app.view.scale == scale  # the source's keys go before the console's
         await pilot.press("question_mark")
-        assert "pause and go on" in app.screen._text.plain
+        assert "pause and go on" in app.screen.text.plain
 
 
 async def test_two_hundred_vehicles_are_scrolled_through():
@@ -353,7 +358,7 @@ async def test_two_hundred_vehicles_are_scrolled_through():
 
 def coloured(app: Console) -> bool:
     """Whether anything on the terminal has a hue."""
-    for strip in app.screen._compositor.render_strips():
+    for strip in strips(app):
         for segment in strip:
             colour = segment.style.color if segment.style else None
             if colour is not None and len(set(colour.get_truecolor())) > 1:
@@ -421,7 +426,6 @@ async def test_words_from_the_network_cannot_steer_the_terminal():
     app = Console(source)
     async with app.run_test(size=(80, 24)) as pilot:
         await pilot.pause()
-        strips = app.screen._compositor.render_strips()
-        assert all(segment.text.isprintable() for strip in strips for segment in strip)
+        assert all(segment.text.isprintable() for strip in strips(app) for segment in strip)
         assert "·[2J·calm·E all is lost" in screen(app)
     assert all(line.isprintable() for line in Plain().lines(source.tower.picture))

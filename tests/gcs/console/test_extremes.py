@@ -14,7 +14,7 @@ from gcs.console.vehicle_table import line, rows
 from gcs.picture.plain_data import to_json
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus.messages import Phase, Role
-from tests.support.radio import START_NS, Tower, decision, health, phase, setup, state, track
+from tests.support.sample_messages import START_NS, Tower, decision, health, phase, setup, state, track
 
 number = st.floats(allow_nan=False, allow_infinity=False) | st.sampled_from([0.0, 1e-300, 1.7e308, -1.7e308])
 triple = st.tuples(number, number, number)

@@ -10,7 +10,7 @@ from gcs.console.vehicle_table import COLUMNS, age, column_at, heading, line
 from gcs.picture.values import Picture
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus.messages import CommandKind
-from tests.support.radio import START_NS, Tower, decision, setup, state, track
+from tests.support.sample_messages import START_NS, Tower, decision, setup, state, track
 
 
 def field(*places: tuple[float, float], **more: object) -> Picture:

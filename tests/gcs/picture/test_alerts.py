@@ -14,7 +14,7 @@ from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus.messages import Phase, Severity
-from tests.support.radio import (
+from tests.support.sample_messages import (
     START_NS,
     Tower,
     decision,

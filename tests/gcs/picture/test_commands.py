@@ -16,9 +16,9 @@ from onboard.runtime.bus_memory import MemoryBroker
 from onboard.runtime.impairment import Impairment
 from onboard.runtime.loop import virtual_clock
 from onboard.wire.bus.messages import Command, CommandKind, CommandReply
-from tests.support.crews import Crew
-from tests.support.radio import GAME, START_NS
-from tests.support.virtual import virtual
+from tests.support.answering_agents import AnsweringAgent
+from tests.support.sample_messages import GAME, START_NS
+from tests.support.virtual_time import virtual
 
 
 def order(kind: CommandKind = CommandKind.ABORT, name: str = "c1", sender: str = "tower") -> Command:
@@ -114,7 +114,7 @@ async def field(count: int, impairment: Impairment | None = None, seed: int = 1,
     """A station and `count` vehicles on one bus."""
     clock = virtual_clock()
     broker = MemoryBroker(impairment, np.random.default_rng(seed))
-    crews = [Crew(broker.connect(), clock, i, **crew) for i in range(1, count + 1)]
+    crews = [AnsweringAgent(broker.connect(), clock, i, **crew) for i in range(1, count + 1)]
     station = Station(broker.connect("gcs"), clock, GAME, operator="anna")
     task = asyncio.create_task(station.run())
     await asyncio.sleep(0.01)
@@ -159,7 +159,7 @@ async def test_who_does_not_confirm_is_named_and_confirms_when_it_comes_back():
         await asyncio.sleep(0.5)
         assert "abort not confirmed by 4" in [a.text for a in station.picture().alerts]
         bus = station.bus
-        Crew(bus, virtual_clock(), 4)
+        AnsweringAgent(bus, virtual_clock(), 4)
         assert (await confirmed(station, command_id, 3.0)).confirmed
         await asyncio.sleep(3.0)
         assert station.picture().alerts == ()
@@ -179,7 +179,7 @@ async def test_a_refusal_is_shown_with_its_reason():
 @virtual
 async def test_two_stations_command_and_each_sees_whom_the_vehicle_obeys():
     async with field(1, takes_s=5.0) as (station, crews):
-        other = Station(crews[0]._bus, virtual_clock(), GAME, operator="ben")
+        other = Station(crews[0].bus, virtual_clock(), GAME, operator="ben")
         task = asyncio.create_task(other.run())
         await asyncio.sleep(0.01)
         first = station.command(CommandKind.HOLD, (1,))

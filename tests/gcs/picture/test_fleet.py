@@ -16,7 +16,7 @@ from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import Phase, Role
-from tests.support.radio import (
+from tests.support.sample_messages import (
     GAME,
     START_NS,
     Tower,

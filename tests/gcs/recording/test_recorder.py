@@ -20,8 +20,9 @@ from gcs.recording.recorder import Recorder, Status, remark_of
 from onboard.config.strict import ConfigError
 from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus.messages import Severity
-from tests.support.chase import EPOCH_NS, Item, chase
-from tests.support.recordings import CHILD, kill_while_recording, read
+from tests.support.chase_messages import EPOCH_NS, Item, chase
+from tests.support.real_time import patience
+from tests.support.recording_process import CHILD, kill_while_recording, read
 
 
 def recorded(path: Path, items: list[Item], **options: object) -> Recorder:
@@ -257,7 +258,7 @@ def test_a_real_limit_of_the_operating_system_is_no_crash(tmp_path: Path) -> Non
         resource.setrlimit(resource.RLIMIT_FSIZE, (40_000, 40_000))
 
     command = [sys.executable, str(CHILD), str(tmp_path / "flight.mcap"), "20"]
-    done = subprocess.run(command, preexec_fn=limited, capture_output=True, text=True, timeout=60)
+    done = subprocess.run(command, preexec_fn=limited, capture_output=True, text=True, timeout=patience(20.0))
     assert done.returncode == 0, done.stderr
     assert "file too large" in done.stdout.splitlines()[-1]
     recording = Recording(tmp_path / "flight.mcap")

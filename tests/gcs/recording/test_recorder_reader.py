@@ -12,8 +12,8 @@ from mcap.writer import Writer
 from gcs.recording.reader import Recording
 from gcs.recording.recorder import METADATA, Recorder
 from onboard.config.strict import ConfigError
-from tests.support.chase import chase
-from tests.support.recordings import read
+from tests.support.chase_messages import chase
+from tests.support.recording_process import read
 
 FLOWN = list(chase(3.0))
 

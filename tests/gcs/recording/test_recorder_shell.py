@@ -24,8 +24,8 @@ from onboard.wire.bus import topics
 from onboard.wire.bus.topics import Delivery
 from onboard.wire.mavlink.dialect import DialectSender, dialect
 from onboard.wire.mavlink.tlog import read_tlog
-from tests.support.chase import EPOCH_NS, chase
-from tests.support.virtual import virtual
+from tests.support.chase_messages import EPOCH_NS, chase
+from tests.support.virtual_time import virtual
 
 
 def heartbeat(sender: DialectSender) -> bytes:

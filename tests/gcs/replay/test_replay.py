@@ -16,7 +16,7 @@ from gcs.replay.source import ReplaySource, open_run
 from onboard.config.strict import ConfigError
 from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus.messages import CommandKind
-from tests.support.chase import EPOCH_NS, Item, chase
+from tests.support.chase_messages import EPOCH_NS, Item, chase
 
 
 def flight_with_trouble() -> list[Item]:

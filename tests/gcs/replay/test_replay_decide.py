@@ -13,8 +13,8 @@ from onboard.game.scenario import load
 from onboard.runtime.loop import run_virtual, virtual_clock
 from onboard.runtime.resources import configs
 from onboard.wire.bus.messages import Role
-from sim_bridge.rehearsal import Rehearsal
-from tests.support.chase import chase
+from sim_bridge.rehearsal import Options, Rehearsal
+from tests.support.chase_messages import chase
 
 
 @pytest.fixture(scope="module")
@@ -24,7 +24,7 @@ def flown(tmp_path_factory: pytest.TempPathFactory) -> list[Entry]:
     scenario = load(configs() / "scenarios" / "flight" / "one-on-one.toml")
 
     async def fly() -> None:
-        async with Rehearsal(scenario, virtual_clock(), folder=folder):
+        async with Rehearsal(scenario, virtual_clock(), Options(folder=folder)):
             await asyncio.sleep(16.0)
 
     run_virtual(fly())

@@ -15,8 +15,8 @@ from onboard.runtime.bus_memory import MemoryBroker
 from onboard.runtime.loop import virtual_clock
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import CommandKind
-from tests.support.chase import EPOCH_NS, chase
-from tests.support.virtual import virtual
+from tests.support.chase_messages import EPOCH_NS, chase
+from tests.support.virtual_time import virtual
 
 
 @virtual

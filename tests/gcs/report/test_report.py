@@ -27,8 +27,8 @@ from onboard.core.strategy.knowledge import RuleId
 from onboard.game import palette
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus import topics
-from tests.support.chase import EPOCH_NS, Item, chase
-from tests.support.runs import flight, make_run, make_tlogs
+from tests.support.chase_messages import EPOCH_NS, Item, chase
+from tests.support.run_folders import flight, make_run, make_tlogs
 
 FIGURES = ["plan", "space", "distances", "rules", "speeds", "heights", "wind", "links", "latencies"]
 

@@ -11,7 +11,7 @@ from onboard.runtime.links import memory_pair
 from onboard.runtime.loop import virtual_clock
 from onboard.wire.mavlink.tlog import read_tlog
 from tests.support.paths import RECORDINGS
-from tests.support.virtual import virtual
+from tests.support.virtual_time import virtual
 
 STORIES = [
     ("arducopter-4.5.6-guided", "ArduCopter", ["STABILIZE", "GUIDED", "LOITER", "RTL"], 20.0),

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from itertools import pairwise
 from math import inf, nan
-from typing import Any
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from onboard.autopilot.base import Envelope, Setpoint, Stage, Way
-from onboard.autopilot.velocity import VelocityAdapter
+from onboard.autopilot.base import Envelope, ReleaseMode, Setpoint, Stage
+from onboard.autopilot.guided import GuidedAdapter
+from onboard.autopilot.velocity import VelocityEncoder
 from onboard.core.math.vectors import ZERO, Vec, norm
 from onboard.wire.mavlink.commands import CommandLong, Target, VelocityTarget
 from onboard.wire.mavlink.modes import Kind
@@ -23,14 +23,14 @@ EAST = Setpoint(Vec(0.0, 5.0, 0.0))
 HOVER = Setpoint(ZERO)
 
 
-def px4(**options: Any) -> Scripted:
-    adapter = VelocityAdapter(Kind.PX4_MULTICOPTER, Target(1), Envelope(), **options)
-    return Scripted(Kind.PX4_MULTICOPTER, adapter, "HOLD")
+def px4() -> Scripted:
+    encoder = VelocityEncoder(Kind.PX4_MULTICOPTER, Target(1), Envelope())
+    return Scripted(Kind.PX4_MULTICOPTER, GuidedAdapter(Target(1), encoder), "HOLD")
 
 
-def copter(**options: Any) -> Scripted:
-    adapter = VelocityAdapter(Kind.ARDUCOPTER, Target(1), Envelope(), **options)
-    return Scripted(Kind.ARDUCOPTER, adapter, "LOITER")
+def copter(*, may_arm: bool = False, hold_mode: str = "") -> Scripted:
+    encoder = VelocityEncoder(Kind.ARDUCOPTER, Target(1), Envelope(), hold_mode)
+    return Scripted(Kind.ARDUCOPTER, GuidedAdapter(Target(1), encoder, may_arm=may_arm), "LOITER")
 
 
 def test_px4_sees_a_second_of_setpoints_before_it_is_asked_for_offboard() -> None:
@@ -146,10 +146,14 @@ def test_a_pilot_who_changes_the_mode_while_we_ask_is_obeyed() -> None:
 
 @pytest.mark.parametrize(
     ("way", "px4_mode", "copter_mode"),
-    [(Way.HOLD, "HOLD", "LOITER"), (Way.RETURN, "RTL", "RTL"), (Way.LAND, "LAND", "LAND")],
+    [
+        (ReleaseMode.HOLD, "HOLD", "LOITER"),
+        (ReleaseMode.RETURN, "RTL", "RTL"),
+        (ReleaseMode.LAND, "LAND", "LAND"),
+    ],
 )
 def test_leaving_ends_the_targets_and_hands_to_a_mode_the_autopilot_holds_alone(
-    way: Way, px4_mode: str, copter_mode: str
+    way: ReleaseMode, px4_mode: str, copter_mode: str
 ) -> None:
     for play, mode in ((px4(), px4_mode), (copter(), copter_mode)):
         play.adapter.enter(play.now)
@@ -165,7 +169,7 @@ def test_hold_by_brake_where_there_is_no_transmitter() -> None:
     play = copter(hold_mode="BRAKE")
     play.adapter.enter(play.now)
     play.fly(1.0, EAST)
-    play.adapter.leave(play.now, Way.HOLD)
+    play.adapter.leave(play.now, ReleaseMode.HOLD)
     play.fly(1.0, None)
     assert play.telemetry.mode == "BRAKE"
 
@@ -174,9 +178,9 @@ def test_return_after_hold_is_asked_for_too() -> None:
     play = copter()
     play.adapter.enter(play.now)
     play.fly(1.0, EAST)
-    play.adapter.leave(play.now, Way.HOLD)
+    play.adapter.leave(play.now, ReleaseMode.HOLD)
     play.fly(1.0, None)
-    play.adapter.leave(play.now, Way.RETURN)
+    play.adapter.leave(play.now, ReleaseMode.RETURN)
     play.fly(1.0, None)
     assert play.telemetry.mode == "RTL"
     assert play.adapter.stage is Stage.LEFT

@@ -21,10 +21,10 @@ from onboard.wire.mavlink.commands import set_message_interval
 from onboard.wire.mavlink.dialect import dialect
 from sim_bridge.programs.serve import Options, serve, serve_scenario
 from sim_bridge.world.radio import CALLERS_MAX, Radio, agent_ports
-from tests.support.buses import Heard, free_port
-from tests.support.companions import Companion
-from tests.support.scripted import ScriptedAgent
-from tests.support.waiting import until
+from tests.support.bus_stages import Heard, free_port
+from tests.support.real_time import patience, until
+from tests.support.scripted_agents import ScriptedAgent
+from tests.support.scripted_companion import Companion
 
 SCENARIO = Scenario(
     name="served",
@@ -102,7 +102,7 @@ async def test_a_served_game_from_the_first_heartbeat_to_the_outcome(tmp_path: P
         agents = [ScriptedAgent(bus, RealClock(), "game", id) for id in (31, 32)]
         async with asyncio.TaskGroup() as group:
             beating = [group.create_task(agent.run()) for agent in agents]
-            async with asyncio.timeout(60):
+            async with asyncio.timeout(patience(20.0)):
                 outcome = await game
             for task in beating:
                 task.cancel()
@@ -138,7 +138,7 @@ def test_a_signal_ends_it_cleanly(number: signal.Signals, tmp_path: Path) -> Non
             if line.startswith("bus: listening"):
                 break
         child.send_signal(number)
-        out, err = child.communicate(timeout=30)
+        out, err = child.communicate(timeout=patience(10.0))
     finally:
         child.kill()
     assert child.returncode == 0, err

@@ -27,11 +27,11 @@ from onboard.wire.bus.topics import (
     topic_of,
     vehicle_of,
 )
-from sim_bridge.world.bridge import Bridge
-from tests.support.buses import Heard
-from tests.support.scripted import ScriptedAgent, for_a_while
-from tests.support.virtual import virtual
-from tests.support.waiting import until
+from sim_bridge.world.bridge import Bridge, Options
+from tests.support.bus_stages import Heard
+from tests.support.real_time import until
+from tests.support.scripted_agents import ScriptedAgent, for_a_while
+from tests.support.virtual_time import virtual
 
 GAME = "range"
 
@@ -66,7 +66,7 @@ class Stage:
 
     def another(self, nonce: int) -> Bridge:
         bus = self.broker.connect("bridge")
-        return Bridge(self.scenario, self.clock, bus, {}, nonce=nonce, game=GAME, say=self.news.append)
+        return Bridge(self.scenario, self.clock, bus, {}, Options(nonce, GAME), self.news.append)
 
     async def play(self, seconds: float) -> None:
         await for_a_while(seconds, self.bridge.run(), *(agent.run() for agent in self.agents.values()))

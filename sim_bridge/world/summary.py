@@ -8,7 +8,7 @@ from onboard.game.scenario import Scenario
 
 
 class VehicleSummary(msgspec.Struct, frozen=True, kw_only=True):
-    """One vehicle."""
+    """What a run leaves in figures of one vehicle."""
 
     id: int
     role: str
@@ -24,7 +24,7 @@ class VehicleSummary(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Summary(msgspec.Struct, frozen=True, kw_only=True):
-    """A run."""
+    """What a run leaves in figures."""
 
     scenario: str
     scenario_hash: str

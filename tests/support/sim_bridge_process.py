@@ -14,6 +14,8 @@ from pathlib import Path
 
 import psutil
 
+from tests.support.real_time import patience
+
 SHORT = """
 name = "short"
 seed = 3
@@ -57,10 +59,12 @@ def short(
     return path
 
 
-def bridge(*arguments: object, timeout: float = 90.0) -> subprocess.CompletedProcess[str]:
-    """Run `sim-bridge` to its end."""
+def bridge(*arguments: object, promised_s: float = 30.0) -> subprocess.CompletedProcess[str]:
+    """Run `sim-bridge` to its end; patience is given `promised_s` [s]."""
     command = [sys.executable, "-m", "sim_bridge.cli", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, timeout=timeout, check=False)
+    return subprocess.run(
+        command, capture_output=True, text=True, timeout=patience(promised_s), check=False
+    )
 
 
 @contextmanager

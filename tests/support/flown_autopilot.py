@@ -7,13 +7,14 @@ from math import cos, radians, sin
 from typing import Any
 
 from onboard.core.math.constants import NS_PER_S
-from onboard.core.math.vectors import ZERO, Vec
+from onboard.core.math.vectors import ZERO, Vec, distance
 from onboard.game.scenario import Kind, VehicleSpec
 from onboard.wire.geodesy import Frame
 from onboard.wire.mavlink.dialect import DialectSender, dialect, dialect_packet
 from onboard.wire.mavlink.frames import Framer
 from sim_bridge.vehicle.autopilot.autopilot import Autopilot
 from sim_bridge.vehicle.autopilot.make import autopilot_for
+from sim_bridge.vehicle.autopilot.setup import Options
 from sim_bridge.vehicle.flight.kinematic import kinematic, start_motion
 from sim_bridge.vehicle.motion import Air, Demand
 
@@ -30,9 +31,10 @@ PLANE = VehicleSpec(
     pitch_max_deg=25.0,
 )
 COMPANION = 191
+LAST = 20  # texts and answers in the text of a failure
 
 
-class Flown:
+class FlownAutopilot:
     """One vehicle and the companion beside it."""
 
     def __init__(
@@ -57,14 +59,14 @@ class Flown:
         start = start_motion(position, radians(spec.heading_deg or 0.0), kind, spec.speed, self.air, airborne)
         self.airframe = kinematic(spec, kind, start, self.air)
         self.autopilot: Autopilot = autopilot_for(
-            spec, kind, system, ORIGIN, start, airborne=airborne, epoch_ns=EPOCH_NS, **more
+            spec, kind, system, ORIGIN, start, Options(airborne=airborne, epoch_ns=EPOCH_NS, **more)
         )
         self.client = DialectSender(*(client or (system, COMPANION)))
         self.framer = Framer()
         self.heard: list[tuple[int, Any]] = []  # (now_ns, message) of everything it sent
         self.frames: list[bytes] = []
         self.demand: Demand | None = None
-        self.fly(0.0)
+        self.forward(0.0)
 
     @property
     def position(self) -> Vec:
@@ -82,12 +84,23 @@ class Flown:
     def mode(self) -> str:
         return self.autopilot.mode_name
 
-    def fly(self, seconds: float, *, every_s: float = 0.0, send: Callable[[], Any] | None = None) -> Flown:
-        """Let time pass; `send()` gives a message to be sent every `every_s` seconds."""
+    def forward(
+        self,
+        seconds: float,
+        *,
+        until: Callable[[], object] | None = None,
+        every_s: float = 0.0,
+        send: Callable[[], Any] | None = None,
+    ) -> FlownAutopilot:
+        """Let `seconds` pass, or time until a condition holds, for `seconds` at most.
+
+        `send()` gives a message to be sent every `every_s` [s]. Raises AssertionError where the condition
+        does not come to hold, with the last that was heard of the autopilot.
+        """
         end = self.now_ns + round(seconds * NS_PER_S)
         next_ns = self.now_ns
         self._collect()
-        while self.now_ns < end:
+        while self.now_ns < end and not (until is not None and until()):
             if send is not None and self.now_ns >= next_ns:
                 self.send(send())
                 next_ns += round(every_s * NS_PER_S)
@@ -95,7 +108,21 @@ class Flown:
             self.demand = self.autopilot.step(self.now_ns, self.airframe.motion, self.air)
             self.airframe.step(self.demand, self.air, self.tick_ns / NS_PER_S)
             self._collect()
+        if until is not None and not until():
+            raise AssertionError(f"what was waited for did not happen within {seconds:g} s\n{self.story()}")
         return self
+
+    def assert_near(self, there: Vec, within: float) -> None:
+        """The vehicle is, in truth, at most `within` [m] from a place [m; NED]."""
+        gap = distance(self.position, there)
+        told = f"at {self.position}, {gap:.2f} m from {there}, expected {within:g}"
+        assert gap <= within, f"{told}\n{self.story()}"
+
+    def story(self) -> str:
+        """The state of the autopilot, its texts and its last answers, for people."""
+        acks = [f"command {m.command}: result {m.result}" for m in self.got("COMMAND_ACK")]
+        now = f"{self.now_ns / NS_PER_S:.2f} s: {self.mode} at {self.position}, velocity {self.velocity}"
+        return "\n".join([now, *self.texts()[-LAST:], *acks[-LAST:]])
 
     def send(self, message: Any, sender: DialectSender | None = None) -> None:
         """One message from the companion (or another)."""

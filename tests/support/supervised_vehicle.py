@@ -25,7 +25,7 @@ PLANE = Policy(
 )
 
 
-class Flight:
+class SupervisedVehicle:
     """A point vehicle under supervision: braking, or turning, as its envelope says."""
 
     def __init__(self, policy: Policy, position: Vec, velocity: Vec = ZERO, wind: Vec = ZERO) -> None:

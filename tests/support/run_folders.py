@@ -13,7 +13,7 @@ from onboard.wire.bus import messages as swarm
 from onboard.wire.bus import topics
 from onboard.wire.geodesy import Frame
 from onboard.wire.mavlink.dialect import DialectSender, dialect
-from tests.support.chase import EPOCH_NS, Item, chase, setup
+from tests.support.chase_messages import EPOCH_NS, Item, chase, setup
 
 SILENT = range(EPOCH_NS + 8 * NS_PER_S, EPOCH_NS + 11 * NS_PER_S)  # vehicle 2 says nothing: an alert
 SCENARIO = """

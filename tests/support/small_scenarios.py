@@ -1,19 +1,48 @@
-"""Short games that come to a verdict within seconds: for stories of whole games."""
+"""Scenarios of two to six vehicles: a chase that goes on, and a duel that is over within seconds."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from onboard.game.scenario import Flight, Kind, Parameters, Scenario, VehicleSpec
+from onboard.game.scenario import (
+    FenceSpec,
+    Flight,
+    ImpairmentSpec,
+    Kind,
+    Parameters,
+    Scenario,
+    VehicleSpec,
+)
 from onboard.pilot.predictor_choice import Predicting
-from onboard.runtime.protocols import Sample
-from onboard.wire.bus.messages import Phase
-from onboard.wire.bus.topics import everything
-from sim_bridge.rehearsal import Rehearsal
 
+EVADER, PURSUER, MATE = 1, 2, 3
 HOLD = {Kind.PX4: "HOLD", Kind.ARDUCOPTER: "LOITER", Kind.ARDUPLANE: "LOITER"}
 GUIDED = {Kind.PX4: "OFFBOARD", Kind.ARDUCOPTER: "GUIDED", Kind.ARDUPLANE: "GUIDED"}
-STORY = ["staging", "ready", "running", "ended", "recovery"]
+
+
+def chase(kind: Kind = Kind.ARDUCOPTER, *, pursuers: int = 1, **flight: Any) -> Scenario:
+    """A chase that goes on for a minute or more: the pursuers start behind a faster evader."""
+    scale = 10.0 if kind is Kind.ARDUPLANE else 1.0
+    places = ((-60.0, 40.0), (-60.0, -40.0), (-90.0, 0.0))
+    return Scenario(
+        name="chase",
+        evader=VehicleSpec(position=(0.0, 0.0), speed=5.0 * scale, target=(400.0 * scale, 0.0)),
+        pursuers=tuple(
+            VehicleSpec(position=(x * scale, y * scale), speed=4.0 * scale) for x, y in places[:pursuers]
+        ),
+        parameters=Parameters(horizon=100.0),
+        flight=Flight(autopilot=kind, height=120.0, ready_s=2.0, **flight),
+    )
+
+
+def lossy(loss: float) -> ImpairmentSpec:
+    """Loss in both directions of every link."""
+    return ImpairmentSpec(loss=loss, delay_s=0.02, jitter_s=0.02)
+
+
+def fenced() -> FenceSpec:
+    """A fence that the evader's way leaves."""
+    return FenceSpec(((-200.0, -200.0), (150.0, -200.0), (150.0, 200.0), (-200.0, 200.0)), 50.0, 200.0)
 
 
 def duel(
@@ -46,24 +75,3 @@ def duel(
     )
 
 
-class Heard:
-    """Everything on the bus of a game, in order."""
-
-    def __init__(self, game: Rehearsal) -> None:
-        self.samples: list[Sample] = []
-        game.bus.subscribe(everything(game.game), self.samples.append)
-
-    def of(self, key: str) -> list[bytes]:
-        """The payloads of one key."""
-        return [sample.payload for sample in self.samples if sample.key == key]
-
-
-def phases(game: Rehearsal, id: int) -> list[str]:
-    """The phases that an agent took in, as it told them."""
-    told = [event.text for event in game.events if event.id == id and event.kind == "phase"]
-    return [text.split(":")[0] for text in told]
-
-
-async def at_phase(game: Rehearsal, phase: Phase, within_s: float = 60.0) -> None:
-    """Until the game is in a phase."""
-    assert await game.until(lambda: game.phase is phase, within_s), (game.phase, game.told[-5:])

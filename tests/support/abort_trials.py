@@ -8,12 +8,13 @@ from typing import NamedTuple
 import numpy as np
 
 from gcs.station import Station
-from onboard.agent import game_player as acting
 from onboard.game.scenario import Flight, ImpairmentSpec, Parameters, Scenario, VehicleSpec
+from onboard.pilot.predictor_choice import Predicting
 from onboard.runtime.impairment import CLEAR, Impairment
-from onboard.runtime.loop import run_virtual, virtual_clock
+from onboard.runtime.loop import run_virtual
 from onboard.wire.bus.messages import CommandKind, Phase
 from sim_bridge.rehearsal import Rehearsal
+from tests.support.whole_games import at_phase, game_of
 
 LOSS = 0.3
 WITHIN_S = 2.0
@@ -25,7 +26,11 @@ CHASE = Scenario(
     evader=VehicleSpec(position=(0.0, 0.0), speed=5.0),
     pursuers=tuple(VehicleSpec(position=(-200.0 - 20.0 * i, 40.0 * i), speed=2.0) for i in range(5)),
     parameters=Parameters(R=2.0, horizon=86400.0),
-    flight=Flight(height=50.0, impairment=ImpairmentSpec(bus=True)),
+    flight=Flight(
+        height=50.0,
+        impairment=ImpairmentSpec(bus=True),
+        prediction=Predicting.CONSTANT_VELOCITY,  # networks have no part in this, and take most of the time
+    ),
 )
 
 
@@ -39,34 +44,29 @@ class Trial(NamedTuple):
 
 def trials(count: int, seed: int, loss: float = LOSS) -> list[Trial]:
     """`count` aborts, one after the other, in one game on virtual time."""
-    slices = acting.TRAINING_SLICES
-    acting.TRAINING_SLICES = 0  # predictors have no part in this, and take most of the time
-    try:
-        return run_virtual(_trials(count, seed, loss))
-    finally:
-        acting.TRAINING_SLICES = slices
+    return run_virtual(_trials(count, seed, loss))
 
 
 async def _trials(count: int, seed: int, loss: float) -> list[Trial]:
     rng = np.random.default_rng([seed, 1])
     found = []
-    async with Rehearsal(CHASE, virtual_clock(), seed=seed) as game:
+    async with game_of(CHASE, seed=seed, any_error=True) as game:
         station = Station(game.broker.connect("gcs"), game.clock, game.game)
         task = asyncio.create_task(station.run())
         ids = CHASE.ids
-        assert await game.until(lambda: game.phase is Phase.RUNNING, PATIENCE_S)
+        await at_phase(game, Phase.RUNNING, PATIENCE_S)
 
         def acting_all() -> bool:
             return all(game.health[i].stage == "acting" for i in ids)
 
         for _ in range(count):
-            assert await game.until(acting_all, PATIENCE_S), {i: game.health[i].stage for i in ids}
+            await game.forward(PATIENCE_S, until=acting_all)
             impair(game, Impairment(loss=loss, delay_s=0.01, jitter_s=0.02))
-            await asyncio.sleep(rng.random())
+            await game.forward(rng.random())
             found.append(await _abort(game, station, ids))
             impair(game, CLEAR)
             resumed = station.command(CommandKind.RESUME, ids)
-            assert await game.until(lambda c=resumed: done(station, c), PATIENCE_S)
+            await game.forward(PATIENCE_S, until=lambda c=resumed: done(station, c))
         task.cancel()
         await asyncio.gather(task, return_exceptions=True)
     return found

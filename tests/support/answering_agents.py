@@ -10,7 +10,7 @@ from onboard.runtime.protocols import Bus
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import Command, CommandReply
-from tests.support.radio import GAME, health, on_bus, state
+from tests.support.sample_messages import GAME, health, on_bus, state
 
 MODES = {
     "abort": "LOITER", "hold": "LOITER", "return": "RTL", "land": "LAND",
@@ -18,7 +18,7 @@ MODES = {
 }  # fmt: skip
 
 
-class Crew:
+class AnsweringAgent:
     """One vehicle's agent: obeys at once, and its autopilot reports the new mode `takes_s` later."""
 
     def __init__(
@@ -33,7 +33,7 @@ class Crew:
         self.since_ns = 0
         self.mode = "GUIDED"
         self.stage = "acting"
-        self._bus = bus
+        self.bus = bus
         self._clock = clock
         self._drops: Counter[str] = Counter()
         bus.serve(topics.key(GAME, topics.COMMAND, i), self.answer)
@@ -68,4 +68,4 @@ class Crew:
             (state(self.id, now_ns, mode=self.mode), topics.STATE),
             (health(self.id, now_ns, mode=self.mode, stage=self.stage), topics.HEALTH),
         ):
-            self._bus.publish(*on_bus(message), topic.delivery)
+            self.bus.publish(*on_bus(message), topic.delivery)

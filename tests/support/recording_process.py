@@ -14,7 +14,7 @@ from mcap.reader import make_reader
 from gcs.recording.reader import Recording
 from onboard.config.strict import ConfigError
 from onboard.core.math.constants import NS_PER_S
-from tests.support.chase import EPOCH_NS
+from tests.support.chase_messages import EPOCH_NS
 
 CHILD = Path(__file__).with_name("recording_child.py")
 

@@ -13,6 +13,7 @@ from onboard.runtime.bus_memory import MemoryBroker
 from onboard.runtime.bus_zenoh import ZenohBus, open_zenoh
 from onboard.runtime.loop import run_virtual
 from onboard.runtime.protocols import Bus, Sample
+from tests.support.real_time import patience
 
 
 class Stage(Protocol):
@@ -89,7 +90,7 @@ def both_buses(
             try:
                 if up and isinstance(stage, ZenohStage):
                     await stage.restore()
-                async with asyncio.timeout(60):
+                async with asyncio.timeout(patience(20.0)):
                     await story(stage)
             finally:
                 await stage.strike()

@@ -1,6 +1,6 @@
 """The recorded requests put to our personalities, and both sides' answers compared.
 
-`python -m tests.support.personalities docs/personalities.md` writes the tables into the page.
+`python -m tests.support.personality_comparison docs/personalities.md` writes the tables into the page.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from onboard.core.math.constants import NS_PER_S
 from onboard.game.scenario import Kind
 from onboard.wire.mavlink.dialect import dialect_packet
 from onboard.wire.mavlink.tlog import read_tlog
-from tests.support.flown import Flown
+from tests.support.flown_autopilot import FlownAutopilot
 from tests.support.paths import RECORDINGS
 
 FILES = {Kind.ARDUCOPTER: "arducopter-4.5.6-guided.tlog", Kind.ARDUPLANE: "arduplane-4.5.6-guided.tlog"}
@@ -67,12 +67,11 @@ def compared(kind: Kind) -> Comparison:
     requests = [(t, dialect_packet(p.raw).message) for t, p in timed if p.component == COMPANION]
     real = Stream([(t, dialect_packet(p.raw).message) for t, p in timed if p.component == 1])
     ready, healthy = READY[kind]
-    flown = Flown(kind, airborne=False, ready_s=ready)
-    flown.autopilot.setup = flown.autopilot.setup._replace(healthy_s=healthy)
+    flown = FlownAutopilot(kind, airborne=False, ready_s=ready, healthy_share=healthy / ready)
     for t, message in requests:
-        flown.fly(t - flown.now_ns / NS_PER_S)
+        flown.forward(t - flown.now_ns / NS_PER_S)
         flown.send(message)
-    flown.fly(timed[-1][0] - flown.now_ns / NS_PER_S)
+    flown.forward(timed[-1][0] - flown.now_ns / NS_PER_S)
     return Comparison(kind, requests, real, Stream([(t / NS_PER_S, m) for t, m in flown.heard]))
 
 
