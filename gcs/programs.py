@@ -10,7 +10,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from gcs.console.plain_lines import Plain
+from gcs.console.plain_lines import PlainLines
 from gcs.console.plain_lines import status as status_lines
 from gcs.picture.alert_rules import Thresholds
 from gcs.picture.command_book import ENDS_A_FLIGHT
@@ -68,7 +68,7 @@ async def print_lines(session: Session, over: Callable[[], bool] = lambda: False
     loop = asyncio.get_running_loop()
     for number in (signal.SIGINT, signal.SIGTERM):
         loop.add_signal_handler(number, stop.set)
-    lines = Plain()
+    lines = PlainLines()
     print(session.status(), flush=True)
     try:
         while not stop.is_set():
@@ -86,7 +86,7 @@ async def print_lines(session: Session, over: Callable[[], bool] = lambda: False
 
 
 async def status(settings: Settings, *, json: bool, wait_s: float) -> int:
-    """The picture once."""
+    """Print the picture once, after listening for `wait_s`; exit code 1 when nobody is heard."""
     async with on_air(settings, listen=False, record=False) as session:
         await asyncio.sleep(wait_s)
         picture = session.picture()
@@ -219,7 +219,7 @@ def replay(run: Path, limits: Thresholds, *, plain: bool) -> int:
 
 def _print_through(player: Player) -> None:
     """Every line of the log, and how all were every five seconds, without waiting."""
-    lines = Plain()
+    lines = PlainLines()
     at_ns = player.start_ns
     while True:
         player.seek(at_ns)

@@ -13,7 +13,7 @@ STATUS_EVERY_S = 5.0
 WORDS = {Severity.ERROR: "ERROR ", Severity.WARNING: "WARNING ", Severity.INFO: ""}
 
 
-class Plain:
+class PlainLines:
     """Turns pictures into lines: each new entry of the log once, and now and then how all are."""
 
     def __init__(self) -> None:

@@ -34,6 +34,7 @@ class _OpenBand:
         self.rule, self.why = rule, why
 
     def closed(self, zero_ns: int) -> Band:
+        """The band in seconds since the instant `zero_ns`."""
         start, end = (self.start_ns - zero_ns) / NS_PER_S, (self.end_ns - zero_ns) / NS_PER_S
         return Band(start, max(end, start + SHORTEST_S), self.rule, self.why)
 
@@ -58,6 +59,7 @@ class _Collector:
         self.outcome: Outcome | None = None
 
     def take(self, message: Message, now_ns: int) -> None:
+        """Keep what the report needs of a message that arrived at the wall instant `now_ns`."""
         if isinstance(message, State):
             self._state(message, now_ns)
         elif isinstance(message, Track):

@@ -227,7 +227,7 @@ def alerts(run: Run) -> str:
 
 
 def log(run: Run) -> str:
-    """What happened."""
+    """Every entry of the event log, oldest first."""
     rows = [
         [
             f"{(line.at_ns - run.t0_ns) / NS_PER_S:.2f}",

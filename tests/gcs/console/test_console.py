@@ -9,7 +9,7 @@ from textual.strip import Strip
 
 from gcs.console.app import CONFIRM_S, REFRESH_HZ, Console
 from gcs.console.help import HelpScreen
-from gcs.console.plain_lines import Plain
+from gcs.console.plain_lines import PlainLines
 from gcs.console.source import Key
 from gcs.console.widgets import AlertBoard, Detail, Lines, LogPanel, Plan, Prompt, StatusBar, VehicleTable
 from gcs.picture import station_journal
@@ -428,4 +428,4 @@ async def test_words_from_the_network_cannot_steer_the_terminal():
         await pilot.pause()
         assert all(segment.text.isprintable() for strip in strips(app) for segment in strip)
         assert "·[2J·calm·E all is lost" in screen(app)
-    assert all(line.isprintable() for line in Plain().lines(source.tower.picture))
+    assert all(line.isprintable() for line in PlainLines().lines(source.tower.picture))

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from gcs.console import plan
 from gcs.console.detail import detail
-from gcs.console.plain_lines import Plain
+from gcs.console.plain_lines import PlainLines
 from gcs.console.status_line import alert_lines, log_lines, status_line
 from gcs.console.vehicle_table import line, rows
 from gcs.picture.json_document import to_json
@@ -71,5 +71,5 @@ def test_no_finite_message_breaks_the_picture_or_a_panel(told, selected):
     assert alert_lines(picture, 80, 5)
     assert log_lines(picture, 80)
     assert status_line(picture, "live", "", 80)
-    assert Plain().lines(picture)
+    assert PlainLines().lines(picture)
     assert msgspec.json.decode(to_json(picture))

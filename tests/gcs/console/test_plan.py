@@ -5,8 +5,7 @@ from __future__ import annotations
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gcs.console import command_parser as words
-from gcs.console import plan
+from gcs.console import command_parser, plan
 from gcs.console.vehicle_table import COLUMNS, age, column_at, heading, line
 from gcs.picture.values import Picture
 from onboard.wire.bus import messages
@@ -136,18 +135,18 @@ def test_rows_have_their_width_and_columns_can_be_clicked():
 @given(st.text(max_size=40) | st.from_regex(r"(hold|land|select|sort|ack) [a-z0-9\- ,]{0,9}", fullmatch=True))
 def test_no_line_raises_and_orders_name_only_known_vehicles(typed):
     picture = field((0.0, 0.0), (1.0, 1.0), (2.0, 2.0))
-    meaning = words.parse(typed, picture, 2)
-    if isinstance(meaning, words.Order):
+    meaning = command_parser.parse(typed, picture, 2)
+    if isinstance(meaning, command_parser.Order):
         assert meaning.ids
         assert set(meaning.ids) <= {1, 2, 3}
-    elif isinstance(meaning, words.Wrong):
+    elif isinstance(meaning, command_parser.Wrong):
         assert meaning.reason or not typed.replace(",", " ").split()
 
 
 def test_every_command_of_the_bus_can_be_typed():
     picture = field((0.0, 0.0), (1.0, 1.0))
     for kind in CommandKind:
-        assert words.parse(f"{kind.value} 1-2", picture, None) == words.Order(kind, (1, 2))
-    assert isinstance(words.parse("hold", picture, None), words.Wrong)
-    assert words.parse("abort", picture, 2) == words.Order(CommandKind.ABORT, (1, 2))
-    assert words.names((1, 2), picture) == "all 2"
+        assert command_parser.parse(f"{kind.value} 1-2", picture, None) == command_parser.Order(kind, (1, 2))
+    assert isinstance(command_parser.parse("hold", picture, None), command_parser.Wrong)
+    assert command_parser.parse("abort", picture, 2) == command_parser.Order(CommandKind.ABORT, (1, 2))
+    assert command_parser.names((1, 2), picture) == "all 2"
