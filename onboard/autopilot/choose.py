@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import NamedTuple
 
 from onboard.autopilot.arduplane import ArduPlaneEncoder
 from onboard.autopilot.base import Adapter, Envelope, Refusal
 from onboard.autopilot.guided import GuidedAdapter
-from onboard.autopilot.mavsdk import MavsdkAdapter, MavsdkEncoder
+from onboard.autopilot.mavsdk import Child, Courier, MavsdkAdapter, MavsdkEncoder
 from onboard.autopilot.parameters import gcs_failsafe
 from onboard.autopilot.velocity import GUIDED, VelocityEncoder
 from onboard.wire.mavlink.commands import Target
@@ -40,6 +40,7 @@ class AdapterOptions(NamedTuple):
     hold_mode: str = ""  # a multicopter's mode to hold in, in its autopilot's words; "": the adapter's
     mavsdk_url: str = ""  # the connection that MAVSDK opens for itself, beside the agent's link
     envelope: Envelope = Envelope()
+    launch: Callable[..., Courier] = Child  # starts MAVSDK's child process with the arguments given
 
 
 def adapter_for(
@@ -59,7 +60,9 @@ def adapter_for(
         return Refusal(reason)
     if options.scheme == "mavsdk":
         encoder = MavsdkEncoder(kind, to, options.envelope)
-        return MavsdkAdapter(to, encoder, options.mavsdk_url, may_arm=options.may_arm)
+        return MavsdkAdapter(
+            to, encoder, options.mavsdk_url, may_arm=options.may_arm, launch=options.launch
+        )
     if kind is not Kind.ARDUPLANE:
         velocity = VelocityEncoder(kind, to, options.envelope, options.hold_mode)
         return GuidedAdapter(to, velocity, may_arm=options.may_arm)

@@ -11,6 +11,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from importlib.util import find_spec
 from math import degrees
 from struct import Struct
@@ -53,8 +54,8 @@ class Courier(Protocol):
 class Child:
     """The child process and its two pipes, never waited for."""
 
-    def __init__(self, url: str, system: int) -> None:
-        command = [sys.executable, "-m", "onboard.autopilot.mavsdk_child", url, str(system)]
+    def __init__(self, *arguments: str) -> None:
+        command = [sys.executable, "-m", "onboard.autopilot.mavsdk_child", *arguments]
         self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0)
         assert self.process.stdin is not None
         assert self.process.stdout is not None
@@ -63,6 +64,11 @@ class Child:
         os.set_blocking(self._out, False)
         self._rest = b""
         self._closed = False
+
+    @property
+    def output(self) -> int:
+        """File descriptor of what the child writes."""
+        return self._out
 
     def send(self, line: bytes) -> bool:
         """A line is shorter than what a pipe takes in one piece."""
@@ -112,8 +118,17 @@ class MavsdkEncoder(VelocityEncoder):
 class MavsdkAdapter(GuidedAdapter):
     """See `base.Adapter`; modes and setpoints go through the child, arming alone over the agent's link."""
 
-    def __init__(self, to: Target, encoder: MavsdkEncoder, url: str, *, may_arm: bool = False) -> None:
+    def __init__(
+        self,
+        to: Target,
+        encoder: MavsdkEncoder,
+        url: str,
+        *,
+        may_arm: bool = False,
+        launch: Callable[..., Courier] = Child,
+    ) -> None:
         super().__init__(to, encoder, may_arm=may_arm)
+        self._launch = launch
         self._targets = encoder
         self._url, self._system = url, to.system
         self._courier: Courier | None = None
@@ -174,5 +189,5 @@ class MavsdkAdapter(GuidedAdapter):
         needed = self.stage in (Stage.ENTERING, Stage.ACTIVE, Stage.LEAVING)
         if self._courier is None and needed and now - self._launched_at >= RELAUNCH:
             self._launched_at = now
-            self._courier = Child(self._url, self._system)
+            self._courier = self._launch(self._url, str(self._system))
         return self._courier

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from math import radians
-
 import pytest
 
-from onboard.autopilot.base import Envelope, Refusal
+from onboard.autopilot.base import Refusal
 from onboard.autopilot.choose import AdapterOptions, adapter_for
-from onboard.autopilot.parameters import envelope_from, findings, gcs_failsafe
+from onboard.autopilot.parameters import findings, gcs_failsafe
 from onboard.wire.mavlink.commands import Target
 from onboard.wire.mavlink.dialect import dialect
 from onboard.wire.mavlink.modes import Kind
@@ -109,15 +107,3 @@ def test_parameters_that_defeat_a_failsafe_are_found() -> None:
         "COM_OBL_RC_ACT",
     ]
     assert findings(Kind.PX4_MULTICOPTER, {"COM_OF_LOSS_T": 1.0, "GF_ACTION": 2.0}, 2) == ()
-
-
-def test_the_envelope_is_the_tighter_of_what_is_declared_and_what_the_autopilot_does() -> None:
-    declared = Envelope(speed_min=10.0, speed_max=50.0, bank_max=radians(60))
-    plane = {"AIRSPEED_MIN": 9.0, "AIRSPEED_MAX": 22.0, "ROLL_LIMIT_DEG": 45.0, "TECS_CLMB_MAX": 5.0}
-    envelope = envelope_from(Kind.ARDUPLANE, plane, declared)
-    assert (envelope.speed_min, envelope.speed_max) == (10.0, 22.0)
-    assert envelope.bank_max == pytest.approx(radians(45))
-    assert envelope.climb_max == 3.0
-    older = envelope_from(Kind.ARDUPLANE, {"LIM_ROLL_CD": 4500.0}, declared)
-    assert older.bank_max == pytest.approx(radians(45))
-    assert envelope_from(Kind.ARDUCOPTER, {}, declared) == declared

@@ -12,7 +12,7 @@ import pytest
 from onboard.autopilot import health
 from onboard.autopilot.base import Envelope, Note, Refusal, ReleaseMode, Setpoint, Stage
 from onboard.autopilot.choose import AdapterOptions, adapter_for
-from onboard.autopilot.stream_rates import Asking
+from onboard.autopilot.stream_rates import StreamRates
 from onboard.autopilot.telemetry_state import Observer
 from onboard.autopilot.timesync import TimesyncEstimator
 from onboard.core.math.angles import wrap
@@ -73,7 +73,7 @@ class Flight:
         )
         assert not isinstance(chosen, Refusal)
         self.adapter = chosen
-        self.asking = Asking(heart.kind, Target(1))
+        self.asking = StreamRates(heart.kind, Target(1))
         self._asked_at = -1.0
         self._counts: dict[str, int] = {}
 
@@ -219,7 +219,7 @@ def test_the_rates_asked_for_arrive_and_health_is_read(kind: Kind) -> None:
     assert snapshot.landed_state == 2
     if kind == Kind.ARDUPLANE:
         assert now - snapshot.wind_at <= 0.5
-    assert flight.asking.budget == pytest.approx(Asking(Autopilot.ARDUPLANE, Target(1)).budget, rel=0.6)
+    assert flight.asking.budget == pytest.approx(StreamRates(Autopilot.ARDUPLANE, Target(1)).budget, rel=0.6)
 
 
 @KINDS

@@ -112,7 +112,7 @@ def test_the_hash_is_of_the_contents_not_of_the_layout(tmp_path: Path) -> None:
         ("pitch_min_deg = -20", "id = 1", "pursuers.id: found [1, 1, 3], expected ids that differ"),
         ("pitch_min_deg = -20", "id = 300", "pursuers[0].id: found 300, expected a MAVLink system id"),
         ('name = "plain"', "", "name: missing, but required"),
-        ('name = "plain"', 'name = "plain"\nseed = 1.5', "seed: found 1.5, expected zero or more"),
+        ('name = "plain"', 'name = "plain"\nseed = 1.5', "seed: found 1.5, expected a whole number"),
         (
             'name = "plain"',
             'name = "plain"\nparameters.R = 0',
