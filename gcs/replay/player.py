@@ -32,7 +32,7 @@ class Player:
         self.speed = 1.0
         self._new = PictureReducer(recording.game, limits, version)
         self._every_ns = max(CHECKPOINT_NS, (recording.end_ns - recording.start_ns) // CHECKPOINTS)
-        self._checkpoints: list[tuple[int, PictureReducer]] = []  # by place, rising
+        self.checkpoints: list[tuple[int, PictureReducer]] = []  # by place, rising
         self._remainder = 0.0  # [ns] of recorded time not yet played
         self._place(recording.start_ns - 1, deepcopy(self._new))
         self._run_to(recording.start_ns)
@@ -85,7 +85,7 @@ class Player:
         self._remainder = 0.0
         if at_ns < self._at_ns:
             place_ns, reducer = self.start_ns - 1, self._new
-            for checkpoint_ns, saved in self._checkpoints:
+            for checkpoint_ns, saved in self.checkpoints:
                 if checkpoint_ns <= at_ns:
                     place_ns, reducer = checkpoint_ns, saved
             self._place(place_ns, deepcopy(reducer))
@@ -117,6 +117,6 @@ class Player:
 
     def _save(self, next_ns: int) -> None:
         """Keep a checkpoint before the message of `next_ns` where the last one is long ago."""
-        last_ns = self._checkpoints[-1][0] if self._checkpoints else self.start_ns
+        last_ns = self.checkpoints[-1][0] if self.checkpoints else self.start_ns
         if next_ns - last_ns > self._every_ns:
-            self._checkpoints.append((next_ns - 1, deepcopy(self._reducer)))
+            self.checkpoints.append((next_ns - 1, deepcopy(self._reducer)))

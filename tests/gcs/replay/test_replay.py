@@ -109,7 +109,7 @@ def test_steps_walk_the_grid_both_ways(run: Path) -> None:
 def test_a_long_way_back_uses_checkpoints(run: Path) -> None:
     player = Player(open_run(run))
     player.seek(player.end_ns)
-    assert [round((at - player.start_ns) / NS_PER_S) for at, _ in player._checkpoints] == [30]
+    assert [round((at - player.start_ns) / NS_PER_S) for at, _ in player.checkpoints] == [30]
     player.seek(player.start_ns + 35 * NS_PER_S)
     assert player.picture() == live(player.at_ns)
 
