@@ -81,7 +81,7 @@ class Flight:
     def now(self) -> float:
         return self.flown.now_ns / NS_PER_S
 
-    def fly(self, seconds: float, wanted: Vec | Callable[[float], Vec] | None) -> None:
+    def forward(self, seconds: float, wanted: Vec | Callable[[float], Vec] | None) -> None:
         """Let time pass in steps of 50 ms; `wanted` is relative to the air."""
         for _ in range(round(seconds / 0.05)):
             self.flown.forward(0.05)
