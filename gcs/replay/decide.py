@@ -24,10 +24,11 @@ from onboard.game.plugins import evader_strategy, pursuer_strategy
 from onboard.pilot.memory import Memory
 from onboard.pilot.pilot import Pilot, PilotDecision
 from onboard.pilot.setup import GameSetup, Own, Player, Side, TrackSample
-from onboard.wire.bus import messages as swarm
+from onboard.wire.autopilot_kind import Kind
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import (
     DecisionReport,
+    EvaderBrief,
     Health,
     Phase,
     PhaseChange,
@@ -37,13 +38,14 @@ from onboard.wire.bus.messages import (
     Track,
     Triple,
 )
+from onboard.wire.bus.topics import Dispatcher
 
 ANGLE_DEG = 5.0  # directions closer than this are the same
 SPEED = 0.5  # [m/s] and speeds
 PAUSE_S = 0.5  # differences farther apart are told apart
 OLD_STATE_S = 1.0
 SLICES = 2  # of training after each control step, as the agent gives them
-WINGED = frozenset({"arduplane"})  # autopilots whose vehicles fly in the moving air mass
+WINGED = frozenset({Kind.ARDUPLANE})  # autopilots whose vehicles fly in the moving air mass
 
 
 class Difference(NamedTuple):
@@ -126,7 +128,16 @@ class _Again:
         for role, name in strategies.items():
             _pilot(0, role, name)  # a name that does not exist is told before anything else
         self._strategies = strategies
-        self._drops: Counter[str] = Counter()
+        self._hear = (
+            Dispatcher(Counter())
+            .on(topics.STATE, self._take_state)
+            .on(topics.TRACK, self._take_track)
+            .on(topics.DECISION, self._compare)
+            .on(topics.HEALTH, self._take_health)
+            .on(topics.SETUP, self._take_setup)
+            .on(topics.PHASE, self._take_phase)
+            .on(topics.EVADER_BRIEF, self._take_brief)
+        )
         self._setup: Setup | None = None
         self._phase: PhaseChange | None = None
         self._target: Triple | None = None
@@ -141,43 +152,35 @@ class _Again:
         self._compared = self._same = 0
 
     def take(self, entry: Entry) -> None:
-        topic = topics.topic_of(entry.key)
         self._base_ns = self._base_ns or entry.stamp_ns
-        if topic is topics.STATE:
-            state: State | None = swarm.STATE.decode(entry.payload, self._drops)
-            if state is not None:
-                self._states[state.id] = state
-                self._step(state)
-        elif topic is topics.TRACK:
-            track: Track | None = swarm.TRACK.decode(entry.payload, self._drops)
-            if track is not None:
-                self._take_track(track)
-        elif topic is topics.DECISION:
-            report: DecisionReport | None = swarm.DECISION.decode(entry.payload, self._drops)
-            if report is not None:
-                self._compare(report)
-        elif topic is topics.HEALTH:
-            health: Health | None = swarm.HEALTH.decode(entry.payload, self._drops)
-            if health is not None and health.autopilot.lower() in WINGED:
-                self._winged.add(health.id)
-        elif topic is topics.SETUP:
-            setup = swarm.SETUP.decode(entry.payload, self._drops)
-            if setup is not None and setup != self._setup:
-                self._setup = setup
-                players = [m for m in setup.roster if m.role is not Role.TRACKER]
-                self._minds = {
-                    m.id: _Mind(
-                        _pilot(m.id, m.role, self._strategies.get(m.role) or m.strategy),
-                        [other.id for other in players if other.role is not m.role],
-                    )
-                    for m in players
-                }
-        elif topic is topics.PHASE:
-            phase = swarm.PHASE.decode(entry.payload, self._drops)
-            self._phase = phase or self._phase
-        elif topic is topics.EVADER_BRIEF:
-            brief = swarm.EVADER_BRIEF.decode(entry.payload, self._drops)
-            self._target = brief.target if brief is not None else self._target
+        self._hear((entry.key, entry.payload))
+
+    def _take_state(self, state: State) -> None:
+        self._states[state.id] = state
+        self._step(state)
+
+    def _take_health(self, health: Health) -> None:
+        if health.autopilot in WINGED:
+            self._winged.add(health.id)
+
+    def _take_setup(self, setup: Setup) -> None:
+        if setup == self._setup:
+            return
+        self._setup = setup
+        players = [m for m in setup.roster if m.role is not Role.TRACKER]
+        self._minds = {
+            m.id: _Mind(
+                _pilot(m.id, m.role, self._strategies.get(m.role) or m.strategy),
+                [other.id for other in players if other.role is not m.role],
+            )
+            for m in players
+        }
+
+    def _take_phase(self, phase: PhaseChange) -> None:
+        self._phase = phase
+
+    def _take_brief(self, brief: EvaderBrief) -> None:
+        self._target = brief.target
 
     def comparison(self) -> Comparison:
         for vehicle, opened in sorted(self._open.items()):

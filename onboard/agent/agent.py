@@ -22,12 +22,19 @@ from onboard.agent.timing import Timing
 from onboard.agent.vehicle_link import Craft
 from onboard.autopilot.base import ReleaseMode, Stage, Telemetry
 from onboard.core.math.constants import NEVER, NS_PER_S
-from onboard.core.safety.words import ACTIONS
 from onboard.runtime.protocols import Bus, Clock, Link
 from onboard.runtime.tasks import Pace, periodic
-from onboard.wire.bus import messages as swarm
-from onboard.wire.bus.messages import CommandKind, CommandReply, Health, Role, Severity
-from onboard.wire.bus.topics import ALIVE, COMMAND, DECISION, HEALTH, STATE, key
+from onboard.wire.bus.messages import (
+    AgentStage,
+    CommandKind,
+    CommandReply,
+    CommandState,
+    Health,
+    Role,
+    Severity,
+    SupervisorAction,
+)
+from onboard.wire.bus.topics import ALIVE, COMMAND, DECISION, HEALTH, STATE
 from onboard.wire.mavlink.frames import Packet
 from onboard.wire.mavlink.signing import Signing
 
@@ -83,7 +90,7 @@ class Agent:
         part = Tracking if config.role is Role.TRACKER else Acting
         self.acting = part(config, clock, self.craft, self.table, self.orders, self.journal)
         self.timing = Timing(1.0 / config.control_rate_hz)
-        self.stage = "waiting"
+        self.stage = AgentStage.WAITING
         self.lacks: tuple[str, ...] = ()
         self._beat = beat
         self._stop = asyncio.Event()
@@ -94,7 +101,7 @@ class Agent:
         self._connected = True
         self._late: asyncio.TimerHandle | None = None
         self._pace = Pace("chores", ADAPTER_EVERY_S)
-        self._keys = {topic: key(config.game, topic, config.id) for topic in (STATE, DECISION, HEALTH)}
+        self._keys = {topic: topic.key(config.game, config.id) for topic in (STATE, DECISION, HEALTH)}
 
     @property
     def now(self) -> float:
@@ -109,8 +116,8 @@ class Agent:
         role = f"{config.role.value} {config.id}" + (", dry run: sends nothing" if config.dry_run else "")
         self.journal.info("started", f"{role}, game '{config.game}', link {self.radio.active}")
         self.table.open()
-        served = self.bus.serve(key(config.game, COMMAND, config.id), self._command)
-        token = self.bus.announce(key(config.game, ALIVE, config.id))
+        served = self.bus.serve(COMMAND.key(config.game, config.id), self._command)
+        token = self.bus.announce(ALIVE.key(config.game, config.id))
         self.radio.open(self._hear)
         self._expect()
         beat, health = Pace("heartbeat", 1.0), Pace("health", 0.5)
@@ -153,7 +160,7 @@ class Agent:
             left = self.craft.stage is Stage.LEFT
             text = f"vehicle left in {craft.telemetry.mode}" + ("" if left else ", unconfirmed")
             self.journal.say(Severity.INFO if left else Severity.ERROR, "stopped", text)
-        self.stage = "ended"
+        self.stage = AgentStage.ENDED
         self._publish_health()
 
     # ------------------------------------------------------------------ what arrives
@@ -191,11 +198,11 @@ class Agent:
 
     def _command(self, payload: bytes) -> bytes:
         """Answer a request on `vehicles/<id>/command`; repeating one changes nothing."""
-        command = swarm.COMMAND.decode(payload, self.table.drops)
+        command = COMMAND.decode(payload, self.table.drops)
         now = self.now
         if command is None:
-            bad = CommandReply("", self.id, "refused", "undecodable", "", self.clock.wall_ns())
-            return swarm.COMMAND_REPLY.encode(bad)
+            bad = CommandReply("", self.id, CommandState.REFUSED, "undecodable", "", self.clock.wall_ns())
+            return COMMAND.encode_reply(bad)
         entry, new = self.orders.give(command, self._refusal(command.kind))
         if new:
             text = f"{command.kind.value} from {command.sender}"
@@ -208,13 +215,13 @@ class Agent:
         reply = CommandReply(
             command_id=command.command_id,
             id=self.id,
-            state=entry.state.value,
+            state=entry.state,
             reason=entry.reason,
             obeyed=self.orders.obeyed,
             stamp_ns=self.clock.wall_ns(),
             mode=self.craft.telemetry.mode,
         )
-        return swarm.COMMAND_REPLY.encode(reply)
+        return COMMAND.encode_reply(reply)
 
     def _refusal(self, kind: CommandKind) -> str:
         """Why a command cannot be obeyed; '' if it can."""
@@ -266,7 +273,7 @@ class Agent:
         if t.placed and now - self._state_at >= STATE_EVERY_S and now - t.position_at < 1.0:
             self._state_at = now
             state = reports.state_of(self.id, self.config.role, wall_ns, t, self.nonce)
-            self.bus.publish(self._keys[STATE], swarm.STATE.encode(state), STATE.delivery)
+            self.bus.publish(self._keys[STATE], STATE.encode(state), STATE.delivery)
         acting = self.acting
         thought, verdict = acting.thought, acting.verdict
         if thought is not None and verdict is not None and now - self._decision_at >= DECISION_EVERY_S:
@@ -275,7 +282,7 @@ class Agent:
             report = reports.decision_of(
                 self.id, acting.side, wall_ns, time, thought, verdict, acting.setpoint
             )
-            self.bus.publish(self._keys[DECISION], swarm.DECISION.encode(report), DECISION.delivery)
+            self.bus.publish(self._keys[DECISION], DECISION.encode(report), DECISION.delivery)
 
     def _report(self) -> None:
         """Health, and what is looked at twice a second."""
@@ -292,21 +299,21 @@ class Agent:
         stage = self._judge_stage()
         if stage != self.stage:
             self.stage = stage
-            lacks = f": lacks {', '.join(self.lacks)}" if self.lacks and stage == "waiting" else ""
-            self.journal.info("stage", f"{stage}{lacks}")
+            lacks = f": lacks {', '.join(self.lacks)}" if self.lacks and stage is AgentStage.WAITING else ""
+            self.journal.info("stage", f"{stage.value}{lacks}")
         self._publish_health()
 
-    def _judge_stage(self) -> str:
+    def _judge_stage(self) -> AgentStage:
         verdict = self.acting.verdict
         if self.craft.stage is Stage.TAKEN:
-            return "handed_over"
+            return AgentStage.HANDED_OVER
         if self.acting.over:
-            return "ended"
+            return AgentStage.ENDED
         if self.orders.way is not None or (verdict is not None and not verdict.stream):
-            return "held"
+            return AgentStage.HELD
         if verdict is not None and (self.craft.stage is Stage.ACTIVE or self.config.dry_run):
-            return "acting"
-        return "waiting" if self.lacks else "ready"
+            return AgentStage.ACTING
+        return AgentStage.WAITING if self.lacks else AgentStage.READY
 
     def _publish_health(self) -> None:
         now, t = self.now, self.craft.telemetry
@@ -323,7 +330,7 @@ class Agent:
             stamp_ns=self.clock.wall_ns(),
             stage=self.stage,
             lacks=self.lacks,
-            autopilot=self.craft.adapter.kind.value if self.craft.adapter is not None else "",
+            autopilot=self.craft.adapter.kind if self.craft.adapter is not None else None,
             mode=t.mode,
             armed=t.armed,
             battery=t.battery,
@@ -333,11 +340,11 @@ class Agent:
             clock_offset_s=self.table.clock.offset_s,
             gps_fix=t.gps_fix,
             ekf_ok=t.ekf_ok,
-            supervisor=ACTIONS[verdict.action] if verdict is not None else "ok",
+            supervisor=reports.action_of(verdict) if verdict is not None else SupervisorAction.OK,
             version=self.version,
             counters={cause: number for cause, number in counters.items() if number},
             telemetry_age_s=min(now - t.position_at, 1e6),
             heartbeat_age_s=min(now - t.heartbeat_at, 1e6),
             nonce=self.nonce,
         )
-        self.bus.publish(self._keys[HEALTH], swarm.HEALTH.encode(health), HEALTH.delivery)
+        self.bus.publish(self._keys[HEALTH], HEALTH.encode(health), HEALTH.delivery)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import Counter, OrderedDict
 from collections.abc import Callable
+from typing import Any
 
 from onboard.agent.clocks import MasterClock
 from onboard.agent.journal import Journal
@@ -15,7 +16,6 @@ from onboard.core.math.constants import NEVER, NS_PER_S
 from onboard.core.math.states import MateState
 from onboard.core.math.vectors import Vec
 from onboard.runtime.protocols import Bus, Clock, Sample, Subscription
-from onboard.wire.bus import messages as swarm
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import (
     EvaderBrief,
@@ -28,6 +28,7 @@ from onboard.wire.bus.messages import (
     State,
     Track,
 )
+from onboard.wire.bus.topics import Dispatcher
 
 MASTERS_MAX = 8
 SAY_AGAIN_S = 30.0  # a trouble that goes on is said again after this
@@ -65,33 +66,36 @@ class Table:
         self._said: dict[str, float] = {}
         self._fixed: list[Subscription] = []
         self._of_mates: dict[int, Subscription] = {}
+        self._own_track = topics.TRACK.key(game, id)
+        self._hear = (
+            Dispatcher(self.drops)
+            .on(topics.SETUP, self._take_setup)
+            .on(topics.PHASE, self._take_phase)
+            .on(topics.OUTCOME, self._take_outcome)
+            .on(topics.EVADER_BRIEF, self._take_brief)
+            .on(topics.MASTER, self._take_master)
+            .on(topics.TRACK, self._take_track)
+            .on(topics.STATE, self._take_mate)
+            .on(topics.HEALTH, self._take_own_health)
+        )
 
     def keys(self) -> tuple[str, ...]:
         """Every key and pattern that this agent listens to now."""
-        fixed = [topics.SETUP, topics.PHASE, topics.OUTCOME, topics.MASTER]
+        mates = [topics.STATE.key(self._game, mate) for mate in sorted(self._of_mates)]
+        return (*self._fixed_keys(), *mates)
+
+    def _fixed_keys(self) -> list[str]:
+        """Whatever the team mates are."""
+        fixed: list[topics.Topic[Any]] = [topics.SETUP, topics.PHASE, topics.OUTCOME, topics.MASTER]
         if self._role is Role.EVADER:
             fixed.append(topics.EVADER_BRIEF)
-        keys = [topics.key(self._game, topic) for topic in fixed]
-        keys.append(topics.key(self._game, topics.TRACK))
-        keys.append(topics.key(self._game, topics.HEALTH, self._id))
-        keys += [topics.key(self._game, topics.STATE, mate) for mate in sorted(self._of_mates)]
-        return tuple(keys)
+        fixed.append(topics.TRACK)
+        own = topics.HEALTH.key(self._game, self._id)
+        return [*(topic.key(self._game) for topic in fixed), own]
 
     def open(self) -> None:
         """Subscribe."""
-        takers: dict[topics.Topic, Callable[[Sample], None]] = {
-            topics.SETUP: self._take_setup,
-            topics.PHASE: self._take_phase,
-            topics.OUTCOME: self._take_outcome,
-            topics.MASTER: self._take_master,
-            topics.TRACK: self._take_track,
-        }
-        if self._role is Role.EVADER:
-            takers[topics.EVADER_BRIEF] = self._take_brief
-        for topic, take in takers.items():
-            self._fixed.append(self._bus.subscribe(topics.key(self._game, topic), take))
-        own = topics.key(self._game, topics.HEALTH, self._id)
-        self._fixed.append(self._bus.subscribe(own, self._take_own_health))
+        self._fixed += [self._bus.subscribe(key, self._take) for key in self._fixed_keys()]
 
     def close(self) -> None:
         """Unsubscribe."""
@@ -107,8 +111,8 @@ class Table:
             self.mates.pop(id, None)
         for id in mates:
             if id not in self._of_mates and id != self._id:
-                key = topics.key(self._game, topics.STATE, id)
-                self._of_mates[id] = self._bus.subscribe(key, self._take_mate)
+                key = topics.STATE.key(self._game, id)
+                self._of_mates[id] = self._bus.subscribe(key, self._take)
 
     def mate_states(self, base_ns: int) -> tuple[MateState, ...]:
         """What the team mates last said of themselves."""
@@ -127,9 +131,12 @@ class Table:
         """Monotonic time [s]."""
         return self._clock.monotonic_ns() / NS_PER_S
 
-    def _take_setup(self, sample: Sample) -> None:
-        setup = swarm.SETUP.decode(sample.payload, self.drops)
-        if setup is None or setup == self.setup:
+    def _take(self, sample: Sample) -> None:
+        if sample.key != self._own_track:
+            self._hear(sample)
+
+    def _take_setup(self, setup: Setup) -> None:
+        if setup == self.setup:
             return
         holder = self._obeyed
         if holder is not None and self._masters.get(holder, NEVER) >= self.now and setup.master != holder[0]:
@@ -138,53 +145,27 @@ class Table:
         self.setup = setup
         self.setup_number += 1
 
-    def _take_phase(self, sample: Sample) -> None:
-        phase = swarm.PHASE.decode(sample.payload, self.drops)
-        if phase is None:
-            return
+    def _take_phase(self, phase: PhaseChange) -> None:
         if self.phase is not None and phase.stamp_ns < self.phase.stamp_ns:
             self.drops["old_phase"] += 1
             return
         self.phase = phase
 
-    def _take_outcome(self, sample: Sample) -> None:
-        outcome = swarm.OUTCOME.decode(sample.payload, self.drops)
-        if outcome is not None:
-            self.outcome = outcome
+    def _take_outcome(self, outcome: Outcome) -> None:
+        self.outcome = outcome
 
-    def _take_brief(self, sample: Sample) -> None:
-        brief: EvaderBrief | None = swarm.EVADER_BRIEF.decode(sample.payload, self.drops)
-        if brief is not None:
-            self.target = None if brief.target is None else Vec(*brief.target)
-            self.briefed = True
+    def _take_brief(self, brief: EvaderBrief) -> None:
+        self.target = None if brief.target is None else Vec(*brief.target)
+        self.briefed = True
 
-    def _take_track(self, sample: Sample) -> None:
-        id = topics.vehicle_of(sample.key)
-        if id == self._id:
-            return
-        track = swarm.TRACK.decode(sample.payload, self.drops)
-        if track is None:
-            return
-        if track.id != id:
-            self.drops["wrong_id"] += 1
-            return
-        if id in self._of_mates:  # team mates tell of themselves
-            return
-        self.on_track(track)
+    def _take_track(self, track: Track) -> None:
+        if track.id not in self._of_mates:  # team mates tell of themselves
+            self.on_track(track)
 
-    def _take_mate(self, sample: Sample) -> None:
-        state = swarm.STATE.decode(sample.payload, self.drops)
-        if state is None:
-            return
-        if state.id != topics.vehicle_of(sample.key):
-            self.drops["wrong_id"] += 1
-            return
+    def _take_mate(self, state: State) -> None:
         self.mates[state.id] = Heard(state, self.now)
 
-    def _take_master(self, sample: Sample) -> None:
-        master: Master | None = swarm.MASTER.decode(sample.payload, self.drops)
-        if master is None:
-            return
+    def _take_master(self, master: Master) -> None:
         now = self.now
         who = (master.name, master.nonce)
         lease = min(max(master.lease_s, 0.1), 60.0)
@@ -210,9 +191,8 @@ class Table:
             else:
                 self._journal.info("clock_offset", f"{offset}: in order again")
 
-    def _take_own_health(self, sample: Sample) -> None:
-        health: Health | None = swarm.HEALTH.decode(sample.payload, self.drops)
-        if health is not None and health.nonce != self._nonce:
+    def _take_own_health(self, health: Health) -> None:
+        if health.nonce != self._nonce:
             self._trouble(
                 "double_id", f"another agent with id {self._id} is on the bus ({health.role.value})"
             )

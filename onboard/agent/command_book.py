@@ -3,28 +3,18 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from enum import Enum
 
 from onboard.autopilot.base import ReleaseMode, Stage
 from onboard.core.safety.policy import Action
-from onboard.wire.bus.messages import Command, CommandKind
+from onboard.wire.bus.messages import Command, CommandKind, CommandState
 
 KEPT = 64  # commands remembered
-
-
-class Verdict(Enum):
-    """State of a command, as the reply says it."""
-
-    PENDING = "pending"
-    CONFIRMED = "confirmed"
-    REFUSED = "refused"
-    SUPERSEDED = "superseded"
 
 
 class Entry:
     """One command, once."""
 
-    def __init__(self, command: Command, state: Verdict, reason: str) -> None:
+    def __init__(self, command: Command, state: CommandState, reason: str) -> None:
         self.command = command
         self.state = state
         self.reason = reason
@@ -57,14 +47,14 @@ class Orders:
         known = self._known.get(command.command_id)
         if known is not None:
             return known, False
-        entry = Entry(command, Verdict.REFUSED if refusal else Verdict.PENDING, refusal)
+        entry = Entry(command, CommandState.REFUSED if refusal else CommandState.PENDING, refusal)
         self._known[command.command_id] = entry
         if len(self._known) > KEPT:
             self._known.popitem(last=False)
         if refusal:
             return entry, True
-        if self._open is not None and self._open.state is Verdict.PENDING:
-            self._open.state = Verdict.SUPERSEDED
+        if self._open is not None and self._open.state is CommandState.PENDING:
+            self._open.state = CommandState.SUPERSEDED
             self._open.reason = f"by {command.kind.value} from {command.sender}"
         self._open = entry
         self.obeyed = command.sender
@@ -85,13 +75,13 @@ class Orders:
     def review(self, stage: Stage) -> Entry | None:
         """Compare the open command with what the autopilot reports; the entry if that settled it."""
         entry = self._open
-        if entry is None or entry.state is not Verdict.PENDING:
+        if entry is None or entry.state is not CommandState.PENDING:
             return None
         sets_off = entry.command.kind in (CommandKind.START, CommandKind.RESUME)
         if stage is (Stage.ACTIVE if sets_off else Stage.LEFT):
-            entry.state = Verdict.CONFIRMED
+            entry.state = CommandState.CONFIRMED
         elif stage is Stage.TAKEN:
-            entry.state = Verdict.REFUSED
+            entry.state = CommandState.REFUSED
             entry.reason = "a pilot has taken over"
         else:
             return None

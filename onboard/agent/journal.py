@@ -7,9 +7,8 @@ from datetime import UTC, datetime
 
 from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.protocols import Clock
-from onboard.wire.bus import messages as swarm
-from onboard.wire.bus.messages import Event, Severity
-from onboard.wire.bus.topics import EVENTS, Delivery, key
+from onboard.wire.bus.messages import DecisionLevel, DecisionModule, Event, Severity
+from onboard.wire.bus.topics import EVENTS, Delivery
 
 BURST = 20  # events of one kind within `WINDOW_S` before the rest are only counted
 WINDOW_S = 10.0
@@ -28,7 +27,7 @@ class Journal:
         log: Callable[[str], None],
     ) -> None:
         self._id = id
-        self._key = key(game, EVENTS, id)
+        self._key = EVENTS.key(game, id)
         self._nonce = nonce
         self._clock = clock
         self._publish = publish
@@ -64,8 +63,8 @@ class Journal:
         stamp = self._clock.wall_ns()
         event = Event(
             id=self._id, number=self._number, stamp_ns=stamp, severity=severity, kind=kind, text=text,
-            level=level, module=module, nonce=self._nonce,
+            level=DecisionLevel(level), module=DecisionModule(module), nonce=self._nonce,
         )  # fmt: skip
-        self._publish(self._key, swarm.EVENT.encode(event), EVENTS.delivery)
+        self._publish(self._key, EVENTS.encode(event), EVENTS.delivery)
         when = datetime.fromtimestamp(stamp / NS_PER_S, UTC).strftime("%H:%M:%S.%f")[:-3]
         self._log(f"{when} {severity.value:7} vehicle {self._id} {kind}: {text}")

@@ -11,7 +11,14 @@ from onboard.core.safety.supervisor import Verdict
 from onboard.core.safety.words import ACTIONS, CAUSES
 from onboard.pilot.pilot import PilotDecision, drawing
 from onboard.pilot.setup import Side
-from onboard.wire.bus.messages import DecisionReport, Role, State
+from onboard.wire.bus.messages import (
+    DecisionLevel,
+    DecisionModule,
+    DecisionReport,
+    Role,
+    State,
+    SupervisorAction,
+)
 
 UNSURE = 1e6  # stands for an error that is not known [m]
 
@@ -50,8 +57,8 @@ def decision_of(
         id=id,
         stamp_ns=stamp_ns,
         t=game_time,
-        level=thought.level,
-        module=thought.module,
+        level=DecisionLevel(thought.level),
+        module=DecisionModule(thought.module),
         strategy=thought.strategy,
         rule=thought.rule,
         velocity=_sound(thought.velocity),
@@ -60,12 +67,17 @@ def decision_of(
         miss=_number(thought.miss),
         cones=tuple(cone for cone in cones if all(map(isfinite, cone))),
         circles=tuple(circle for circle in circles if all(map(isfinite, circle))),
-        supervisor=ACTIONS[verdict.action],
+        supervisor=action_of(verdict),
         reason=CAUSES[verdict.cause] if verdict.action != Action.PASS else ", ".join(thought.lacks),
         predictor=thought.predictor,
         predictor_sigma=min(_number(thought.sigma, UNSURE), UNSURE),
         setpoint=_sound(setpoint),
     )
+
+
+def action_of(verdict: Verdict) -> SupervisorAction:
+    """The supervisor's action as the bus names it."""
+    return SupervisorAction(ACTIONS[verdict.action])
 
 
 def _number(value: float, otherwise: float = 0.0) -> float:

@@ -27,8 +27,8 @@ class TakeOff:
         t, adapter = craft.telemetry, craft.adapter
         if adapter is None:
             return False
-        if t.landed_state == ON_GROUND:
-            self.climbing = True
+        if t.landed_state == ON_GROUND and not self.climbing:
+            self.climbing, self._retry = True, CommandRetry(RETRY)
         if self.climbing and t.landed_state != ON_GROUND and t.above_home_m >= REACHED * self.height:
             self.climbing = False
         if not self.climbing:
@@ -40,7 +40,7 @@ class TakeOff:
             adapter.arm(now)
         message = self._next(craft)
         if message is not None and self._retry.due(now):
-            craft.radio.send(message)
+            craft.radio.send(message._replace(confirmation=self._retry.tries - 1))
         return True
 
     def _next(self, craft: Craft) -> CommandLong | None:

@@ -133,10 +133,13 @@ class GuidedAdapter:
         messages: list[Outgoing] = []
         if asked.mode:
             number, px4 = MODES[self.kind][asked.mode], self.kind is Kind.PX4_MULTICOPTER
-            messages.append(commands.set_mode(self._to, number, px4=px4))
+            command = commands.set_mode(self._to, number, px4=px4)
+            messages.append(command._replace(confirmation=asked.mode_tries - 1))
         if asked.prove:
             messages.append(commands.request_message(self._to, MessageId.HEARTBEAT))
         return messages
 
     def _arming(self, asked: ModeStep) -> list[Outgoing]:
-        return [commands.arm(self._to)] if asked.arm_tries else []
+        if not asked.arm_tries:
+            return []
+        return [commands.arm(self._to)._replace(confirmation=asked.arm_tries - 1)]

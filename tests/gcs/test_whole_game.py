@@ -9,7 +9,7 @@ import pytest
 
 from gcs.master import FieldMaster
 from gcs.picture.values import Presence
-from gcs.station import Station
+from gcs.station import Station, StationSetup
 from onboard.game.master import Standing
 from onboard.game.scenario import load
 from onboard.runtime.impairment import CLEAR, CUT
@@ -27,7 +27,7 @@ pytestmark = pytest.mark.game
 async def game_of_six():
     """A game that runs, and a station that watches it."""
     async with WholeGame(CHASE, virtual_clock()) as game:
-        station = Station(game.broker.connect("gcs"), game.clock, game.game, operator="anna")
+        station = Station(game.broker.connect("gcs"), game.clock, StationSetup(game.game, "anna"))
         task = asyncio.create_task(station.run())
         try:
             await at_phase(game, Phase.RUNNING)
@@ -147,7 +147,7 @@ async def test_the_ground_station_runs_a_whole_game_and_the_bridges_master_yield
 async def ended(scenario, *, by_ground: bool):
     """The outcome, as everybody is told it."""
     game = WholeGame(scenario, virtual_clock())
-    station = Station(game.broker.connect("gcs"), game.clock, game.game)
+    station = Station(game.broker.connect("gcs"), game.clock, StationSetup(game.game))
     tasks = [asyncio.create_task(station.run())]
     master = FieldMaster(station, scenario, nonce=7)
     if by_ground:
@@ -165,7 +165,7 @@ async def ended(scenario, *, by_ground: bool):
 
 
 def done(station: Station, command: str) -> bool:
-    view = station.watch.book.view(command, station.now_ns())
+    view = station.reducer.book.view(command, station.now_ns())
     return view is not None and view.confirmed
 
 

@@ -27,9 +27,8 @@ import psutil  # noqa: E402
 from onboard.game.scenario import Flight, ImpairmentSpec, Kind, Parameters, Scenario, VehicleSpec  # noqa: E402
 from onboard.pilot.predictor_choice import Predicting  # noqa: E402
 from onboard.runtime.loop import run_virtual  # noqa: E402
-from onboard.wire.bus import messages as swarm  # noqa: E402
 from onboard.wire.bus.messages import Command, CommandKind, Phase  # noqa: E402
-from onboard.wire.bus.topics import COMMAND, key  # noqa: E402
+from onboard.wire.bus.topics import COMMAND  # noqa: E402
 from tests.soak.faults import NAMES, OF_ALL, OF_ONE, Rng, Undo  # noqa: E402
 from tests.support.whole_games import WholeGame, flies, game_of  # noqa: E402
 
@@ -184,8 +183,8 @@ class Soak:
                 self._orders += 1
                 self.totals["resumes"] += 1
                 order = Command(f"soak-{self._orders}", CommandKind.RESUME, "operator", 0)
-                where = key(self.game.game, COMMAND, id)
-                await self.game.bus.request(where, swarm.COMMAND.encode(order), 0.5)
+                where = COMMAND.key(self.game.game, id)
+                await self.game.bus.request(where, COMMAND.encode(order), 0.5)
 
     def story(self, id: int, what: str) -> str:
         """What a person needs to know of a failure."""

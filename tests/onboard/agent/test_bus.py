@@ -15,9 +15,10 @@ from onboard.config.strict import convert
 from onboard.runtime.clock import SkewedClock
 from onboard.runtime.links import memory_pair
 from onboard.runtime.patterns import matches
-from onboard.wire.bus import messages as swarm
-from onboard.wire.bus.messages import Master, Role, Track
-from onboard.wire.bus.topics import DECISION, EVADER_BRIEF, MASTER, SETUP, STATE, TRACK, Delivery, key
+from onboard.wire.autopilot_kind import Kind
+from onboard.wire.bus import messages, topics
+from onboard.wire.bus.messages import AgentStage, Master, Role, Track
+from onboard.wire.bus.topics import DECISION, EVADER_BRIEF, MASTER, SETUP, STATE, TRACK, Delivery
 from tests.support.small_scenarios import EVADER, MATE, PURSUER, chase
 from tests.support.virtual_time import virtual
 from tests.support.whole_games import flies, game_of, under_way
@@ -29,19 +30,19 @@ async def test_no_agent_listens_to_an_opponents_state_or_to_the_evaders_brief() 
         asked: dict[int, list[str]] = {}
         await under_way(game, 1.0)
         secrets = {
-            EVADER: [key(game.game, STATE, PURSUER), key(game.game, STATE, MATE)],
-            PURSUER: [key(game.game, STATE, EVADER), key(game.game, EVADER_BRIEF)],
-            MATE: [key(game.game, STATE, EVADER), key(game.game, EVADER_BRIEF)],
+            EVADER: [STATE.key(game.game, PURSUER), STATE.key(game.game, MATE)],
+            PURSUER: [STATE.key(game.game, EVADER), EVADER_BRIEF.key(game.game)],
+            MATE: [STATE.key(game.game, EVADER), EVADER_BRIEF.key(game.game)],
         }
         for id, agent in game.agents.items():
             asked[id] = [listener.pattern for listener in agent.bus.listeners]  # type: ignore[attr-defined]
             assert sorted(asked[id]) == sorted(agent.table.keys())
             for secret in secrets[id]:
                 assert not any(matches(pattern, secret) for pattern in asked[id]), (id, secret)
-                for decision in (key(game.game, DECISION, EVADER), key(game.game, DECISION, PURSUER)):
+                for decision in (DECISION.key(game.game, EVADER), DECISION.key(game.game, PURSUER)):
                     assert not any(matches(pattern, decision) for pattern in asked[id])
-        assert any(matches(p, key(game.game, STATE, MATE)) for p in asked[PURSUER])
-        assert any(matches(p, key(game.game, EVADER_BRIEF)) for p in asked[EVADER])
+        assert any(matches(p, STATE.key(game.game, MATE)) for p in asked[PURSUER])
+        assert any(matches(p, EVADER_BRIEF.key(game.game)) for p in asked[EVADER])
 
 
 @virtual
@@ -76,10 +77,10 @@ async def test_an_agent_with_no_game_waits_visibly_and_names_what_it_lacks() -> 
         agent = game.start_agent(PURSUER)
         await game.forward(5.0)
         health = game.health[PURSUER]
-        assert health.stage == "waiting"
+        assert health.stage == AgentStage.WAITING
         assert "a game's setup" in health.lacks
         assert "a master" in health.lacks
-        assert health.autopilot == "ArduCopter"
+        assert health.autopilot is Kind.ARDUCOPTER
         assert not flies(agent)
 
 
@@ -187,7 +188,7 @@ async def test_two_masters_are_reported_and_the_first_ones_clock_counts() -> Non
         await under_way(game, 1.0)
         for _ in range(8):
             wrong = Master("usurper", game.clock.wall_ns() - 10**10, 2.0, 1 << 48)
-            game.bus.publish(key(game.game, MASTER), swarm.MASTER.encode(wrong), MASTER.delivery)
+            game.bus.publish(MASTER.key(game.game), topics.MASTER.encode(wrong), MASTER.delivery)
             await game.forward(0.25)
         agent = game.agents[PURSUER]
         assert game.kinds(PURSUER).count("two_masters") == 1
@@ -203,8 +204,8 @@ async def test_a_setup_from_another_than_the_master_is_ignored() -> None:
         await under_way(game, 1.0)
         agent = game.agents[PURSUER]
         assert agent.table.setup is not None
-        other = replace(agent.table.setup, master="usurper", rules=swarm.RulesMessage(99.0, 199.0))
-        game.bus.publish(key(game.game, SETUP), swarm.SETUP.encode(other), SETUP.delivery)
+        other = replace(agent.table.setup, master="usurper", rules=messages.RulesMessage(99.0, 199.0))
+        game.bus.publish(SETUP.key(game.game), topics.SETUP.encode(other), SETUP.delivery)
         await game.forward(1.0)
         assert agent.table.setup.master == "sim-bridge"
         assert "two_masters" in game.kinds(PURSUER)
@@ -247,10 +248,10 @@ async def test_garbage_on_the_bus_is_counted_by_cause_and_changes_nothing() -> N
         foreign = Track(EVADER, game.clock.wall_ns(), position, position, (1.0,) * 6)  # type: ignore[arg-type]
         nan = Track(EVADER, 0, (float("nan"), 0.0, 0.0), position, (1.0,) * 6)  # type: ignore[arg-type]
         bus = game.bus
-        bus.publish(key(game.game, TRACK, EVADER), b"\xff\x00\x01", TRACK.delivery)
-        bus.publish(key(game.game, TRACK, EVADER), swarm.TRACK.encode(nan), TRACK.delivery)
-        bus.publish(key(game.game, TRACK, MATE), swarm.TRACK.encode(foreign), TRACK.delivery)
-        bus.publish(key(game.game, SETUP), b"\x92\x63\x90", SETUP.delivery)
+        bus.publish(TRACK.key(game.game, EVADER), b"\xff\x00\x01", TRACK.delivery)
+        bus.publish(TRACK.key(game.game, EVADER), topics.TRACK.encode(nan), TRACK.delivery)
+        bus.publish(TRACK.key(game.game, MATE), topics.TRACK.encode(foreign), TRACK.delivery)
+        bus.publish(SETUP.key(game.game), b"\x92\x63\x90", SETUP.delivery)
         await game.forward(1.0)
         assert agent.table.drops["undecodable"] == 1
         assert agent.table.drops["not_finite"] == 1

@@ -7,7 +7,7 @@ import pytest
 from onboard.autopilot.base import Stage
 from onboard.game.scenario import Kind
 from onboard.runtime.impairment import CLEAR, CUT
-from onboard.wire.bus.messages import Phase
+from onboard.wire.bus.messages import AgentStage, Phase
 from tests.support.small_scenarios import EVADER, MATE, PURSUER, chase, fenced, lossy
 from tests.support.virtual_time import virtual
 from tests.support.whole_games import autopilot, choose_mode, flies, game_of, mode, place, speed, under_way
@@ -30,7 +30,7 @@ async def test_from_staging_to_the_end_each_kind_of_vehicle_plays_its_part(kind:
         game.bridge.master.abort("the day is over")  # type: ignore[union-attr]
         await game.forward(3.0, until=lambda: mode(game, PURSUER) == HOLD[kind])
         await game.forward(1.0)
-        assert game.health[PURSUER].stage == "ended"
+        assert game.health[PURSUER].stage == AgentStage.ENDED
         for expected in ("started", "autopilot", "setup", "control", "phase", "released"):
             assert expected in game.kinds(PURSUER)
 
@@ -95,7 +95,7 @@ async def test_without_the_masters_resume_an_agent_that_comes_late_does_not_fly(
         await game.forward(5.0)
         assert not flies(agent)
         assert "the master's resume" in agent.lacks
-        assert game.health[PURSUER].stage == "waiting"
+        assert game.health[PURSUER].stage == AgentStage.WAITING
         assert "late" in game.kinds(PURSUER)
 
 
@@ -112,7 +112,7 @@ async def test_when_a_pilot_changes_the_mode_the_agent_stops_at_once_and_says_so
         await game.forward(10.0)
         assert agent.craft.sent_at == sent
         assert mode(game, PURSUER) != GUIDED[kind]
-        assert game.health[PURSUER].stage == "handed_over"
+        assert game.health[PURSUER].stage == AgentStage.HANDED_OVER
         assert {"take_over", "supervisor_end"} <= set(game.kinds(PURSUER))
         if kind is not Kind.PX4:  # a PX4 pilot cannot choose OFFBOARD without a stream of setpoints
             choose_mode(game, PURSUER, GUIDED[kind])

@@ -41,9 +41,7 @@ async def test_a_route_is_flown_in_time_and_the_vehicle_holds_at_its_end(
     file = tmp_path_factory.mktemp("route") / "route.toml"
     file.write_text(text, encoding="utf-8")
     async with game_of(chase(kind), agents=False) as game:
-        config = AgentConfig(
-            id=EVADER, role=Role.TRACKER, route=str(file), take_control=True, game=game.game
-        )
+        config = AgentConfig(id=EVADER, role=Role.TRACKER, route=str(file), take_control=True, game=game.game)
         agent = Agent(
             config, game.clock, [game.links[EVADER]], game.broker.connect("t"), nonce=3, log=lambda line: None
         )

@@ -96,6 +96,22 @@ def test_the_command_is_repeated_until_the_heartbeat_says_so_but_never_faster_th
     assert play.adapter.stage is Stage.ACTIVE
 
 
+def test_a_repeated_command_says_how_often_it_was_sent_before_and_a_new_one_begins_at_0() -> None:
+    play = copter(may_arm=True)
+    play.deaf = True
+    play.adapter.enter(play.now)
+    play.adapter.arm(play.now)
+    play.fly(60.0, None)
+    play.adapter.leave(play.now, ReleaseMode.RETURN)
+    play.fly(0.5, None)
+    commands = [m for _, m in play.sent if isinstance(m, CommandLong)]
+    modes = [m.confirmation for m in commands if m.command == 176]
+    arming = [m.confirmation for m in commands if m.command == 400]
+    assert modes[-5:] == [0, 1, 2, 3, 4]
+    assert modes[:-5] == list(range(len(modes) - 5))
+    assert arming == list(range(len(arming)))
+
+
 def test_a_refusal_is_told_once_and_tried_again() -> None:
     play = copter()
     play.result = 4

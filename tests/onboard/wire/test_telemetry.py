@@ -210,3 +210,4 @@ def test_builders_speak_the_wires_units() -> None:
     assert (ours.type, ours.autopilot, ours.system_status) == (18, 8, 4)
     lost = received(commands.CommandLong(Target(1), 400, (1.0,), confirmation=3))
     assert (lost.param1, lost.param7, lost.confirmation) == (1.0, 0.0, 3)
+    assert received(commands.CommandLong(Target(1), 400, confirmation=1000)).confirmation == 255
