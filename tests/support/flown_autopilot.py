@@ -175,8 +175,9 @@ class FlownAutopilot:
         before = len(self.heard)
         self.send(message)
         acks = [m for _, m in self.heard[before:] if m.get_type() == "COMMAND_ACK"]
-        assert [m.command for m in acks] == [number]
-        return int(acks[0].result)
+        twice = 2 if self.kind == Kind.PX4 and number == 176 else 1  # PX4: accepted first, then the result
+        assert [m.command for m in acks] == [number] * twice
+        return int(acks[-1].result)
 
     def mode_to(self, name: str) -> int:
         """DO_SET_MODE; the result."""

@@ -6,8 +6,10 @@ import pytest
 
 from onboard.core.math.vectors import Vec
 from onboard.game.scenario import Kind
-from onboard.wire.mavlink.dialect import dialect
+from onboard.wire.mavlink.dialect import DialectSender, dialect
 from tests.support.flown_autopilot import FlownAutopilot
+
+GCS = dialect.MAVLink_heartbeat_message(6, 8, 0, 0, 4, 3)
 
 KINDS = pytest.mark.parametrize("kind", list(Kind), ids=lambda kind: kind.value)
 PREARM = 268435456
@@ -16,6 +18,7 @@ PREARM = 268435456
 @KINDS
 def test_arming_is_refused_with_a_reason_until_it_is_ready(kind: Kind) -> None:
     flown = FlownAutopilot(kind, airborne=False, ready_s=10.0)
+    flown.send(GCS, DialectSender(255, 190))
     flown.forward(1.0)
     assert flown.got("GLOBAL_POSITION_INT") == []
     assert flown.got("LOCAL_POSITION_NED") == []
@@ -30,7 +33,7 @@ def test_arming_is_refused_with_a_reason_until_it_is_ready(kind: Kind) -> None:
     assert flown.got("GLOBAL_POSITION_INT")
     assert flown.last("SYS_STATUS").onboard_control_sensors_health & PREARM
     assert flown.command(400, 1) == 0
-    assert flown.last("HEARTBEAT").base_mode & 128
+    assert flown.forward(1.0).last("HEARTBEAT").base_mode & 128
     assert flown.position == Vec(0.0, 0.0, 0.0)
     assert flown.autopilot.parked
 
