@@ -19,7 +19,7 @@ from onboard.core.math.states import Limits
 from onboard.core.math.vectors import NORTH, TINY, ZERO, Vec, along, angle_between, norm, unit
 from onboard.core.strategy.registry import EVADERS, PURSUERS
 from onboard.pilot.memory import Memory
-from onboard.pilot.pilot import Pilot, Thought
+from onboard.pilot.pilot import Pilot, PilotDecision
 from onboard.pilot.setup import GameSetup, MateState, Own, Player, Side, TrackSample
 from onboard.runtime.plugins import evader_strategy, pursuer_strategy
 from onboard.wire.bus import messages as swarm
@@ -102,14 +102,14 @@ class _Mind:
         self.pilot = pilot
         self.memory = Memory(wanted=opponents)
         self.samples: list[TrackSample] = []
-        self.thought: Thought | None = None
+        self.thought: PilotDecision | None = None
         self.thought_ns = 0  # the step that it is of
 
 
 class _Open:
     """A difference that may still go on."""
 
-    def __init__(self, report: DecisionReport, thought: Thought, angle: float, speed: float) -> None:
+    def __init__(self, report: DecisionReport, thought: PilotDecision, angle: float, speed: float) -> None:
         self.start = self.end = report.t
         self.decisions = 1
         self.recorded, self.now = report.rule, thought.rule
@@ -234,7 +234,7 @@ class _Again:
             return
         self._judge(report, thought)
 
-    def _think(self, mind: _Mind, state: State, at_ns: int, setup: Setup) -> Thought:
+    def _think(self, mind: _Mind, state: State, at_ns: int, setup: Setup) -> PilotDecision:
         self._heights.setdefault(state.id, -state.position[2])
         now = self._seconds(at_ns)
         late = min(max(0.0, now - self._seconds(state.stamp_ns)), 0.5)
@@ -251,7 +251,7 @@ class _Again:
         mind.thought, mind.thought_ns = thought, at_ns
         return thought
 
-    def _judge(self, report: DecisionReport, thought: Thought) -> None:
+    def _judge(self, report: DecisionReport, thought: PilotDecision) -> None:
         was = Vec(*report.velocity)
         angle = 0.0
         if norm(was) > TINY and norm(thought.velocity) > TINY:

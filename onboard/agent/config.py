@@ -138,6 +138,8 @@ class AgentConfig(Part, frozen=True):
     prediction: Predicting = Predicting.NETWORK  # what carries tracks forward
     field: bool = False  # refuse what only a simulation may do (docs/safety.md)
     log: str = ""  # .tlog of the own link; missing = none
+    events: str = ""  # file of everything that happens, for `gcs replay --decide`; missing = none
+    events_max_mb: float = 256.0  # its largest size [MB]: some two hours of a game of six
     envelope: EnvelopeConfig = EnvelopeConfig()
     safety: SafetyConfig = SafetyConfig()
     signing: SigningConfig | None = None
@@ -185,6 +187,8 @@ def check(found: AgentConfig, name: str) -> AgentConfig:
     demand(0.0 < found.track_ahead_s <= 60.0, "track_ahead_s", found.track_ahead_s, "a time in (0, 60] s")
     route = found.role is not Role.TRACKER or bool(found.route)
     demand(route, "route", "none", "a tracker's route file")
+    size = found.events_max_mb
+    demand(1.0 <= size <= 1e5, "events_max_mb", size, "1 to 100000 MB")
     height = found.take_off_height
     demand(2.0 <= height <= 500.0, "take_off_height", height, "2 to 500 m above home")
     demand(0.0 < found.lookahead_s <= 60.0, "lookahead_s", found.lookahead_s, "a time in (0, 60] s")

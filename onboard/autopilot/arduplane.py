@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from math import atan, atan2, pi, tan
 
-from onboard.autopilot.base import NEVER, Envelope, Note, Setpoint, Stage, Step, Telemetry, Way
+from onboard.autopilot.base import NEVER, Envelope, Note, ReleaseMode, Setpoint, Stage, Step, Telemetry
 from onboard.autopilot.envelope import is_finite, within
 from onboard.autopilot.mode_control import Control
 from onboard.core.math.vectors import Vec, add, clamp, norm
@@ -38,7 +38,11 @@ FAULTS = {
     "not_finite": "a setpoint that is no number was not sent",
     "no_direction": "a plane cannot stand still: give no setpoint, or leave to loiter",
 }
-WAYS = {Way.HOLD: "LOITER", Way.RETURN: "RTL", Way.LAND: "RTL"}  # how it lands is its mission's business
+WAYS = {
+    ReleaseMode.HOLD: "LOITER",
+    ReleaseMode.RETURN: "RTL",
+    ReleaseMode.LAND: "RTL",  # how it lands is its mission's business
+}
 
 
 def wrapped(angle: float) -> float:
@@ -121,14 +125,14 @@ class ArduPlaneAdapter:
         """Ask for GUIDED: until the first setpoint the plane circles where it is."""
         self._control.enter(now)
 
-    def leave(self, now: float, way: Way) -> None:
+    def leave(self, now: float, way: ReleaseMode) -> None:
         """End the targets; ask for LOITER or RTL."""
         self._control.leave(now, way)
 
     def end(self, now: float) -> None:
         """A plane would fly on: LOITER."""
         if self._control.stage is Stage.ACTIVE:
-            self._control.leave(now, Way.HOLD)
+            self._control.leave(now, ReleaseMode.HOLD)
 
     def arm(self, now: float) -> bool:
         """Ask for arming, if made with `may_arm`."""

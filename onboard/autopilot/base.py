@@ -97,7 +97,7 @@ class Stage(Enum):
     TAKEN = "taken"  # somebody else changed the mode: hands off
 
 
-class Way(Enum):
+class ReleaseMode(Enum):
     """How to leave."""
 
     HOLD = "hold"
@@ -158,7 +158,7 @@ class Adapter(Protocol):
         """Ask for the guided mode until the heartbeat reports it. Also takes control back after TAKEN."""
         ...
 
-    def leave(self, now: float, way: Way) -> None:
+    def leave(self, now: float, way: ReleaseMode) -> None:
         """End the setpoints and ask for a mode the autopilot can hold alone, until it reports it."""
         ...
 

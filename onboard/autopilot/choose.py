@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from onboard.autopilot.arduplane import ArduPlaneAdapter
 from onboard.autopilot.base import Adapter, Envelope, Refusal
-from onboard.autopilot.mavsdk import MavsdkAdapter
+from onboard.autopilot.mavsdk import Child, Courier, MavsdkAdapter
 from onboard.autopilot.parameters import gcs_failsafe
 from onboard.autopilot.velocity import VelocityAdapter
 from onboard.wire.mavlink.commands import Target
@@ -39,12 +39,14 @@ def adapter_for(
     may_arm: bool = False,
     hold_mode: str = "",
     mavsdk_url: str = "",
+    launch: Callable[..., Courier] = Child,
 ) -> Adapter | Refusal:
     """The adapter for an autopilot by its heartbeat, or the reason why there is none.
 
     `scheme` (configuration) is `auto` or must fit. `parameters` are the autopilot's, as far as read: the
     plain variant of ArduPlane is refused unless they show that the GCS failsafe watches this agent.
-    `mavsdk_url` is the connection that MAVSDK opens for itself, besides the agent's link.
+    `mavsdk_url` is the connection that MAVSDK opens for itself, besides the agent's link; `launch` starts its
+    child process with the arguments given.
     """
     kind = heartbeat.kind
     if kind in _WHY_NOT:
@@ -63,7 +65,7 @@ def adapter_for(
             return Refusal("MAVSDK is not installed: pip install 'apollonius[mavsdk]'")
         if not mavsdk_url:
             return Refusal("mavsdk needs a connection of its own: give its URL")
-        return MavsdkAdapter(kind, to, limits, mavsdk_url, may_arm=may_arm)
+        return MavsdkAdapter(kind, to, limits, mavsdk_url, may_arm=may_arm, launch=launch)
     if kind is not Kind.ARDUPLANE:
         return VelocityAdapter(kind, to, limits, may_arm=may_arm, hold_mode=hold_mode)
     plain = scheme == "arduplane-plain"

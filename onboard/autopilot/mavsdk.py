@@ -11,12 +11,13 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from importlib.util import find_spec
 from math import degrees
 from struct import Struct
 from typing import Protocol
 
-from onboard.autopilot.base import NEVER, Envelope, Note, Setpoint, Stage, Step, Telemetry, Way
+from onboard.autopilot.base import NEVER, Envelope, Note, ReleaseMode, Setpoint, Stage, Step, Telemetry
 from onboard.autopilot.envelope import Shaper, is_finite
 from onboard.autopilot.mode_control import Control
 from onboard.autopilot.velocity import GUIDED, WAYS, yaw_along
@@ -27,7 +28,7 @@ from onboard.wire.mavlink.values import CommandAck
 
 LINE = Struct("<cd4d")  # what, when [s, monotonic], north, east, down [m/s], yaw [deg]
 SETPOINT, ENTER, HOLD, RETURN, LAND, RELEASE = b"S", b"E", b"H", b"R", b"L", b"X"
-ORDERS = {Way.HOLD: HOLD, Way.RETURN: RETURN, Way.LAND: LAND}
+ORDERS = {ReleaseMode.HOLD: HOLD, ReleaseMode.RETURN: RETURN, ReleaseMode.LAND: LAND}
 SILENCE = 0.2  # [s] without a setpoint after which the child stops offboard and exits
 ARM = 400  # MAV_CMD_COMPONENT_ARM_DISARM
 RELAUNCH = 1.0  # [s] at least between two starts of the child
@@ -56,8 +57,8 @@ class Courier(Protocol):
 class Child:
     """The child process and its two pipes, never waited for."""
 
-    def __init__(self, url: str, system: int) -> None:
-        command = [sys.executable, "-m", "onboard.autopilot.mavsdk_child", url, str(system)]
+    def __init__(self, *arguments: str) -> None:
+        command = [sys.executable, "-m", "onboard.autopilot.mavsdk_child", *arguments]
         self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0)
         assert self.process.stdin is not None
         assert self.process.stdout is not None
@@ -66,6 +67,11 @@ class Child:
         os.set_blocking(self._out, False)
         self._rest = b""
         self._closed = False
+
+    @property
+    def output(self) -> int:
+        """File descriptor of what the child writes."""
+        return self._out
 
     def send(self, line: bytes) -> bool:
         """A line is shorter than what a pipe takes in one piece."""
@@ -106,14 +112,22 @@ class MavsdkAdapter:
     holds_airspeed = False
 
     def __init__(
-        self, kind: Kind, to: Target, envelope: Envelope, url: str, *, may_arm: bool = False
+        self,
+        kind: Kind,
+        to: Target,
+        envelope: Envelope,
+        url: str,
+        *,
+        may_arm: bool = False,
+        launch: Callable[..., Courier] = Child,
     ) -> None:
         self.kind = kind
         self.guided_mode = GUIDED[kind]
         self._control = Control(kind, to, self.guided_mode, WAYS[kind], may_arm=may_arm)
         self._shaper = Shaper(envelope)
         self._url, self._system = url, to.system
-        self._way = Way.HOLD
+        self._way = ReleaseMode.HOLD
+        self._launch = launch
         self._courier: Courier | None = None
         self._launched_at = NEVER
 
@@ -131,7 +145,7 @@ class MavsdkAdapter:
         """Ask the child to start offboard; give setpoints meanwhile (zero to hover)."""
         self._control.enter(now)
 
-    def leave(self, now: float, way: Way) -> None:
+    def leave(self, now: float, way: ReleaseMode) -> None:
         """End the setpoints; ask the child to hold, return or land."""
         self._way = way
         self._control.leave(now, way)
@@ -196,5 +210,5 @@ class MavsdkAdapter:
         needed = self._control.stage in (Stage.ENTERING, Stage.ACTIVE, Stage.LEAVING)
         if self._courier is None and needed and now - self._launched_at >= RELAUNCH:
             self._launched_at = now
-            self._courier = Child(self._url, self._system)
+            self._courier = self._launch(self._url, str(self._system))
         return self._courier

@@ -11,7 +11,7 @@ refusal a second passes. From IDLE, LEFT and TAKEN the pilot hands (back) by cho
 
 from __future__ import annotations
 
-from onboard.autopilot.base import NEVER, Note, Stage, Telemetry, Way
+from onboard.autopilot.base import NEVER, Note, ReleaseMode, Stage, Telemetry
 from onboard.wire.mavlink import commands
 from onboard.wire.mavlink.commands import Target
 from onboard.wire.mavlink.frames import MavMessage
@@ -79,7 +79,7 @@ class Control:
     """Modes and arming of one autopilot."""
 
     def __init__(
-        self, kind: Kind, to: Target, guided: str, ways: dict[Way, str], *, may_arm: bool = False
+        self, kind: Kind, to: Target, guided: str, ways: dict[ReleaseMode, str], *, may_arm: bool = False
     ) -> None:
         self.kind = kind
         self.to = to
@@ -102,7 +102,7 @@ class Control:
         if self.stage not in (Stage.ACTIVE, Stage.ENTERING):
             self._ask(Stage.ENTERING, self.guided)
 
-    def leave(self, now: float, way: Way) -> None:
+    def leave(self, now: float, way: ReleaseMode) -> None:
         """Ask for the mode of `way`."""
         wanted = self._ways[way]
         if self.stage not in (Stage.LEAVING, Stage.LEFT) or self._wanted != wanted:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from math import atan2
 
-from onboard.autopilot.base import Envelope, Note, Setpoint, Stage, Step, Telemetry, Way
+from onboard.autopilot.base import Envelope, Note, ReleaseMode, Setpoint, Stage, Step, Telemetry
 from onboard.autopilot.envelope import Shaper, is_finite
 from onboard.autopilot.mode_control import Control
 from onboard.core.math.vectors import Vec, add
@@ -24,8 +24,8 @@ TURNING = 0.5  # [m/s; ground] below this the vehicle keeps looking where it loo
 
 GUIDED = {Kind.PX4_MULTICOPTER: "OFFBOARD", Kind.ARDUCOPTER: "GUIDED"}
 WAYS = {
-    Kind.PX4_MULTICOPTER: {Way.HOLD: "HOLD", Way.RETURN: "RTL", Way.LAND: "LAND"},
-    Kind.ARDUCOPTER: {Way.HOLD: "LOITER", Way.RETURN: "RTL", Way.LAND: "LAND"},
+    Kind.PX4_MULTICOPTER: {ReleaseMode.HOLD: "HOLD", ReleaseMode.RETURN: "RTL", ReleaseMode.LAND: "LAND"},
+    Kind.ARDUCOPTER: {ReleaseMode.HOLD: "LOITER", ReleaseMode.RETURN: "RTL", ReleaseMode.LAND: "LAND"},
 }
 
 
@@ -58,7 +58,7 @@ class VelocityAdapter:
         self.kind = kind
         self.envelope = envelope
         self.guided_mode = GUIDED[kind]
-        ways = {**WAYS[kind], **({Way.HOLD: hold_mode} if hold_mode else {})}
+        ways = {**WAYS[kind], **({ReleaseMode.HOLD: hold_mode} if hold_mode else {})}
         self._control = Control(kind, to, self.guided_mode, ways, may_arm=may_arm)
         self._to = to
         self._shaper = Shaper(envelope)
@@ -73,7 +73,7 @@ class VelocityAdapter:
         """Ask for OFFBOARD or GUIDED; with PX4 give setpoints meanwhile (zero to hover)."""
         self._control.enter(now)
 
-    def leave(self, now: float, way: Way) -> None:
+    def leave(self, now: float, way: ReleaseMode) -> None:
         """End the targets; ask for hold, return or land."""
         self._control.leave(now, way)
 

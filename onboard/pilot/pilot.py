@@ -31,7 +31,7 @@ CLIMB_SHARE = 0.3  # and the share of the speed it may use
 Quad = tuple[float, float, float, float]
 
 
-class Thought(NamedTuple):
+class PilotDecision(NamedTuple):
     """One decision, and everything a person needs to see why."""
 
     decides: bool  # False: something is missing, `lacks` says what
@@ -51,7 +51,7 @@ class Thought(NamedTuple):
     rho: float
 
 
-def drawing(thought: Thought, side: Side) -> tuple[tuple[Quad, ...], tuple[Quad, ...]]:
+def drawing(thought: PilotDecision, side: Side) -> tuple[tuple[Quad, ...], tuple[Quad, ...]]:
     """Blocked cones (axis, half-angle) and Apollonius spheres (centre, radius) of a thought, for pictures."""
     cones: list[Quad] = []
     circles: list[Quad] = []
@@ -67,7 +67,172 @@ def drawing(thought: Thought, side: Side) -> tuple[tuple[Quad, ...], tuple[Quad,
     return tuple(cones), tuple(circles)
 
 
-class Pilot:
+class Question(NamedTuple):
+    """What a strategy is shown, and what is needed to make a decision with its reasons of its answer."""
+
+    view: EvaderView | PursuerView
+    own: Own
+    me: Player
+    seen: Vehicle  # the own vehicle as the strategy sees it
+    others: tuple[Vehicle, ...]  # opponents as the strategy sees them
+    air: Vec  # wind that the view was made in [m/s; where the air moves to]
+    sigma: float  # stated error of the worst track that is needed [m]; inf = one is missing
+    predictor: str  # what spoke for that track
+    lacks: tuple[str, ...]
+
+
+class Viewpoint:
+    """Makes the view of one vehicle's strategy, and of the strategy's answer a decision with its reasons.
+
+    `strategy` names it; the names of other distributions' strategies are as good as the core's.
+    """
+
+    def __init__(self, id: int, side: Side, strategy: str = "") -> None:
+        self.id = id
+        self.side = side
+        self.strategy = strategy or DEFAULT
+        known = (EVADERS if side is Side.EVADER else PURSUERS).get(self.strategy)
+        self._modules: dict[int, Module] = {} if known is None else {r.id: r.module for r in known.table}
+
+    def look(
+        self, now: float, own: Own, mates: tuple[MateState, ...], setup: GameSetup, wind: Vec, memory: Memory
+    ) -> Question | PilotDecision:
+        """What the strategy is to be asked at instant `now` [s]; where it cannot be asked, a decision that
+        says what is lacking. `wind` is ZERO for multicopters [m/s; where the air moves to]."""
+        me = setup.player(self.id)
+        if me is None:
+            return self._silent(own, ("a place in the roster",), inf)
+        air = _flat(wind) if setup.planar else wind
+        seen = Vehicle(
+            _seen(own.position, setup.planar), sub(_seen(own.velocity, setup.planar), air), me.speed
+        )
+        known: list[tuple[Player, Prediction]] = []
+        lacks: list[str] = []
+        for player in setup.opponents(self.side):
+            prediction = memory.predict(player.id, now)
+            if prediction is None:
+                lacks.append(f"track of {player.side.value} {player.id}")
+            else:
+                known.append((player, prediction))
+        if not known:
+            return self._silent(own, tuple(lacks), inf)
+        worst = max((p for _, p in known), key=lambda p: p.sigma)
+        others = tuple(self._opponent(player, p, now, air, setup, memory) for player, p in known)
+        view: EvaderView | PursuerView
+        if self.side is Side.EVADER:
+            view = self._as_evader(seen, me, others, setup, air)
+        else:
+            view = self._as_pursuer(now, seen, me, others[0], known[0][0], mates, setup, air, memory)
+        sigma = inf if lacks else worst.sigma
+        return Question(
+            view, own, me, seen, others, air, sigma, worst.source.name.lower(), tuple(lacks)
+        )
+
+    def conclude(self, question: Question, decision: Decision, setup: GameSetup) -> PilotDecision:
+        """The strategy's answer to a question, with everything a person needs to see why."""
+        own = question.own
+        return PilotDecision(
+            decides=True,
+            velocity=self._steered(decision, own, question.me, setup),
+            level=Level.TACTICAL.name.lower(),
+            module=self._modules.get(decision.rule, Module.INTELLIGENT).name.lower(),
+            strategy=self.strategy,
+            rule=decision.rule.name.lower(),
+            aim=along(_at_height(decision.aim, own.position, setup.planar), question.air, decision.time),
+            time=decision.time,
+            miss=decision.miss,
+            sigma=question.sigma,
+            predictor=question.predictor,
+            lacks=question.lacks,
+            own=question.seen,
+            others=question.others,
+            rho=setup.rho,
+        )
+
+    def _opponent(
+        self, player: Player, p: Prediction, now: float, wind: Vec, setup: GameSetup, memory: Memory
+    ) -> Vehicle:
+        velocity = sub(_seen(p.velocity, setup.planar), wind)
+        speed = player.speed if player.speed > 0.0 else memory.top_speed(player.id, now, velocity)
+        return Vehicle(_seen(p.position, setup.planar), velocity, speed)
+
+    def _as_evader(
+        self, own: Vehicle, me: Player, pursuers: tuple[Vehicle, ...], setup: GameSetup, wind: Vec
+    ) -> EvaderView:
+        target = _seen(setup.target, setup.planar)
+        drift = norm(wind)
+        if setup.has_target and drift > TINY:  # on the ground, so moving at −w in the air
+            meeting = intercept(target, scale(wind, -1.0 / drift), drift, own.position, own.speed)
+            target = meeting.point if meeting.exists else target
+        return EvaderView(
+            own,
+            me.limits,
+            pursuers,
+            blocked_cones(own, pursuers, setup.rho),
+            setup.has_target,
+            target,
+            setup.R,
+            setup.lambda_,
+            setup.beta,
+            setup.planar,
+        )
+
+    def _as_pursuer(
+        self,
+        now: float,
+        own: Vehicle,
+        me: Player,
+        evader: Vehicle,
+        evader_player: Player,
+        mates: tuple[MateState, ...],
+        setup: GameSetup,
+        wind: Vec,
+        memory: Memory,
+    ) -> PursuerView:
+        ahead = memory.predict(evader_player.id, now + setup.lookahead)
+        place = evader.position
+        if ahead is not None:  # in the air mass as it lies now
+            place = along(_seen(ahead.position, setup.planar), wind, -setup.lookahead)
+        nearest = None
+        for mate in mates:
+            if mate.id == self.id:
+                continue
+            there = _seen(along(mate.position, mate.velocity, clamp(now - mate.t, 0.0, 1.0)), setup.planar)
+            if nearest is None or distance(there, own.position) < distance(nearest, own.position):
+                nearest = there
+        return PursuerView(
+            own,
+            me.limits,
+            evader,
+            heading_at(evader),
+            nearest is not None,
+            own.position if nearest is None else nearest,
+            setup.separation,
+            ahead is not None,
+            place,
+            setup.lookahead,
+            setup.dt,
+            setup.planar,
+        )
+
+    def _steered(self, decision: Decision, own: Own, me: Player, setup: GameSetup) -> Vec:
+        """The decided velocity; in a plane game with what keeps the height of the staging place."""
+        velocity = scale(decision.direction, decision.speed)
+        if not setup.planar:
+            return velocity
+        most = CLIMB_SHARE * decision.speed
+        down = clamp(-HEIGHT_GAIN * (me.height + own.position.z), -most, most)
+        return add(_flat(velocity), Vec(0.0, 0.0, down))
+
+    def _silent(self, own: Own, lacks: tuple[str, ...], sigma: float) -> PilotDecision:
+        here = Vehicle(own.position, own.velocity, 0.0)
+        return PilotDecision(
+            False, ZERO, Level.TACTICAL.name.lower(), "", self.strategy, "none", own.position, 0.0, 0.0,
+            sigma, PredictorKind.NOTHING.name.lower(), lacks, here, (), 0.0,
+        )
+
+
+class Pilot(Viewpoint):
     """Thinks for one vehicle. The strategies are functions: by default the core's own, by name.
 
     Raises KeyError for a name that the core does not have; other distributions' strategies come in as
@@ -83,20 +248,13 @@ class Pilot:
         pursuer: PursuerStrategy | None = None,
         evader: EvaderStrategy | None = None,
     ) -> None:
-        self.id = id
-        self.side = side
-        self.strategy = strategy or DEFAULT
-        self._modules: dict[int, Module] = {}
+        super().__init__(id, side, strategy)
         self._pursue: PursuerStrategy = PURSUERS[DEFAULT].decide if pursuer is None else pursuer
         self._evade: EvaderStrategy = EVADERS[DEFAULT].decide if evader is None else evader
         if side is Side.PURSUER and pursuer is None:
-            named = PURSUERS[self.strategy]
-            self._pursue = named.decide
-            self._modules = {rule.id: rule.module for rule in named.table}
+            self._pursue = PURSUERS[self.strategy].decide
         if side is Side.EVADER and evader is None:
-            flown = EVADERS[self.strategy]
-            self._evade = flown.decide
-            self._modules = {rule.id: rule.module for rule in flown.table}
+            self._evade = EVADERS[self.strategy].decide
 
     def step(
         self,
@@ -107,135 +265,16 @@ class Pilot:
         setup: GameSetup,
         wind: Vec,
         memory: Memory,
-    ) -> tuple[Thought, Memory]:
+    ) -> tuple[PilotDecision, Memory]:
         """Decide at instant `now` [s]. `tracks` are the measurements since the last step, `wind` is ZERO
         for multicopters [m/s; where the air moves to]. The memory is moved on and given back."""
         memory.take(tracks)
-        me = setup.player(self.id)
-        if me is None:
-            return self._silent(own, ("a place in the roster",), inf), memory
-        air = _flat(wind) if setup.planar else wind
-        self_ = Vehicle(
-            _seen(own.position, setup.planar), sub(_seen(own.velocity, setup.planar), air), me.speed
-        )
-        known: list[tuple[Player, Prediction]] = []
-        lacks: list[str] = []
-        for player in setup.opponents(self.side):
-            prediction = memory.predict(player.id, now)
-            if prediction is None:
-                lacks.append(f"track of {player.side.value} {player.id}")
-            else:
-                known.append((player, prediction))
-        if not known:
-            return self._silent(own, tuple(lacks), inf), memory
-        worst = max((p for _, p in known), key=lambda p: p.sigma)
-        others = tuple(self._opponent(player, p, now, air, setup, memory) for player, p in known)
-        if self.side is Side.EVADER:
-            decision = self._as_evader(self_, me, others, setup, air)
-        else:
-            decision = self._as_pursuer(now, self_, me, others[0], known[0][0], mates, setup, air, memory)
-        thought = Thought(
-            decides=True,
-            velocity=self._steered(decision, own, me, setup),
-            level=Level.TACTICAL.name.lower(),
-            module=self._modules.get(decision.rule, Module.INTELLIGENT).name.lower(),
-            strategy=self.strategy,
-            rule=decision.rule.name.lower(),
-            aim=along(_at_height(decision.aim, own.position, setup.planar), air, decision.time),
-            time=decision.time,
-            miss=decision.miss,
-            sigma=inf if lacks else worst.sigma,
-            predictor=worst.source.name.lower(),
-            lacks=tuple(lacks),
-            own=self_,
-            others=others,
-            rho=setup.rho,
-        )
-        return thought, memory
-
-    def _opponent(
-        self, player: Player, p: Prediction, now: float, wind: Vec, setup: GameSetup, memory: Memory
-    ) -> Vehicle:
-        velocity = sub(_seen(p.velocity, setup.planar), wind)
-        speed = player.speed if player.speed > 0.0 else memory.top_speed(player.id, now, velocity)
-        return Vehicle(_seen(p.position, setup.planar), velocity, speed)
-
-    def _as_evader(
-        self, own: Vehicle, me: Player, pursuers: tuple[Vehicle, ...], setup: GameSetup, wind: Vec
-    ) -> Decision:
-        target = _seen(setup.target, setup.planar)
-        drift = norm(wind)
-        if setup.has_target and drift > TINY:  # on the ground, so moving at −w in the air
-            meeting = intercept(target, scale(wind, -1.0 / drift), drift, own.position, own.speed)
-            target = meeting.point if meeting.exists else target
-        view = EvaderView(
-            own,
-            me.limits,
-            pursuers,
-            blocked_cones(own, pursuers, setup.rho),
-            setup.has_target,
-            target,
-            setup.R,
-            setup.lambda_,
-            setup.beta,
-            setup.planar,
-        )
-        return self._evade(view)
-
-    def _as_pursuer(
-        self,
-        now: float,
-        own: Vehicle,
-        me: Player,
-        evader: Vehicle,
-        evader_player: Player,
-        mates: tuple[MateState, ...],
-        setup: GameSetup,
-        wind: Vec,
-        memory: Memory,
-    ) -> Decision:
-        ahead = memory.predict(evader_player.id, now + setup.lookahead)
-        place = evader.position
-        if ahead is not None:  # in the air mass as it lies now
-            place = along(_seen(ahead.position, setup.planar), wind, -setup.lookahead)
-        nearest = None
-        for mate in mates:
-            if mate.id == self.id:
-                continue
-            there = _seen(along(mate.position, mate.velocity, clamp(now - mate.t, 0.0, 1.0)), setup.planar)
-            if nearest is None or distance(there, own.position) < distance(nearest, own.position):
-                nearest = there
-        view = PursuerView(
-            own,
-            me.limits,
-            evader,
-            heading_at(evader),
-            nearest is not None,
-            own.position if nearest is None else nearest,
-            setup.separation,
-            ahead is not None,
-            place,
-            setup.lookahead,
-            setup.dt,
-            setup.planar,
-        )
-        return self._pursue(view)
-
-    def _steered(self, decision: Decision, own: Own, me: Player, setup: GameSetup) -> Vec:
-        """The decided velocity; in a plane game with what keeps the height of the staging place."""
-        velocity = scale(decision.direction, decision.speed)
-        if not setup.planar:
-            return velocity
-        most = CLIMB_SHARE * decision.speed
-        down = clamp(-HEIGHT_GAIN * (me.height + own.position.z), -most, most)
-        return add(_flat(velocity), Vec(0.0, 0.0, down))
-
-    def _silent(self, own: Own, lacks: tuple[str, ...], sigma: float) -> Thought:
-        here = Vehicle(own.position, own.velocity, 0.0)
-        return Thought(
-            False, ZERO, Level.TACTICAL.name.lower(), "", self.strategy, "none", own.position, 0.0, 0.0,
-            sigma, PredictorKind.NOTHING.name.lower(), lacks, here, (), 0.0,
-        )
+        question = self.look(now, own, mates, setup, wind, memory)
+        if isinstance(question, PilotDecision):
+            return question, memory
+        view = question.view
+        decision = self._evade(view) if isinstance(view, EvaderView) else self._pursue(view)
+        return self.conclude(question, decision, setup), memory
 
 
 def _flat(v: Vec) -> Vec:

@@ -7,7 +7,7 @@ from onboard.core.math.vectors import Vec, norm, sub
 from onboard.core.route.choice import TrackMemory, TrackRule, follow, fresh
 from onboard.core.route.tracking import Setting, Strategy, Waypoint
 from onboard.core.strategy.knowledge import Level, Module
-from onboard.pilot.pilot import Thought
+from onboard.pilot.pilot import PilotDecision
 from onboard.pilot.setup import Own
 
 ORDERS = {
@@ -32,7 +32,7 @@ class TrackPilot:
 
     def step(
         self, time: float, own: Own, wind: Vec, memory: TrackMemory | None
-    ) -> tuple[Thought, TrackMemory, bool]:
+    ) -> tuple[PilotDecision, TrackMemory, bool]:
         """Decide at `time` [s since the route's start]; also gives whether the route is done.
 
         `wind` is the momentary estimate [m/s; where the air moves to], ZERO for multicopters."""
@@ -40,7 +40,7 @@ class TrackPilot:
         step = follow(self.route, self._setting, before, time, own.position, own.velocity, wind)
         chosen = step.rule is not TrackRule.FIXED
         velocity = step.steering.velocity
-        thought = Thought(
+        thought = PilotDecision(
             decides=True,
             velocity=velocity,
             level=(Level.TACTICAL if chosen else Level.EXECUTIVE).name.lower(),

@@ -10,7 +10,7 @@ import pytest
 from gcs.master import FieldMaster
 from gcs.picture.values import Presence
 from gcs.station import Station
-from onboard.agent import game_player as acting
+from onboard.agent.core import game_player
 from onboard.game.master import Standing
 from onboard.game.scenario import load
 from onboard.runtime.impairment import CLEAR, CUT
@@ -42,7 +42,7 @@ async def game_of_six():
 @pytest.fixture(autouse=True)
 def untrained(monkeypatch):
     """Predictors have no part in these stories, and take most of the time."""
-    monkeypatch.setattr(acting, "TRAINING_SLICES", 0)
+    monkeypatch.setattr(game_player, "TRAINING_SLICES", 0)
 
 
 def presence(station: Station, i: int) -> Presence:

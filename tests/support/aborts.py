@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gcs.station import Station
-from onboard.agent import game_player as acting
+from onboard.agent.core import game_player
 from onboard.game.scenario import Flight, ImpairmentSpec, Parameters, Scenario, VehicleSpec
 from onboard.runtime.impairment import CLEAR, Impairment
 from onboard.runtime.loop import run_virtual, virtual_clock
@@ -39,12 +39,12 @@ class Trial(NamedTuple):
 
 def trials(count: int, seed: int, loss: float = LOSS) -> list[Trial]:
     """`count` aborts, one after the other, in one game on virtual time."""
-    slices = acting.TRAINING_SLICES
-    acting.TRAINING_SLICES = 0  # predictors have no part in this, and take most of the time
+    slices = game_player.TRAINING_SLICES
+    game_player.TRAINING_SLICES = 0  # predictors have no part in this, and take most of the time
     try:
         return run_virtual(_trials(count, seed, loss))
     finally:
-        acting.TRAINING_SLICES = slices
+        game_player.TRAINING_SLICES = slices
 
 
 async def _trials(count: int, seed: int, loss: float) -> list[Trial]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from typing import Any
 
-from onboard.agent.agent import Agent
+from onboard.agent.shell import Agent
 from onboard.autopilot.base import Stage
 from onboard.core.math.vectors import Vec, norm
 from onboard.game.scenario import (
@@ -96,8 +96,8 @@ def place(game: Rehearsal, id: int) -> Vec:
 
 def flies(agent: Agent) -> bool:
     """Whether setpoints count and go out."""
-    verdict = agent.acting.verdict
-    return agent.craft.stage is Stage.ACTIVE and verdict is not None and verdict.stream
+    verdict = agent.core.flight.output
+    return agent.core.vehicle.stage is Stage.ACTIVE and verdict is not None and verdict.stream
 
 
 def command(kind: CommandKind, id: str = "c-1", sender: str = "tower") -> Command:

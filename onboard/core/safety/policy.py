@@ -110,7 +110,7 @@ class Mate(NamedTuple):
     age: float  # since it was heard [s]
 
 
-class Seen(NamedTuple):
+class SupervisorInput(NamedTuple):
     """Everything the supervisor looks at in one step. Ages in seconds, of the local monotonic clock."""
 
     now: float  # monotonic [s]
@@ -130,4 +130,3 @@ class Seen(NamedTuple):
     gps_fix: int = 3
     pilot: bool = False  # somebody else changed the autopilot's mode
     order: Action = Action.PASS  # what the ground ordered
-    handed_back: bool = False  # the pilot or the ground gives control back

@@ -12,9 +12,11 @@ from onboard.core.math.vectors import ZERO, Vec, add, along, clamp, norm, sub
 from onboard.core.safety.envelope import believable, bounded, finite, slewed
 from onboard.core.safety.fence import brake, keep_height, outside_by, turn
 from onboard.core.safety.field_profile import keep_layer
-from onboard.core.safety.health import Demand, health
-from onboard.core.safety.policy import Action, Cause, Policy, Seen
+from onboard.core.safety.health import HealthAction, health
+from onboard.core.safety.policy import Action, Cause, Policy, SupervisorInput
 from onboard.core.safety.separation import keep_apart
+
+LONG_AGO = -1e9  # [s, monotonic]
 
 PROTECTIVE = (
     Cause.FENCE_AHEAD,
@@ -26,21 +28,21 @@ PROTECTIVE = (
 )
 
 
-class Watch(NamedTuple):
+class SupervisorState(NamedTuple):
     """The supervisor's memory from step to step."""
 
     action: Action = Action.PASS  # in force
     cause: Cause = Cause.NONE
     since: float = 0.0  # monotonic [s]
-    urged: float = -1e9  # when the action in force was last demanded [s]
-    named: float = -1e9  # when the cause in force was last demanded [s]
+    urged: float = LONG_AGO  # when the action in force was last demanded [s]
+    named: float = LONG_AGO  # when the cause in force was last demanded [s]
     floor: Action = Action.PASS  # latched: nothing milder until control is handed back
     floor_cause: Cause = Cause.NONE
     demand: Vec = ZERO  # last setpoint, relative to the air [m/s]
-    stamp: float = -1e9  # when that was [s]
+    stamp: float = LONG_AGO  # when that was [s]
 
 
-class Verdict(NamedTuple):
+class SupervisorOutput(NamedTuple):
     """What becomes of one decision."""
 
     action: Action
@@ -48,7 +50,7 @@ class Verdict(NamedTuple):
     stream: bool  # whether `ground` goes out; False: hold, return or end by the autopilot's own modes
     ground: Vec  # setpoint [m/s; over ground]; ZERO unless `stream`
     air: Vec  # the same relative to the air [m/s]
-    watch: Watch
+    state: SupervisorState
     changed: bool  # a transition happened: publish it
 
 
@@ -59,34 +61,39 @@ class Allowed(NamedTuple):
     cause: Cause
 
 
-def supervise(wanted: Vec, seen: Seen, policy: Policy, watch: Watch) -> Verdict:
+def supervise(
+    wanted: Vec, seen: SupervisorInput, policy: Policy, state: SupervisorState
+) -> SupervisorOutput:
     """One step: the decision's velocity `wanted` [m/s; relative to the air] through all rules."""
     demand = health(seen, policy, _far_outside(seen, policy))
     allowed = Allowed(ZERO, Cause.NONE)
     wind = ZERO if policy.envelope.hovers or not believable(ZERO, seen.wind) else seen.wind
     if demand.action < Action.HOLD:
         if finite(wanted):
-            allowed = _allow(wanted, wind, seen, policy, watch)
+            allowed = _allow(wanted, wind, seen, policy, state)
         if not finite(wanted) or not finite(allowed.air):
-            demand = Demand(Action.HOLD, Cause.NOT_FINITE, False)
+            demand = HealthAction(Action.HOLD, Cause.NOT_FINITE, False)
         elif allowed.cause != Cause.NONE:
-            demand = Demand(Action.CLIP, allowed.cause, False)
-    after = advance(watch, demand, seen.handed_back, seen.now, policy.settle)
-    changed = after.action != watch.action or after.cause != watch.cause
+            demand = HealthAction(Action.CLIP, allowed.cause, False)
+    after = advance(state, demand, seen.now, policy.settle)
+    changed = after.action != state.action or after.cause != state.cause
     if after.action >= Action.HOLD:
-        after = after._replace(demand=ZERO, stamp=-1e9)
-        return Verdict(after.action, after.cause, False, ZERO, ZERO, after, changed)
+        after = after._replace(demand=ZERO, stamp=LONG_AGO)
+        return SupervisorOutput(after.action, after.cause, False, ZERO, ZERO, after, changed)
     after = after._replace(demand=allowed.air, stamp=seen.now)
-    return Verdict(after.action, after.cause, True, add(allowed.air, wind), allowed.air, after, changed)
+    ground = add(allowed.air, wind)
+    return SupervisorOutput(after.action, after.cause, True, ground, allowed.air, after, changed)
 
 
-def advance(watch: Watch, demand: Demand, handed_back: bool, now: float, settle: float) -> Watch:
+def handed_back(state: SupervisorState) -> SupervisorState:
+    """The state once pilot or ground give control back: nothing is latched, and nothing need settle."""
+    return state._replace(floor=Action.PASS, floor_cause=Cause.NONE, urged=LONG_AGO)
+
+
+def advance(state: SupervisorState, demand: HealthAction, now: float, settle: float) -> SupervisorState:
     """The state machine alone: what is in force after a demand."""
-    floor = watch.floor
-    floor_cause = watch.floor_cause
-    if handed_back:
-        floor = Action.PASS
-        floor_cause = Cause.NONE
+    floor = state.floor
+    floor_cause = state.floor_cause
     if demand.latched and demand.action >= floor:
         floor = demand.action
         floor_cause = demand.cause
@@ -96,18 +103,18 @@ def advance(watch: Watch, demand: Demand, handed_back: bool, now: float, settle:
         action = floor
         cause = floor_cause
     urged = now
-    if action < watch.action and not handed_back and now - watch.urged < settle:
-        action = watch.action
-        cause = watch.cause
-        urged = watch.urged
+    if action < state.action and now - state.urged < settle:
+        action = state.action
+        cause = state.cause
+        urged = state.urged
     named = urged
-    other = action == Action.CLIP and watch.action == Action.CLIP and cause != watch.cause
-    graver = cause in PROTECTIVE and watch.cause not in PROTECTIVE
-    if other and not graver and now - watch.named < settle:
-        cause = watch.cause  # one event for a clip of many reasons, not one a step
-        named = watch.named
-    since = watch.since if action == watch.action and cause == watch.cause else now
-    return watch._replace(
+    other = action == Action.CLIP and state.action == Action.CLIP and cause != state.cause
+    graver = cause in PROTECTIVE and state.cause not in PROTECTIVE
+    if other and not graver and now - state.named < settle:
+        cause = state.cause  # one event for a clip of many reasons, not one a step
+        named = state.named
+    since = state.since if action == state.action and cause == state.cause else now
+    return state._replace(
         action=action,
         cause=cause,
         since=since,
@@ -118,20 +125,20 @@ def advance(watch: Watch, demand: Demand, handed_back: bool, now: float, settle:
     )
 
 
-def _allow(wanted: Vec, wind: Vec, seen: Seen, policy: Policy, watch: Watch) -> Allowed:
+def _allow(wanted: Vec, wind: Vec, seen: SupervisorInput, policy: Policy, state: SupervisorState) -> Allowed:
     """Clip by limits, then give way to team mates, then keep inside the fences: the later rule outranks."""
     e = policy.envelope
     age = clamp(seen.telemetry_age, 0.0, policy.telemetry_age)
     position = along(seen.position, seen.velocity, age)
-    running = 0.0 <= seen.now - watch.stamp <= 1.0
-    before = watch.demand if running else bounded(sub(seen.velocity, wind), wanted, e).velocity
+    running = 0.0 <= seen.now - state.stamp <= 1.0
+    before = state.demand if running else bounded(sub(seen.velocity, wind), wanted, e).velocity
     if policy.layered:
         wanted = keep_layer(wanted, position, policy)
     limited = bounded(wanted, before, e)
     cause = limited.cause
     if policy.layered and abs(policy.layer + position.z) > policy.layer_band:
         cause = Cause.LAYER
-    slow = slewed(limited.velocity, before, seen.now - watch.stamp if running else 0.05, e)
+    slow = slewed(limited.velocity, before, seen.now - state.stamp if running else 0.05, e)
     if cause == Cause.NONE:
         cause = slow.cause
     ground = add(bounded(slow.velocity, before, e).velocity, wind)
@@ -156,7 +163,7 @@ def _allow(wanted: Vec, wind: Vec, seen: Seen, policy: Policy, watch: Watch) -> 
     return Allowed(bounded(sub(walls.velocity, wind), before, e).velocity, cause)
 
 
-def _far_outside(seen: Seen, policy: Policy) -> bool:
+def _far_outside(seen: SupervisorInput, policy: Policy) -> bool:
     if not believable(seen.position, seen.velocity):
         return False
     return any(outside_by(seen.position, fence) > policy.fence_far for fence in policy.fences)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from onboard.agent.command_book import Orders, Verdict
-from onboard.autopilot.base import Stage, Way
+from onboard.agent.core.command_book import CommandState, Orders
+from onboard.autopilot.base import ReleaseMode, Stage
 from onboard.core.safety.policy import Action
 from onboard.game.scenario import Kind
 from onboard.wire.bus.messages import CommandKind
@@ -121,15 +121,15 @@ async def test_a_later_order_supersedes_an_open_one_and_bytes_that_are_none_are_
         await passes(game, 1.5)
         assert mode(game, PURSUER) == "RTL"
         agent = game.agents[PURSUER]
-        assert b"refused" in agent._command(b"\x00garbage")
-        assert agent.table.drops["undecodable"] == 1
+        assert b"refused" in agent._request(b"\x00garbage")
+        assert agent.core.bus.drops["undecodable"] == 1
     assert autopilot(game, PURSUER) is not None
 
 
 def test_what_is_not_obeyed_confirms_nothing() -> None:
-    orders = Orders(Way.HOLD)
+    orders = Orders(ReleaseMode.HOLD)
     entry, new = orders.give(command(CommandKind.HOLD), "no autopilot")
-    assert (entry.state, new, orders.action) == (Verdict.REFUSED, True, Action.PASS)
+    assert (entry.state, new, orders.action) == (CommandState.REFUSED, True, Action.PASS)
     assert orders.review(Stage.LEFT) is None
     for n in range(200):
         orders.give(command(CommandKind.HOLD, f"n-{n}"), "")

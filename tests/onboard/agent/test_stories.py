@@ -105,7 +105,7 @@ async def test_without_the_masters_resume_an_agent_that_comes_late_does_not_fly(
         agent = game.start_agent(PURSUER)
         await passes(game, 5.0)
         assert not flies(agent)
-        assert "the master's resume" in agent.lacks
+        assert "the master's resume" in agent.core.lacks
         assert game.health[PURSUER].stage == "waiting"
         assert "late" in game.kinds(PURSUER)
 
@@ -117,11 +117,11 @@ async def test_when_a_pilot_changes_the_mode_the_agent_stops_at_once_and_says_so
         await under_way(game)
         agent = game.agents[PURSUER]
         choose_mode(game, PURSUER, "POSCTL" if kind is Kind.PX4 else HOLD[kind])
-        heard = await game.until(lambda: agent.craft.stage is Stage.TAKEN, 1.5)
+        heard = await game.until(lambda: agent.core.vehicle.stage is Stage.TAKEN, 1.5)
         assert heard
-        sent = agent.craft.sent_at
+        sent = agent.core.vehicle.sent_at
         await passes(game, 10.0)
-        assert agent.craft.sent_at == sent
+        assert agent.core.vehicle.sent_at == sent
         assert mode(game, PURSUER) != GUIDED[kind]
         assert game.health[PURSUER].stage == "handed_over"
         assert {"take_over", "supervisor_end"} <= set(game.kinds(PURSUER))
@@ -150,7 +150,7 @@ async def test_without_leave_to_take_control_the_agent_waits_for_a_pilot() -> No
     async with game_of(chase(), configure=quiet) as game:
         await under_way(game)
         agent = game.agents[PURSUER]
-        assert agent.craft.stage is Stage.IDLE
+        assert agent.core.vehicle.stage is Stage.IDLE
         assert mode(game, PURSUER) == "LOITER"
         choose_mode(game, PURSUER, "GUIDED")
         assert await game.until(lambda: flies(agent), 3.0)
@@ -165,8 +165,8 @@ async def test_a_dry_run_decides_and_publishes_but_sends_nothing() -> None:
         vehicle.autopilot.receive = lambda now, data, peer: sent.append(data) or receive(now, data, peer)  # type: ignore[method-assign,func-returns-value]
         await under_way(game)
         agent = game.agents[PURSUER]
-        assert agent.acting.thought is not None
-        assert agent.acting.thought.decides
+        assert agent.core.flight.decision is not None
+        assert agent.core.flight.decision.decides
         assert sent == []
 
 

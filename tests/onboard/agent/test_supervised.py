@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Callable
 from itertools import pairwise
 
 import pytest
+from msgspec.structs import replace
 
-from onboard.agent.agent import Agent
 from onboard.agent.config import AgentConfig
+from onboard.agent.core.game_player import GamePlayer
+from onboard.agent.shell import Agent, Equipment
 from onboard.core.math.vectors import distance
 from onboard.core.safety.policy import Cause
 from onboard.game.scenario import Kind, SensorSpec
 from onboard.runtime.impairment import CLEAR, CUT, Impaired
 from onboard.runtime.links import memory_pair
+from onboard.wire.bus.messages import Setup
 from sim_bridge.vehicle.autopilot.health import Fault
 from sim_bridge.world.staging import generator
 from tests.support.flights import (
@@ -36,8 +40,8 @@ from tests.support.virtual import virtual
 
 def cause(agent: Agent) -> Cause:
     """Why the supervisor does what it does."""
-    assert agent.acting.verdict is not None
-    return agent.acting.verdict.cause
+    assert agent.core.flight.output is not None
+    return agent.core.flight.output.cause
 
 
 @virtual
@@ -81,16 +85,15 @@ async def test_a_strategy_that_fails_ends_the_stream_within_200_ms_and_the_autop
     async with game_of(chase()) as game:
         await under_way(game, 3.0)
         agent = game.agents[PURSUER]
-        flying = agent.acting.flying
-        assert flying is not None
 
         def fail(view: object) -> None:
             raise ZeroDivisionError("a plug-in of somebody's")
 
-        flying.pilot._pursue = fail  # type: ignore[assignment]
+        assert agent.thinker.strategies
+        agent.thinker.strategies = dict.fromkeys(agent.thinker.strategies, fail)  # type: ignore[arg-type]
         begun = agent.now
         assert await game.until(lambda: not flies(agent), 1.0)
-        assert agent.craft.sent_at - begun <= 0.2 + 1e-6
+        assert agent.core.vehicle.sent_at - begun <= 0.2 + 1e-6
         assert cause(agent) is Cause.STRATEGY
         await passes(game, 5.0)
         assert speed(game, PURSUER) < 0.3
@@ -102,9 +105,7 @@ async def test_a_strategy_that_fails_ends_the_stream_within_200_ms_and_the_autop
 async def test_a_plane_whose_strategy_fails_is_told_to_loiter() -> None:
     async with game_of(chase(Kind.ARDUPLANE)) as game:
         await under_way(game, 3.0)
-        flying = game.agents[PURSUER].acting.flying
-        assert flying is not None
-        flying.pilot._pursue = None  # type: ignore[assignment]
+        game.agents[PURSUER].thinker.strategies.clear()
         assert await game.until(lambda: mode(game, PURSUER) == "LOITER", 3.0)
 
 
@@ -114,7 +115,8 @@ async def test_pursuers_that_close_in_on_one_place_keep_apart() -> None:
     async with game_of(scenario, configure={2: {}, 3: {}}) as game:
         least = 1e9
         for agent in game.agents.values():
-            agent.acting._consider = wide(agent, 12.0)  # type: ignore[method-assign]
+            assert agent.core.game is not None
+            agent.core.game._consider = wide(agent.core.game, 12.0)  # type: ignore[method-assign]
         await under_way(game, 1.0)
         for _ in range(150):
             await passes(game, 0.2)
@@ -122,12 +124,10 @@ async def test_pursuers_that_close_in_on_one_place_keep_apart() -> None:
         assert least > 9.0
 
 
-def wide(agent: Agent, separation: float):  # type: ignore[no-untyped-def]
+def wide(player: GamePlayer, separation: float) -> Callable[[Setup, str], None]:
     """The setup with a separation."""
-    import msgspec
-
-    consider = agent.acting._consider
-    return lambda setup: consider(msgspec.structs.replace(setup, separation=separation))
+    consider = player._consider
+    return lambda setup, error: consider(replace(setup, separation=separation), error)
 
 
 @virtual
@@ -139,18 +139,18 @@ async def test_with_two_links_the_second_takes_over_and_no_frame_counts_twice() 
         second = Impaired(far, CLEAR, generator(1, "second"))
         config = AgentConfig(id=PURSUER, game=game.game, take_control=True)
         agent = Agent(
-            config, game.clock, [game.links[PURSUER], second], game.broker.connect("two"), nonce=5,
-            log=lambda line: None,
+            config, game.clock, [game.links[PURSUER], second], game.broker.connect("two"),
+            Equipment(nonce=5, log=lambda line: None),
         )  # fmt: skip
         task = asyncio.create_task(agent.run())
         await under_way(game, 3.0)
         assert flies(agent)
-        assert agent.craft.position_rate.value == pytest.approx(20.0, abs=1.5)
+        assert agent.core.vehicle.position_rate.value == pytest.approx(20.0, abs=1.5)
         game.impair(PURSUER, CUT)
         await passes(game, 3.0)
         assert flies(agent)
-        assert agent.radio.active == "second/b"
-        assert agent.journal.kinds["link"] == 1
+        assert agent.core.radio.active == "second/b"
+        assert agent.core.journal.kinds["link"] == 1
         second.change(CUT)
         await passes(game, 1.0)
         assert not flies(agent)

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onboard.autopilot.arduplane import ArduPlaneAdapter, bank_for, wrapped
-from onboard.autopilot.base import Envelope, Setpoint, Stage, Way
+from onboard.autopilot.base import Envelope, ReleaseMode, Setpoint, Stage
 from onboard.core.math.vectors import ZERO, Vec, direction, norm, scale
 from onboard.wire.mavlink.commands import Target
 from onboard.wire.mavlink.modes import Kind
@@ -39,7 +39,7 @@ def test_it_never_sends_a_plane_a_velocity_target() -> None:
     for plain in (False, True):
         play = plane(plain=plain)
         fly(play, 5.0, Vec(20.0, 0.0, -1.0))
-        play.adapter.leave(play.now, Way.HOLD)
+        play.adapter.leave(play.now, ReleaseMode.HOLD)
         play.fly(2.0, Setpoint(Vec(20.0, 0.0, 0.0)))
         play.adapter.enter(play.now)
         play.fly(2.0, Setpoint(Vec(20.0, 0.0, 0.0)))

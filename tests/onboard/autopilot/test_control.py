@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onboard.autopilot.arduplane import ArduPlaneAdapter
-from onboard.autopilot.base import Adapter, Envelope, Setpoint, Stage, Telemetry, Way
+from onboard.autopilot.base import Adapter, Envelope, ReleaseMode, Setpoint, Stage, Telemetry
 from onboard.autopilot.velocity import VelocityAdapter
 from onboard.core.math.vectors import Vec
 from onboard.wire.mavlink.commands import Target
@@ -57,7 +57,7 @@ def test_setpoints_leave_only_where_they_count_and_nothing_is_armed(
         elif what == "enter":
             adapter.enter(now)
         elif what == "leave":
-            adapter.leave(now, list(Way)[number])
+            adapter.leave(now, list(ReleaseMode)[number])
         elif what == "end":
             adapter.end(now)
         elif what == "arm":
@@ -90,7 +90,7 @@ def test_setpoints_leave_only_where_they_count_and_nothing_is_armed(
 def test_a_command_is_repeated_no_faster_than_every_80_ms(kind: Kind) -> None:
     adapter = adapter_of(kind)
     telemetry = Telemetry(kind=kind, mode="RTL", heartbeat_at=0.0)
-    adapter.leave(0.0, Way.HOLD)
+    adapter.leave(0.0, ReleaseMode.HOLD)
     sent = [
         k
         for k in range(200)

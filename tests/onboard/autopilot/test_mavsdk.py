@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from onboard.autopilot.base import Envelope, Note, Setpoint, Stage, Telemetry, Way
+from onboard.autopilot.base import Envelope, Note, ReleaseMode, Setpoint, Stage, Telemetry
 from onboard.autopilot.mavsdk import LINE, RELEASE, SETPOINT, MavsdkAdapter
 from onboard.autopilot.mavsdk_child import Feeder
 from onboard.core.math.vectors import ZERO, Vec
@@ -143,13 +143,13 @@ async def test_a_blocked_parent_ends_offboard_and_the_child(flight: Pilot) -> No
 @pytest.mark.real
 async def test_hold_and_return_through_mavsdk(flight: Pilot) -> None:
     await in_flight(flight)
-    flight.adapter.leave(time.monotonic(), Way.HOLD)
+    flight.adapter.leave(time.monotonic(), ReleaseMode.HOLD)
     await flight.fly(5.0, Vec(0.0, 4.0, 0.0), until=Stage.LEFT)
     assert flight.vehicle.mode == "HOLD"
     last = time.monotonic()
     await flight.fly(0.5, Vec(0.0, 4.0, 0.0))
     assert max(flight.vehicle.targets) < last + 0.3
-    flight.adapter.leave(time.monotonic(), Way.RETURN)
+    flight.adapter.leave(time.monotonic(), ReleaseMode.RETURN)
     await flight.fly(5.0, None, until=Stage.LEFT)
     assert flight.vehicle.mode == "RTL"
 

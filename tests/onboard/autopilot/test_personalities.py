@@ -11,7 +11,7 @@ import pytest
 
 from onboard.autopilot import health
 from onboard.autopilot.arduplane import wrapped
-from onboard.autopilot.base import Envelope, Note, Refusal, Setpoint, Stage, Way
+from onboard.autopilot.base import Envelope, Note, Refusal, ReleaseMode, Setpoint, Stage
 from onboard.autopilot.choose import adapter_for
 from onboard.autopilot.stream_rates import Asking
 from onboard.autopilot.telemetry_state import Observer
@@ -144,13 +144,13 @@ def test_it_enters_follows_and_leaves(kind: Kind, loss: float) -> None:
     assert flight.flown.mode == GUIDED[kind]
     flight.fly(15.0, level(kind))
     assert degrees(abs(wrapped(pi / 2 - atan2(flight.flown.velocity.y, flight.flown.velocity.x)))) < 5.0
-    flight.adapter.leave(flight.now, Way.HOLD)
+    flight.adapter.leave(flight.now, ReleaseMode.HOLD)
     last = flight.now
     flight.fly(4.0, level(kind))
     assert flight.flown.mode == HOLD[kind]
     assert flight.adapter.stage is Stage.LEFT
     assert max(flight.setpoints) <= last
-    flight.adapter.leave(flight.now, Way.RETURN)
+    flight.adapter.leave(flight.now, ReleaseMode.RETURN)
     flight.fly(4.0, None)
     assert flight.flown.mode == "RTL"
     assert {note.severity for note in flight.notes} == {"info"}

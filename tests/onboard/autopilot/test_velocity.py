@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from onboard.autopilot.base import Envelope, Setpoint, Stage, Way
+from onboard.autopilot.base import Envelope, ReleaseMode, Setpoint, Stage
 from onboard.autopilot.velocity import VelocityAdapter
 from onboard.core.math.vectors import ZERO, Vec, norm
 from onboard.wire.mavlink.commands import Target
@@ -146,10 +146,10 @@ def test_a_pilot_who_changes_the_mode_while_we_ask_is_obeyed() -> None:
 
 @pytest.mark.parametrize(
     ("way", "px4_mode", "copter_mode"),
-    [(Way.HOLD, "HOLD", "LOITER"), (Way.RETURN, "RTL", "RTL"), (Way.LAND, "LAND", "LAND")],
+    [(ReleaseMode.HOLD, "HOLD", "LOITER"), (ReleaseMode.RETURN, "RTL", "RTL"), (ReleaseMode.LAND, "LAND", "LAND")],
 )
 def test_leaving_ends_the_targets_and_hands_to_a_mode_the_autopilot_holds_alone(
-    way: Way, px4_mode: str, copter_mode: str
+    way: ReleaseMode, px4_mode: str, copter_mode: str
 ) -> None:
     for play, mode in ((px4(), px4_mode), (copter(), copter_mode)):
         play.adapter.enter(play.now)
@@ -165,7 +165,7 @@ def test_hold_by_brake_where_there_is_no_transmitter() -> None:
     play = copter(hold_mode="BRAKE")
     play.adapter.enter(play.now)
     play.fly(1.0, EAST)
-    play.adapter.leave(play.now, Way.HOLD)
+    play.adapter.leave(play.now, ReleaseMode.HOLD)
     play.fly(1.0, None)
     assert play.telemetry.mode == "BRAKE"
 
@@ -174,9 +174,9 @@ def test_return_after_hold_is_asked_for_too() -> None:
     play = copter()
     play.adapter.enter(play.now)
     play.fly(1.0, EAST)
-    play.adapter.leave(play.now, Way.HOLD)
+    play.adapter.leave(play.now, ReleaseMode.HOLD)
     play.fly(1.0, None)
-    play.adapter.leave(play.now, Way.RETURN)
+    play.adapter.leave(play.now, ReleaseMode.RETURN)
     play.fly(1.0, None)
     assert play.telemetry.mode == "RTL"
     assert play.adapter.stage is Stage.LEFT

@@ -14,7 +14,7 @@ from onboard.core.math.states import Limits, Vehicle
 from onboard.core.math.vectors import ZERO, Vec, add, along, distance, norm, scale, sub
 from onboard.core.strategy.evasion import EvaderView, evader
 from onboard.pilot.memory import Memory
-from onboard.pilot.pilot import Pilot, Thought, drawing
+from onboard.pilot.pilot import Pilot, PilotDecision, drawing
 from onboard.pilot.setup import GameSetup, MateState, Own, Player, Side, TrackSample
 
 EXACT = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -116,7 +116,7 @@ def test_a_pursuer_in_steady_wind_decides_as_in_still_air(
     air = Vec(*wind, 0.0)
     evader_at, evader_v = Vec(*place, -50.0), Vec(*course, 0.0)
 
-    def think(w: Vec) -> Thought:
+    def think(w: Vec) -> PilotDecision:
         track = seen(1, 5.0, evader_at, add(evader_v, w))
         own = Own(Vec(0.0, 0.0, -50.0), add(Vec(3.0, 1.0, 0.0), w))
         return Pilot(2, Side.PURSUER).step(5.0, own, (track,), (), SETUP, w, Memory())[0]

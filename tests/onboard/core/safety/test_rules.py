@@ -114,7 +114,8 @@ def test_far_outside_the_fence_the_autopilot_flies_home_until_handed_back() -> N
     assert flight.step(NORTH).action == Action.RETURN
     flight.seen = flight.seen._replace(position=Vec(0.0, 0.0, -30.0))
     assert flight.fly(10.0, NORTH).action == Action.RETURN
-    assert flight.fly(0.1, NORTH, handed_back=True).stream
+    flight.hand_back()
+    assert flight.fly(0.1, NORTH).stream
 
 
 def test_two_multicopters_that_fly_at_each_other_stay_apart() -> None:
@@ -193,7 +194,8 @@ def test_when_a_pilot_takes_over_hands_go_off_until_he_hands_back() -> None:
     assert flight.step(NORTH, pilot=True).action == Action.END
     verdict = flight.fly(30.0, NORTH, pilot=False)
     assert (verdict.action, verdict.cause) == (Action.END, Cause.PILOT)
-    assert flight.step(NORTH, handed_back=True).stream
+    flight.hand_back()
+    assert flight.step(NORTH).stream
 
 
 def test_a_graver_fault_on_top_and_gone_again_leaves_the_latched_one_in_force() -> None:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections import deque
 
+from onboard.agent.core.events import NS, Instant
+
 WINDOW = 20  # of the master's stamps (2 Hz: ten seconds)
 ALERT_S = 0.05  # offset that is an alert; it clears at four fifths
 REFUSE_S = 0.2  # offset at which the agent is not ready
-_NS = 1_000_000_000
 
 
 class MasterClock:
@@ -25,7 +26,7 @@ class MasterClock:
     @property
     def offset_s(self) -> float:
         """Own − master [s]; 0 where it is not known. Up to the bus's least delay too large."""
-        return min(self._samples) / _NS if self._samples else 0.0
+        return min(self._samples) / NS if self._samples else 0.0
 
     @property
     def ready(self) -> bool:
@@ -50,15 +51,15 @@ class JumpWatch:
     """Wall time against monotonic time: a step of one against the other is a jump."""
 
     def __init__(self, threshold_s: float) -> None:
-        self._threshold_ns = round(threshold_s * _NS)
+        self._threshold_ns = round(threshold_s * NS)
         self._difference: int | None = None
         self.jumped_at = -1e9  # monotonic [s]
 
-    def look(self, wall_ns: int, monotonic_ns: int) -> float:
+    def look(self, now: Instant) -> float:
         """Compare the clocks; the size of a jump since the last look [s], 0 where there was none."""
-        difference = wall_ns - monotonic_ns
+        difference = now.wall_ns - round(now.s * NS)
         last, self._difference = self._difference, difference
         if last is None or abs(difference - last) <= self._threshold_ns:
             return 0.0
-        self.jumped_at = monotonic_ns / _NS
-        return (difference - last) / _NS
+        self.jumped_at = now.s
+        return (difference - last) / NS

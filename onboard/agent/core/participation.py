@@ -8,7 +8,7 @@ JUST_STARTED_S = 1.0  # who first hears of a running game this soon after t₀ w
 _NS = 1_000_000_000
 
 
-class Part:
+class Participation:
     """Follows the phases. An agent that was not there at the start acts only after the master's resume."""
 
     def __init__(self, id: int) -> None:

@@ -1,0 +1,226 @@
+"""What the agent knows from the bus: setup, phase, the master's lease, tracks, team mates.
+
+It subscribes to what its role may know and to nothing else: never to an opponent's own state, and to
+the evader's brief only as the evader. Nothing that arrives raises; what is wrong is counted by cause.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, OrderedDict
+from collections.abc import Callable
+
+from onboard.agent.config import AgentConfig
+from onboard.agent.core.clocks import MasterClock
+from onboard.agent.core.events import NS, Instant, Outbox, Subscribe, Unsubscribe
+from onboard.agent.core.journal import Journal
+from onboard.core.math.vectors import Vec
+from onboard.pilot.setup import MateState
+from onboard.wire.bus import messages as swarm
+from onboard.wire.bus import topics
+from onboard.wire.bus.messages import (
+    EvaderBrief,
+    Health,
+    Master,
+    Outcome,
+    PhaseChange,
+    Role,
+    Setup,
+    State,
+    Track,
+)
+
+MASTERS_MAX = 8
+SAY_AGAIN_S = 30.0  # a trouble that goes on is said again after this
+NEVER = -1e9
+
+
+class Heard:
+    """A team mate's last state, and when it came."""
+
+    def __init__(self, state: State, at: float) -> None:
+        self.state = state
+        self.at = at  # monotonic [s]
+
+
+class BusView:
+    """The bus as one agent sees it."""
+
+    def __init__(self, config: AgentConfig, nonce: int, out: Outbox, journal: Journal) -> None:
+        self.drops: Counter[str] = Counter()  # messages that did not count, by cause
+        self.connected = True  # whether there is somebody to talk to, as far as the shell knows
+        self.setup: Setup | None = None
+        self.setup_number = 0  # counts the setups heard
+        self.phase: PhaseChange | None = None
+        self.outcome: Outcome | None = None
+        self.target: Vec | None = None
+        self.briefed = False
+        self.mates: dict[int, Heard] = {}
+        self.clock = MasterClock()
+        self.master_at = NEVER  # when the master was last heard [s, monotonic]
+        self._game, self._id, self._role, self._nonce = config.game, config.id, config.role, nonce
+        self._out, self._journal = out, journal
+        self._masters: OrderedDict[tuple[str, int], float] = OrderedDict()
+        self._obeyed: tuple[str, int] | None = None
+        self._said: dict[str, float] = {}
+        self._followed: list[int] = []
+        self._takers: dict[topics.Topic, Callable[[str, bytes, Instant], Track | None]] = {
+            topics.SETUP: self._take_setup,
+            topics.PHASE: self._take_phase,
+            topics.OUTCOME: self._take_outcome,
+            topics.MASTER: self._take_master,
+            topics.TRACK: self._take_track,
+            topics.STATE: self._take_mate,
+            topics.HEALTH: self._take_own_health,
+        }
+        if self._role is Role.EVADER:
+            self._takers[topics.EVADER_BRIEF] = self._take_brief
+
+    def keys(self) -> tuple[str, ...]:
+        """Every key and pattern that this agent listens to now."""
+        fixed = [topics.SETUP, topics.PHASE, topics.OUTCOME, topics.MASTER, topics.TRACK]
+        if self._role is Role.EVADER:
+            fixed.append(topics.EVADER_BRIEF)
+        keys = [topics.key(self._game, topic) for topic in fixed]
+        keys.append(topics.key(self._game, topics.HEALTH, self._id))
+        keys += [topics.key(self._game, topics.STATE, mate) for mate in sorted(self._followed)]
+        return tuple(keys)
+
+    def open(self) -> None:
+        """Subscribe to what the role may know."""
+        for key in self.keys():
+            self._out.put(Subscribe(key))
+
+    def take(self, key: str, payload: bytes, now: Instant) -> Track | None:
+        """Take a message that arrived; a good measurement of another vehicle is given back."""
+        topic = topics.topic_of(key)
+        taker = self._takers.get(topic) if topic is not None else None
+        if taker is None:
+            self.drops["foreign_key"] += 1
+            return None
+        return taker(key, payload, now)
+
+    def follow(self, mates: tuple[int, ...]) -> None:
+        """Listen to these team mates' states, and to nobody else's."""
+        for id in [id for id in self._followed if id not in mates]:
+            self._followed.remove(id)
+            self._out.put(Unsubscribe(topics.key(self._game, topics.STATE, id)))
+            self.mates.pop(id, None)
+        for id in mates:
+            if id not in self._followed and id != self._id:
+                self._followed.append(id)
+                self._out.put(Subscribe(topics.key(self._game, topics.STATE, id)))
+
+    def mate_states(self, base_ns: int) -> tuple[MateState, ...]:
+        """What the team mates last said of themselves."""
+        return tuple(
+            MateState(
+                heard.state.id,
+                (heard.state.stamp_ns - base_ns) / NS,
+                Vec(*heard.state.position),
+                Vec(*heard.state.velocity),
+            )
+            for heard in self.mates.values()
+        )
+
+    def _take_setup(self, key: str, payload: bytes, now: Instant) -> Track | None:
+        setup = swarm.SETUP.decode(payload, self.drops)
+        if setup is None or setup == self.setup:
+            return None
+        holder = self._obeyed
+        if holder is not None and self._masters.get(holder, NEVER) >= now.s and setup.master != holder[0]:
+            text = f"setup from {setup.master}, but {holder[0]} is the master: ignored"
+            self._trouble(now, "two_masters", text)
+            return None
+        self.setup = setup
+        self.setup_number += 1
+        return None
+
+    def _take_phase(self, key: str, payload: bytes, now: Instant) -> Track | None:
+        phase = swarm.PHASE.decode(payload, self.drops)
+        if phase is None:
+            return None
+        if self.phase is not None and phase.stamp_ns < self.phase.stamp_ns:
+            self.drops["old_phase"] += 1
+            return None
+        self.phase = phase
+        return None
+
+    def _take_outcome(self, key: str, payload: bytes, now: Instant) -> Track | None:
+        outcome = swarm.OUTCOME.decode(payload, self.drops)
+        if outcome is not None:
+            self.outcome = outcome
+        return None
+
+    def _take_brief(self, key: str, payload: bytes, now: Instant) -> Track | None:
+        brief: EvaderBrief | None = swarm.EVADER_BRIEF.decode(payload, self.drops)
+        if brief is not None:
+            self.target = None if brief.target is None else Vec(*brief.target)
+            self.briefed = True
+        return None
+
+    def _take_track(self, key: str, payload: bytes, now: Instant) -> Track | None:
+        id = topics.vehicle_of(key)
+        if id == self._id:
+            return None
+        track = swarm.TRACK.decode(payload, self.drops)
+        if track is None:
+            return None
+        if track.id != id:
+            self.drops["wrong_id"] += 1
+            return None
+        if id in self._followed:  # team mates tell of themselves
+            return None
+        return track
+
+    def _take_mate(self, key: str, payload: bytes, now: Instant) -> Track | None:
+        state = swarm.STATE.decode(payload, self.drops)
+        if state is None:
+            return None
+        if state.id != topics.vehicle_of(key):
+            self.drops["wrong_id"] += 1
+            return None
+        if state.id in self._followed:
+            self.mates[state.id] = Heard(state, now.s)
+        return None
+
+    def _take_master(self, key: str, payload: bytes, now: Instant) -> Track | None:
+        master: Master | None = swarm.MASTER.decode(payload, self.drops)
+        if master is None:
+            return None
+        who = (master.name, master.nonce)
+        lease = min(max(master.lease_s, 0.1), 60.0)
+        for other in [other for other, until in self._masters.items() if until < now.s]:
+            del self._masters[other]
+        if who not in self._masters and len(self._masters) >= MASTERS_MAX:
+            self.drops["masters_overflow"] += 1
+            return None
+        first = next(iter(self._masters), who)
+        self._masters[who] = now.s + lease
+        if first != who:  # the one whose lease is older is obeyed; its clock counts
+            self._trouble(now, "two_masters", f"{first[0]} and {master.name} both say they are the master")
+            return None
+        if who != self._obeyed:
+            self._obeyed = who
+            self.clock.restart()
+            self._journal.info("master", f"{master.name} is the master")
+        self.master_at = now.s
+        if self.clock.hear(now.wall_ns, master.stamp_ns):
+            offset = f"{self.clock.offset_s * 1e3:+.0f} ms against the master's clock"
+            if self.clock.alert:
+                self._journal.warning("clock_offset", f"{offset}: check the time service")
+            else:
+                self._journal.info("clock_offset", f"{offset}: in order again")
+        return None
+
+    def _take_own_health(self, key: str, payload: bytes, now: Instant) -> Track | None:
+        health: Health | None = swarm.HEALTH.decode(payload, self.drops)
+        if health is not None and health.nonce != self._nonce:
+            text = f"another agent with id {self._id} is on the bus ({health.role.value})"
+            self._trouble(now, "double_id", text)
+        return None
+
+    def _trouble(self, now: Instant, kind: str, text: str) -> None:
+        if now.s - self._said.get(kind, NEVER) >= SAY_AGAIN_S:
+            self._said[kind] = now.s
+            self._journal.error(kind, text)
+        self.drops[kind] += 1
