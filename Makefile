@@ -4,19 +4,21 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet --no-input
+FIND_PYTHON = command -v $(PYTHON) >/dev/null || { echo "there is no $(PYTHON); install Python 3.11 or later, or name yours: make PYTHON=/path/to/python3 ..." >&2; exit 1; }
 export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
-.PHONY: help install demo test check bench bench-games bench-predictor check-aarch64 fuzz soak mavproxy clean lock
+.PHONY: help install demo test check bench bench-games bench-predictor check-aarch64 golden fuzz soak mavproxy clean lock
 
 help:
 	@echo "make install   the environment only"
 	@echo "make demo      set everything up and play a whole game end to end"
 	@echo "make test      set everything up and pass the tests"
-	@echo "make check     ruff, mypy strict, import contracts"
+	@echo "make check     ruff, mypy strict, import contracts, closed locks"
 	@echo "make bench     benchmarks; results go to benchmarks/results/"
 	@echo "make bench-games, bench-predictor   the long comparisons"
+	@echo "make golden    what whole games, agents and campaigns do, against what was recorded of them"
 	@echo "make fuzz      ten million frames and more into the parsers; resumable"
 	@echo "make soak      hours of simulated flight with random faults; resumable"
 	@echo "make mavproxy  MAVProxy in an environment of its own (1.2 GB), for its client test"
@@ -25,11 +27,9 @@ help:
 install: $(STAMP)
 
 $(STAMP): locks/all.lock pyproject.toml
+	@$(FIND_PYTHON)
 	@echo "setting up $(VENV) (a minute or two the first time)"
-	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or later is needed, this is " + sys.version.split()[0])'
-	@$(PYTHON) -m venv $(VENV)
-	@$(PIP) install --require-hashes -r locks/all.lock
-	@$(PIP) install --no-deps --no-build-isolation -e .
+	@$(PYTHON) locks/install.py $(VENV) locks/all.lock --editable
 	@touch $(STAMP)
 
 demo: install
@@ -49,13 +49,17 @@ check: install
 	$(BIN)/ruff check
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	$(BIN)/python locks/closed.py
 
 bench: install
 	$(BIN)/python -m pytest tests/benchmarks -n 0 --timeout 1800 -o python_files="test_*.py bench_*.py" --benchmark-json benchmarks/results/latest.json
 
-# The base install of a single-board computer: wheels only, no compiler. A dry resolution for aarch64.
+# The base install of a single-board computer: wheels only, no compiler. locks/closed.py has shown that the lock
+# lacks nothing on aarch64; here every entry finds a wheel for it. pip takes the markers' Python from itself.
 check-aarch64: install
-	$(PIP) install --dry-run --require-hashes --only-binary :all: --target .aarch64 --python-version 3.11 \
+	@$(BIN)/python locks/closed.py
+	@$(PIP) --quiet install --dry-run --no-deps --require-hashes --only-binary :all: --target .aarch64 \
+	  --python-version "$$($(BIN)/python -c 'import sys; print("%d.%d" % sys.version_info[:2])')" \
 	  --implementation cp --platform manylinux_2_28_aarch64 --platform manylinux2014_aarch64 -r locks/base.lock
 	@echo "the base install resolves to wheels for aarch64"
 
@@ -73,6 +77,9 @@ $(TORCH)/.installed: locks/bench-predictor.in $(STAMP)
 bench-predictor: install $(TORCH)/.installed
 	$(TORCH)/bin/python -m tests.benchmarks.predictor
 
+golden: install
+	$(BIN)/python -m tests.golden
+
 fuzz: install
 	$(BIN)/python -m tests.fuzz.framing --count 10000000 --seed 1 --resume .fuzz-framing.json
 	$(BIN)/python -m tests.fuzz.signing --count 1000000 --seed 1 --resume .fuzz-signing.json
@@ -84,13 +91,15 @@ soak: install
 mavproxy: .venv-mavproxy/bin/mavproxy.py
 
 .venv-mavproxy/bin/mavproxy.py: locks/mavproxy.lock
-	@$(PYTHON) -m venv .venv-mavproxy
-	@.venv-mavproxy/bin/python -m pip --disable-pip-version-check --quiet --no-input install --require-hashes -r locks/mavproxy.lock
+	@$(FIND_PYTHON)
+	@echo "setting up .venv-mavproxy (some minutes the first time)"
+	@$(PYTHON) locks/install.py .venv-mavproxy locks/mavproxy.lock
 	@touch $@
 
 lock:
 	uv pip compile pyproject.toml --all-extras --group dev --group build --universal --generate-hashes --no-emit-index-url --no-header --python-version 3.11 -q -o locks/all.lock
 	uv pip compile pyproject.toml -c locks/all.lock --universal --generate-hashes --no-emit-index-url --no-header --python-version 3.11 -q -o locks/base.lock
+	uv run --no-project --with packaging python locks/closed.py --write
 
 clean:
-	rm -rf $(VENV) build dist figures runs
+	rm -rf $(VENV) build dist figures runs .golden

@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 from gcs.picture import journal
 from gcs.picture.journal import Sent
 from gcs.station import Station
+from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec, along, sub
 from onboard.game.master import GameMaster, Standing, Timing
 from onboard.game.scenario import Scenario
@@ -25,12 +26,11 @@ from onboard.wire.bus import messages as swarm
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import CommandKind, Phase, Role, Severity
 
-NS = 1_000_000_000
 NAME = "gcs"
 STEP_S = 0.05
 LAG_NS = 300_000_000  # the instant judged lies so far back; most messages are there by then
 KEPT = 64  # positions of each vehicle
-LATE_NS = 1 * NS  # a position is carried forward at most so far; then the vehicle is not judged
+LATE_NS = 1 * NS_PER_S  # a position is carried forward at most so far; then the vehicle is not judged
 RECOVERY_S = 3.0
 CODECS: Mapping[topics.Topic, swarm.Codec[Any]] = {
     topics.SETUP: swarm.SETUP,
@@ -75,7 +75,7 @@ def _at(fixes: deque[Fix], at_ns: int) -> Vec | None:
     newest = fixes[-1]
     if at_ns >= newest.at_ns:
         late = at_ns - newest.at_ns
-        return along(newest.position, newest.velocity, late / NS) if late <= LATE_NS else None
+        return along(newest.position, newest.velocity, late / NS_PER_S) if late <= LATE_NS else None
     after = newest
     for fix in reversed(fixes):
         if fix.at_ns <= at_ns:
@@ -182,7 +182,7 @@ class FieldMaster:
     def _on_health(self, sample: Sample) -> None:
         health = swarm.HEALTH.decode(sample.payload, self.drops)
         if health is not None:
-            self._offsets[health.id] = round(health.clock_offset_s * NS)
+            self._offsets[health.id] = round(health.clock_offset_s * NS_PER_S)
             self.rules.heard_health(health, self._station.now_ns())
 
     def _on_state(self, sample: Sample) -> None:

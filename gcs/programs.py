@@ -8,7 +8,7 @@ import sys
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TextIO
 
 from gcs.console.plain_lines import Plain
 from gcs.console.plain_lines import status as status_lines
@@ -20,6 +20,7 @@ from gcs.picture.values import Leg, Picture
 from gcs.session import Session, on_air, version
 from gcs.settings import Settings
 from onboard.config.strict import ConfigError
+from onboard.core.math.constants import NS_PER_S
 from onboard.game.scenario import Scenario
 from onboard.runtime.clock import RealClock
 from onboard.wire.bus.messages import CommandKind, Role
@@ -101,17 +102,17 @@ async def command(settings: Settings, order: Order, *, sure: bool) -> int:
     """Give a command and wait for the confirmations."""
     async with on_air(settings, listen=False, record=False) as session:
         told: dict[int, str] = {}  # vehicle → command id
-        ends_ns = session.station.now_ns() + round(order.within_s * 1e9)
+        ends_ns = session.station.now_ns() + round(order.within_s * NS_PER_S)
         if order.kind is not CommandKind.ABORT:
             await _gather(session, order)
             ids = _whom(session, order)
             if ids and order.kind in ENDS_A_FLIGHT and not sure and not await _asked(order, ids):
                 print("gcs: not done", file=sys.stderr)
                 return 1
-            ends_ns = session.station.now_ns() + round(order.within_s * 1e9)
+            ends_ns = session.station.now_ns() + round(order.within_s * NS_PER_S)
         gathered_ns = session.station.now_ns()
         if order.kind is CommandKind.ABORT:
-            gathered_ns += round(GATHER_S * 1e9)
+            gathered_ns += round(GATHER_S * NS_PER_S)
         while session.station.now_ns() < ends_ns:
             fresh = [i for i in _whom(session, order) if i not in told]
             if fresh:  # an abort goes out at once, to whoever is known so far, and to the rest as it appears
@@ -229,23 +230,45 @@ def _print_through(player: Player) -> None:
             print(line)
         if player.ended:
             return
-        at_ns += 1_000_000_000
+        at_ns += NS_PER_S
 
 
 def decide_again(run: Path, strategies: dict[Role, str]) -> int:
-    """The strategies again over a recording: where they decide otherwise."""
+    """The agents of a run fed again: where they do or decide otherwise. 1 where an agent does."""
     from gcs.replay.decide import decide
-    from gcs.replay.source import open_run
 
-    recording = open_run(run)
-    try:
-        for remark in recording.remarks:
-            print(f"gcs: {remark}", file=sys.stderr)
-        given = {role: name for role, name in strategies.items() if name}
-        print("\n".join(decide(recording.entries(), given).lines()))
-    finally:
-        recording.close()
-    return 0
+    progress = Progress(sys.stderr)
+    comparison = decide(run, strategies, progress.show)
+    progress.end()
+    print("\n".join(comparison.lines()))
+    return 1 if any(fed.otherwise for fed in comparison.fed) else 0
+
+
+class Progress:
+    """Tells how far a long command is: on one line of a terminal, else on a line every few seconds."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+        self._terminal = stream.isatty()
+        self._clock = RealClock()
+        self._said_ns = self._clock.monotonic_ns()
+        self._open = False
+
+    def show(self, share: float, what: str) -> None:
+        """Tell that `share` of the work is done."""
+        now = self._clock.monotonic_ns()
+        if now - self._said_ns < (0.2 if self._terminal else 3.0) * NS_PER_S:
+            return
+        self._said_ns = now
+        text = f"gcs: {100 * share:3.0f} % ({what})"
+        self._open = self._terminal
+        print(f"\r{text}" if self._terminal else text, end="" if self._terminal else "\n", file=self._stream,
+              flush=True)  # fmt: skip
+
+    def end(self) -> None:
+        """The work is done."""
+        if self._open:
+            print(file=self._stream)
 
 
 def report(run: Path, limits: Thresholds) -> int:

@@ -15,12 +15,12 @@ from gcs.picture.alert_rules import Thresholds
 from gcs.picture.commands import Courier
 from gcs.picture.values import Picture
 from gcs.picture.watch import GRID_NS, Watch
+from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.protocols import Bus, Clock, Sample, Subscription
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import Command, CommandKind, CommandReply, Role, Severity
 
 Tap = Callable[[str, bytes, int], None]  # key, payload, now_ns
-NS = 1_000_000_000
 
 
 class SteadyTime:
@@ -148,7 +148,7 @@ class Station:
         while True:
             self.watch.tick(self.now_ns())
             self._count_overflow()
-            await asyncio.sleep(GRID_NS / NS)
+            await asyncio.sleep(GRID_NS / NS_PER_S)
 
     def _count_overflow(self) -> None:
         overflow = self.bus.counters().get("overflow", 0)

@@ -15,6 +15,7 @@ from gcs.recording.recorder import Recorder
 from onboard.agent.config import AgentConfig
 from onboard.agent.event_file import EventFile, FileSink, unused
 from onboard.agent.shell import Agent, Equipment
+from onboard.core.math.constants import NS_PER_S
 from onboard.game.master import GameMaster
 from onboard.game.scenario import Scenario
 from onboard.runtime.bus_memory import MemoryBroker, MemoryBus
@@ -154,7 +155,7 @@ class Rehearsal:
 
     async def until(self, holds: Callable[[], bool], within_s: float) -> bool:
         """Let time pass until a condition holds; False where it did not within `within_s`."""
-        end_ns = self.clock.monotonic_ns() + round(within_s * 1e9)
+        end_ns = self.clock.monotonic_ns() + round(within_s * NS_PER_S)
         while not holds():
             if self.clock.monotonic_ns() >= end_ns:
                 return False
@@ -233,7 +234,7 @@ class Rehearsal:
     def now(self) -> float:
         """Time since t₀ [s]; negative before it, 0 while it is not fixed."""
         t0 = self.master.t0_ns
-        return (self.clock.wall_ns() - t0) / 1e9 if t0 else 0.0
+        return (self.clock.wall_ns() - t0) / NS_PER_S if t0 else 0.0
 
     @property
     def master(self) -> GameMaster:

@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from onboard.config.strict import ConfigError
+from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import ZERO, Vec
 from onboard.runtime.bus_zenoh import open_zenoh
 from onboard.runtime.clock import RealClock
@@ -31,10 +32,8 @@ from onboard.wire.bus.messages import Track
 from onboard.wire.bus.topics import DEFAULT_GAME, TRACK, key
 from onboard.wire.geodesy import Frame
 from onboard.wire.mavlink.frames import Framer
-from onboard.wire.mavlink.telemetry import decode
 from onboard.wire.mavlink.values import AdsbVehicle
 
-NS = 1_000_000_000
 ADSB_SIGMA = 30.0  # [m] what a position of a small ADS-B transmitter is worth, unless told
 
 
@@ -157,8 +156,8 @@ async def play_csv(feed: Feed, path: Path, bus: Bus, game: str) -> None:
     began_ns, first = clock.wall_ns(), None
     for report in read_csv(path):
         first = report.t if first is None else first
-        stamp_ns = began_ns + round((report.t - first) * NS)
-        await asyncio.sleep(max(0.0, (stamp_ns - clock.wall_ns()) / NS))
+        stamp_ns = began_ns + round((report.t - first) * NS_PER_S)
+        await asyncio.sleep(max(0.0, (stamp_ns - clock.wall_ns()) / NS_PER_S))
         publish(feed.track(report, stamp_ns), bus, game)
 
 
@@ -169,10 +168,10 @@ async def hear_adsb(feed: Feed, url: str, bus: Bus, game: str) -> None:
 
     def arrived(data: bytes, _peer: object) -> None:
         for packet in framer.feed(data):
-            value = decode(packet.message)
+            value = packet.value
             if isinstance(value, AdsbVehicle):
-                stamp_ns = clock.wall_ns() - round(value.age_s * NS)
-                report = from_adsb(value, stamp_ns / NS)
+                stamp_ns = clock.wall_ns() - round(value.age_s * NS_PER_S)
+                report = from_adsb(value, stamp_ns / NS_PER_S)
                 if report is not None:
                     publish(feed.track(report, stamp_ns), bus, game)
 

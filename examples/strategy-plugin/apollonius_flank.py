@@ -9,10 +9,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from onboard.core.game.advance import PursuerStrategy
+from onboard.core.game.views import PursuerView
 from onboard.core.geometry.cones import within
 from onboard.core.math.vectors import TINY, along, distance, sub, unit
 from onboard.core.strategy.knowledge import Decision, RuleId
-from onboard.core.strategy.pursuit import PursuerView
 
 
 def flank(view: PursuerView) -> Decision:
@@ -22,7 +22,7 @@ def flank(view: PursuerView) -> Decision:
     time = 0.5 * far / own.speed if own.speed > TINY else 0.0
     aim = along(view.evader.position, view.heading, view.evader.speed * time)
     wanted = unit(sub(aim, own.position), view.heading)
-    ahead = within(wanted, view.limits, view.planar)  # pitch and heading limits (2)
+    ahead = within(wanted, view.limits, view.rules.planar)  # pitch and heading limits (2)
     return Decision(True, ahead, own.speed, RuleId.CUSTOM, aim, time, 0.0)
 
 

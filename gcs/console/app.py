@@ -22,6 +22,7 @@ from gcs.console.vehicle_table import Row, rows
 from gcs.console.widgets import AlertBoard, Detail, LogPanel, Plan, Prompt, StatusBar, VehicleTable
 from gcs.picture.commands import ENDS_A_FLIGHT
 from gcs.picture.values import Picture
+from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus.messages import CommandKind
 
 REFRESH_HZ = 3.0
@@ -121,7 +122,7 @@ class Console(App[int]):
     def refresh_picture(self) -> None:
         """Take the picture and show it."""
         self.picture = self.source.picture()
-        if self.asked is not None and self.picture.now_ns - self.asked_ns > CONFIRM_S * 1e9:
+        if self.asked is not None and self.picture.now_ns - self.asked_ns > CONFIRM_S * NS_PER_S:
             self._answer_no()
         self.show()
 

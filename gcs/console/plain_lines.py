@@ -6,6 +6,7 @@ from gcs.console.status_line import clock
 from gcs.console.vehicle_table import GRADE_WORDS, age, grades
 from gcs.picture.terminal_text import printable
 from gcs.picture.values import LogLine, Picture
+from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus.messages import Severity
 
 STATUS_EVERY_S = 5.0
@@ -22,7 +23,7 @@ class Plain:
     def lines(self, picture: Picture) -> list[str]:
         """What is to be printed now."""
         found = [_entry(entry) for entry in self._fresh(picture)]
-        due = self._status_ns is None or picture.now_ns - self._status_ns >= STATUS_EVERY_S * 1e9
+        due = self._status_ns is None or picture.now_ns - self._status_ns >= STATUS_EVERY_S * NS_PER_S
         if due:
             self._status_ns = picture.now_ns
             found += status(picture)

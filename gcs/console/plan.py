@@ -213,7 +213,7 @@ def _circles(canvas: _Canvas, picture: Picture, chosen: VehicleView | None) -> N
     if picture.game.setup is not None:
         for vehicle in picture.vehicles:
             if vehicle.role is Role.PURSUER and vehicle.position is not None:
-                canvas.circle(*vehicle.position[:2], picture.game.setup.capture_radius, "dim cyan")
+                canvas.circle(*vehicle.position[:2], picture.game.setup.rules.R, "dim cyan")
     if chosen is not None and chosen.decision is not None and chosen.decision_age_s < 2.0:
         for north, east, _, radius in chosen.decision.circles:
             canvas.circle(north, east, radius, "yellow")

@@ -6,6 +6,7 @@ from datetime import UTC, datetime
 from math import degrees
 
 from gcs.picture.values import CommandView, Picture, Presence
+from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus.messages import Severity
 
 Runs = list[tuple[str, str]]
@@ -61,7 +62,7 @@ def alert_lines(picture: Picture, width: int, height: int) -> list[Runs]:
 def _shown(command: CommandView, picture: Picture) -> bool:
     """Open, or settled within the last five seconds."""
     return any(
-        leg.open or picture.now_ns - command.issued_ns < (leg.took_s + 5.0) * 1e9 for leg in command.legs
+        leg.open or picture.now_ns - command.issued_ns < (leg.took_s + 5.0) * NS_PER_S for leg in command.legs
     )
 
 
@@ -93,5 +94,5 @@ def log_lines(picture: Picture, width: int) -> list[Runs]:
 
 def clock(at_ns: int) -> str:
     """Time of day, UTC."""
-    return datetime.fromtimestamp(at_ns // 1_000_000_000, UTC).strftime("%H:%M:%S")
+    return datetime.fromtimestamp(at_ns // NS_PER_S, UTC).strftime("%H:%M:%S")
 

@@ -275,7 +275,7 @@ def room_inside(position: Vec, fence: Fence) -> float:
 
 
 def _separation(picture: Picture, in_force: InForce, limits: Thresholds) -> Iterator[Finding]:
-    keep = picture.game.setup.separation if picture.game.setup else 0.0
+    keep = picture.game.setup.rules.separation if picture.game.setup else 0.0
     if keep <= 0.0:
         return
     wide = keep * limits.separation_clear

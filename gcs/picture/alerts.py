@@ -14,9 +14,9 @@ from typing import NamedTuple
 import msgspec
 
 from gcs.picture.values import Alert
+from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus.messages import Severity
 
-NS = 1_000_000_000
 CLEAR_NS = 1_500_000_000  # a cause must be away for this long
 KEPT = 200  # cleared alerts
 RANK = {Severity.ERROR: 0, Severity.WARNING: 1, Severity.INFO: 2}
@@ -69,7 +69,7 @@ class Alerts:
                 live.alert = _updated(live.alert, finding)
                 continue
             since = self._pending.setdefault(name, now_ns)
-            if now_ns - since < finding.hold_s * NS:
+            if now_ns - since < finding.hold_s * NS_PER_S:
                 continue
             alert = Alert(
                 name=name,

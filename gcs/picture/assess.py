@@ -35,21 +35,21 @@ def assess(
         elif member.role is Role.EVADER:
             track = next((t.track for t in tracks if t.id == member.id and t.age_s < OLD_S), None)
             if track is not None:
-                evader = Vehicle(Vec(*track.position), Vec(*track.velocity), member.speed_max)
+                evader = Vehicle(Vec(*track.position), Vec(*track.velocity), member.speed)
     if evader is None or not pursuers:
         return None
-    if not setup.planar and len(pursuers) > MOST_IN_SPACE:
+    if not setup.rules.planar and len(pursuers) > MOST_IN_SPACE:
         place = evader.position
         pursuers = sorted(pursuers, key=lambda p: distance(p[1].position, place))[:MOST_IN_SPACE]
     target = ZERO if game.target is None else Vec(*game.target)
     mates = tuple(vehicle for _, vehicle in pursuers)
     found = assessment.assess(
-        evader, mates, setup.safety_distance, game.target is not None, target, setup.planar
+        evader, mates, setup.rules.rho, game.target is not None, target, setup.rules.planar
     )
     return AssessmentView(
         encircled=found.encircled,
         gaps=tuple((gap.start, gap.width) for gap in found.gaps),
-        largest_gap=found.largest_gap if setup.planar else found.cap.radius * 2.0,
+        largest_gap=found.largest_gap if setup.rules.planar else found.cap.radius * 2.0,
         target_denied=found.target_denied,
         prospects=tuple(
             ProspectView(id=i, intercepts=p.intercepts, time_s=p.time, denies_target=p.denies_target)
@@ -61,4 +61,4 @@ def assess(
 def _own(view: VehicleView, member: Member) -> Vehicle:
     assert view.state is not None
     air = sub(Vec(*view.state.velocity), Vec(*view.state.wind))
-    return Vehicle(Vec(*view.state.position), air, member.speed_max)
+    return Vehicle(Vec(*view.state.position), air, member.speed)

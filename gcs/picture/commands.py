@@ -14,16 +14,17 @@ from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 from gcs.picture.values import CommandView, Leg
+from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.protocols import Bus
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import Command, CommandKind, CommandReply
 
-NS = 1_000_000_000
 RETRY_NS = 80_000_000
-SLOW_AFTER_NS = 3 * NS
-SLOW_RETRY_NS = 1 * NS
-EXPIRY_NS = 5 * NS  # of `start` and `resume`: a vehicle that comes back later must not set off on its own
+SLOW_AFTER_NS = 3 * NS_PER_S
+SLOW_RETRY_NS = 1 * NS_PER_S
+# `start` and `resume` expire: a vehicle that comes back later must not set off on its own
+EXPIRY_NS = 5 * NS_PER_S
 REQUEST_TIMEOUT_S = 0.5
 KEPT = 50  # commands
 
@@ -150,7 +151,7 @@ class CommandBook:
                     reason=leg.reason,
                     mode=leg.mode,
                     obeyed=leg.obeyed,
-                    took_s=(end - order.issued_ns) / NS,
+                    took_s=(end - order.issued_ns) / NS_PER_S,
                 )
             )
         return CommandView(
@@ -194,7 +195,7 @@ class Courier:
                     await self._wake.wait()
                 for due in self._book.due(self._now_ns()):
                     requests.create_task(self._ask(due))
-                await asyncio.sleep(RETRY_NS / NS / 4)
+                await asyncio.sleep(RETRY_NS / NS_PER_S / 4)
 
     async def _ask(self, due: Due) -> None:
         key = topics.key(self._game, topics.COMMAND, due.id)

@@ -6,12 +6,12 @@ from collections import Counter, deque
 from math import inf
 
 from gcs.picture.values import Presence, TrackView, VehicleView
+from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus.messages import DecisionReport, Event, Health, Role, State, Track
 
-NS = 1_000_000_000
-LOST_NS = 1 * NS  # silence from all sources after which a vehicle is lost
-DOUBLE_NS = 3 * NS  # a double id is reported until this long after its last sign
-TRAIL_STEP_NS = NS // 2
+LOST_NS = 1 * NS_PER_S  # silence from all sources after which a vehicle is lost
+DOUBLE_NS = 3 * NS_PER_S  # a double id is reported until this long after its last sign
+TRAIL_STEP_NS = NS_PER_S // 2
 TRAIL_LENGTH = 120
 PROCESSES = 8  # earlier processes of an agent that are remembered
 EVENTS_KEPT = 1000  # numbers of events remembered, of each process
@@ -29,14 +29,14 @@ class Rate:
 
     def tick(self, now_ns: int) -> None:
         passed = now_ns - self.start_ns
-        if passed >= NS:
-            self.last = self.count * NS / passed
+        if passed >= NS_PER_S:
+            self.last = self.count * NS_PER_S / passed
             self.start_ns, self.count = now_ns, 0
         self.count += 1
 
     def value(self, now_ns: int) -> float:
         """[Hz]; 0 after two silent seconds, and until a whole second has been seen."""
-        return max(0.0, self.last) if now_ns - self.start_ns < 2 * NS else 0.0
+        return max(0.0, self.last) if now_ns - self.start_ns < 2 * NS_PER_S else 0.0
 
 
 class Trail:
@@ -155,4 +155,4 @@ class TrackRecord:
 
 def age_s(at_ns: int | None, now_ns: int) -> float:
     """Since an instant [s]; infinite where there was none."""
-    return inf if at_ns is None else (now_ns - at_ns) / NS
+    return inf if at_ns is None else (now_ns - at_ns) / NS_PER_S

@@ -12,15 +12,16 @@ from __future__ import annotations
 from collections import Counter, deque
 
 from gcs.picture import journal
-from gcs.picture.records import NS, TrackRecord, VehicleRecord, age_s
+from gcs.picture.records import TrackRecord, VehicleRecord, age_s
 from gcs.picture.values import GameView, LogLine, TrackView, VehicleView
+from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import Master, Message, Phase, Severity, State
 
 LOG_LENGTH = 500
 FARTHEST = 1e6  # [m] and [m/s]: no game is larger, nothing flies so fast
-TRACK_KEPT_NS = 30 * NS
+TRACK_KEPT_NS = 30 * NS_PER_S
 MOST_VEHICLES = 250  # MAVLink's system ids: nothing on the bus can make the picture grow without end
 
 
@@ -161,7 +162,7 @@ class Fleet:
             return None
         entry, decision = found
         self._life(entry, vehicle_id, 0, now_ns)
-        if entry.decision is not None and decision.stamp_ns < entry.decision.stamp_ns - NS:
+        if entry.decision is not None and decision.stamp_ns < entry.decision.stamp_ns - NS_PER_S:
             entry.drops["late"] += 1
             return decision
         entry.decision, entry.decision_ns = decision, now_ns
@@ -202,7 +203,7 @@ class Fleet:
         if known is None:
             known = self._tracks[track_id] = TrackRecord(track, now_ns)
         known.rate.tick(now_ns)
-        restarted = now_ns - known.heard_ns > NS  # a sensor may come back with another clock
+        restarted = now_ns - known.heard_ns > NS_PER_S  # a sensor may come back with another clock
         if track.stamp_ns >= known.track.stamp_ns or restarted:
             known.track = track
             known.trail.add(track.position, now_ns)
@@ -213,8 +214,8 @@ class Fleet:
         setup = swarm.SETUP.decode(payload, self.drops)
         if setup is None:
             return None
-        lengths = (setup.capture_radius, setup.safety_distance, setup.separation)
-        sizes = (*lengths, *(member.speed_max for member in setup.roster))
+        lengths = (setup.rules.R, setup.rules.rho, setup.rules.separation)
+        sizes = (*lengths, *(member.speed for member in setup.roster))
         if not _sane(*sizes) or min(sizes) < 0.0:
             self.drops["implausible"] += 1
             return None
@@ -264,7 +265,7 @@ class Fleet:
         if master is None:
             return None
         if self._master is None or (master.name, master.nonce) != (self._master.name, self._master.nonce):
-            self._masters = {who: at for who, at in self._masters.items() if now_ns - at < 2 * NS}
+            self._masters = {who: at for who, at in self._masters.items() if now_ns - at < 2 * NS_PER_S}
             if len(self._masters) < 8:
                 self._masters[(master.name, master.nonce)] = now_ns
         else:
@@ -316,14 +317,14 @@ class Fleet:
         if outcome is not None and phase is not None and outcome.stamp_ns < phase.t0_ns:
             outcome = None  # cached from a game before this one
         t0_ns = phase.t0_ns if phase else 0
-        alive = sum(now_ns - at < 2 * NS for at in self._masters.values())
+        alive = sum(now_ns - at < 2 * NS_PER_S for at in self._masters.values())
         return GameView(
             name=self.name,
             setup=self._setup,
             phase=phase.phase if phase else None,
             reason=phase.reason if phase else "",
             t0_ns=t0_ns,
-            time_s=(now_ns - t0_ns) / NS if t0_ns else 0.0,
+            time_s=(now_ns - t0_ns) / NS_PER_S if t0_ns else 0.0,
             outcome=outcome,
             target=self._brief.target if self._brief else None,
             master=self._master,

@@ -14,13 +14,13 @@ from gcs.picture.alerts import Alerts, Finding
 from gcs.picture.assess import assess
 from gcs.picture.commands import CommandBook
 from gcs.picture.journal import Acknowledged, Remark, Replied, Sent
-from gcs.picture.records import NS
 from gcs.picture.reducer import Fleet
 from gcs.picture.values import Alert, LogLine, Picture
+from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus.messages import Message, Severity
 
-GRID_NS = NS // 10
-LONGEST_GAP_NS = 3600 * NS  # judged step by step; what a longer silence does to alerts is settled by then
+GRID_NS = NS_PER_S // 10
+LONGEST_GAP_NS = 3600 * NS_PER_S  # judged step by step; a longer silence changes no alert any more
 
 
 class Watch:

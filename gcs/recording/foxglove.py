@@ -12,10 +12,10 @@ from typing import Any
 import msgspec
 
 from gcs.recording.schemas import Layout, as_bytes, inlined
+from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus.messages import Triple
 
 WORLD = "field"
-NS = 1_000_000_000
 
 
 class Part(msgspec.Struct, frozen=True):
@@ -205,7 +205,7 @@ def _plain(node: Any) -> Any:
 
 def time_of(stamp_ns: int) -> Time:
     """An instant, or a duration of zero or more."""
-    return Time(stamp_ns // NS, stamp_ns % NS)
+    return Time(stamp_ns // NS_PER_S, stamp_ns % NS_PER_S)
 
 
 def enu(position: Triple) -> Vector3:

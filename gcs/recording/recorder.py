@@ -19,15 +19,15 @@ from gcs.recording.file import McapWriter, OpenDisk, OsFile, WholeFile
 from gcs.recording.schemas import Layout, layout_of
 from gcs.recording.views import Views
 from onboard.config.strict import ConfigError
+from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus.messages import SCHEMA, Severity
 
-NS = 1_000_000_000
 FORMAT = 1  # of the recording: raised when an old reader would misread it
 METADATA = "apollonius"  # name of the metadata record that says so
 CHANNELS = "apollonius-channels"  # metadata records beside the chunks: number → key, so that a damaged
 # chunk costs itself alone, and not the names of the channels that it defines
 LIBRARY = "apollonius"
-FLUSH_NS = NS // 2
+FLUSH_NS = NS_PER_S // 2
 CHUNK_BYTES = 1 << 22
 MOST_WAITING = 16 << 20  # [bytes] kept in memory while the disk refuses; what comes after that is lost
 MOST_CHANNELS = 4096  # MCAP numbers channels with 16 bits, and keys come from the network

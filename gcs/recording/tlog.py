@@ -13,12 +13,12 @@ from collections.abc import Callable, Hashable
 from contextlib import suppress
 from pathlib import Path
 
+from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.protocols import Link
 from onboard.wire.mavlink.frames import Framer, Packet
 from onboard.wire.mavlink.tlog import STAMP
 
-NS = 1_000_000_000
-FLUSH_NS = NS // 2
+FLUSH_NS = NS_PER_S // 2
 MOST_PEERS = 256
 MOST_FILES = 255  # MAVLink's system ids
 MOST_WAITING = 4 << 20  # [bytes] a file's frames kept while the disk refuses

@@ -16,16 +16,17 @@ import msgspec
 from gcs.picture import journal
 from gcs.recording import foxglove as fox
 from gcs.recording.schemas import Layout
+from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import DecisionReport, Role, Setup, Severity, State
 from onboard.wire.geodesy import Frame
 
-STEP_NS = fox.NS // 5
-SILENT_NS = 3 * fox.NS  # a vehicle not heard for this long is no longer drawn anew
+STEP_NS = NS_PER_S // 5
+SILENT_NS = 3 * NS_PER_S  # a vehicle not heard for this long is no longer drawn anew
 TRAIL_STEPS = 60  # of one second
-TRAIL_NS = 5 * fox.NS  # trails are drawn anew so often: they are most of a scene's bytes
+TRAIL_NS = 5 * NS_PER_S  # trails are drawn anew so often: they are most of a scene's bytes
 CONE_LENGTH = 25.0  # [m] blocked cones are drawn so far
 MOST_DRAWN = 250
 
@@ -152,7 +153,7 @@ class Views:
         if self._changed:
             entities += self._still(at)
             self._changed = False
-        whole_second = at_ns % fox.NS == 0
+        whole_second = at_ns % NS_PER_S == 0
         trails = at_ns % TRAIL_NS == 0
         for vehicle_id, drawn in sorted(self._vehicles.items()):
             if not drawn.state or at_ns - drawn.heard_ns > SILENT_NS:
@@ -187,7 +188,7 @@ class Views:
         color = COLORS[state.role]
         spheres: tuple[fox.Sphere, ...] = ()
         if self._setup is not None and state.role is Role.PURSUER:
-            across = 2.0 * self._setup.capture_radius
+            across = 2.0 * self._setup.rules.R
             faint = fox.Color(color.r, color.g, color.b, 0.2)
             spheres = (fox.Sphere(fox.Pose(pose.position), fox.Vector3(across, across, across), faint),)
         rule = f" {decision.rule}" if decision is not None and decision.rule else ""

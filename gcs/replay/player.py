@@ -13,10 +13,10 @@ from gcs.picture.alert_rules import Thresholds
 from gcs.picture.values import Picture
 from gcs.picture.watch import GRID_NS, Watch
 from gcs.recording.reader import Entry, Recording
+from onboard.core.math.constants import NS_PER_S
 
-NS = 1_000_000_000
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0)
-CHECKPOINT_NS = 30 * NS
+CHECKPOINT_NS = 30 * NS_PER_S
 CHECKPOINTS = 100  # at most, however long the recording
 
 

@@ -10,9 +10,9 @@ from gcs.picture.values import Picture
 from gcs.recording.reader import Recording
 from gcs.recording.shell import RECORDING
 from gcs.replay.player import Player
+from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus.messages import CommandKind
 
-NS = 1_000_000_000
 JUMPS = {"back": -10, "on": 10, "far_back": -60, "far_on": 60}  # [s]
 
 
@@ -75,7 +75,7 @@ class ReplaySource:
             player.pause(not player.paused)
             return "paused" if player.paused else "playing"
         if action in JUMPS:
-            player.seek(player.at_ns + JUMPS[action] * NS)
+            player.seek(player.at_ns + JUMPS[action] * NS_PER_S)
         elif action in ("step", "step_back"):
             player.step(1 if action == "step" else -1)
         elif action in ("faster", "slower"):
@@ -93,5 +93,5 @@ class ReplaySource:
 
 
 def _minutes(span_ns: int) -> str:
-    seconds = span_ns / NS
+    seconds = span_ns / NS_PER_S
     return f"{int(seconds // 60)}:{seconds % 60:04.1f}"

@@ -20,7 +20,6 @@ from onboard.game.scenario import Scenario
 from onboard.wire.bus.messages import Fence, Member, Outcome, Role, Setup, Triple
 
 Array = NDArray[np.float64]
-NS = 1_000_000_000
 MOST_POINTS = 4000  # a vehicle's samples are thinned to so many
 
 
@@ -103,15 +102,15 @@ class Run(NamedTuple):
     def capture_radius(self) -> float | None:
         """R [m]."""
         if self.setup is not None:
-            return self.setup.capture_radius
-        return self.scenario.parameters.R if self.scenario is not None else None
+            return float(self.setup.rules.R)
+        return self.scenario.rules.R if self.scenario is not None else None
 
     @property
     def safety_distance(self) -> float | None:
         """ρ [m]."""
         if self.setup is not None:
-            return self.setup.safety_distance
-        return self.scenario.rho if self.scenario is not None else None
+            return float(self.setup.rules.rho)
+        return self.scenario.rules.rho if self.scenario is not None else None
 
     @property
     def fence(self) -> Fence | None:
@@ -122,7 +121,7 @@ class Run(NamedTuple):
     def flat(self) -> bool:
         """Whether distances are judged horizontally."""
         if self.setup is not None:
-            return self.setup.planar or self.setup.field_profile
+            return self.setup.flat
         return self.scenario is not None and (self.scenario.planar or self.scenario.flight.field_profile)
 
     @property

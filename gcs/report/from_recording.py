@@ -10,7 +10,8 @@ import numpy as np
 from gcs.picture.alert_rules import Thresholds
 from gcs.picture.watch import Watch
 from gcs.recording.reader import Recording
-from gcs.report.data import NS, Band, Beside, Flown, Link, Run, thinned
+from gcs.report.data import Band, Beside, Flown, Link, Run, thinned
+from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus.messages import (
     DecisionReport,
     Health,
@@ -32,7 +33,7 @@ class _OpenBand:
         self.rule, self.why = rule, why
 
     def closed(self, zero_ns: int) -> Band:
-        start, end = (self.start_ns - zero_ns) / NS, (self.end_ns - zero_ns) / NS
+        start, end = (self.start_ns - zero_ns) / NS_PER_S, (self.end_ns - zero_ns) / NS_PER_S
         return Band(start, max(end, start + SHORTEST_S), self.rule, self.why)
 
 
@@ -78,7 +79,7 @@ class _Collector:
     def _state(self, state: State, now_ns: int) -> None:
         vehicle = self._vehicle(state.id)
         vehicle.role = state.role
-        late = (now_ns - state.stamp_ns) / NS
+        late = (now_ns - state.stamp_ns) / NS_PER_S
         row = (state.stamp_ns, *state.position, *state.velocity, state.airspeed, *state.wind, late)
         vehicle.states.append(row)
 
@@ -105,7 +106,7 @@ class _Collector:
 
 def _extend(bands: list[_OpenBand], stamp_ns: int, rule: str, why: str) -> None:
     """One more report: the band goes on, or ends where another begins; silence ends it too."""
-    fresh = bool(bands) and stamp_ns - bands[-1].end_ns < SILENCE_S * NS
+    fresh = bool(bands) and stamp_ns - bands[-1].end_ns < SILENCE_S * NS_PER_S
     if fresh:
         bands[-1].end_ns = stamp_ns
     if not fresh or bands[-1].rule != rule:
@@ -148,7 +149,7 @@ def from_recording(
         setup=setup,
         target=picture.game.target,
         outcome=collector.outcome,
-        phases=tuple(((at - zero_ns) / NS, phase) for at, phase in collector.phases),
+        phases=tuple(((at - zero_ns) / NS_PER_S, phase) for at, phase in collector.phases),
         flown=flown,
         links=links,
         rules={vehicle_id: bands for vehicle_id, bands in rules.items() if bands},
@@ -167,7 +168,7 @@ def _columns(rows: list[tuple[float, ...]], zero_ns: int) -> list[np.ndarray]:
     stamps = np.array([row[0] for row in rows], dtype=np.int64)
     order = np.argsort(stamps, kind="stable")
     rest = np.array([row[1:] for row in rows], dtype=np.float64)[order]
-    return [(stamps[order] - zero_ns) / NS, *rest.T]
+    return [(stamps[order] - zero_ns) / NS_PER_S, *rest.T]
 
 
 def _way(vehicle_id: int, role: Role, vehicle: _Vehicle, zero_ns: int) -> Flown | None:

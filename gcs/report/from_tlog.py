@@ -8,11 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
-from gcs.report.data import NS, Array, Beside, Flown, Link, Run, thinned
+from gcs.report.data import Array, Beside, Flown, Link, Run, thinned
 from onboard.config.strict import ConfigError
+from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus.messages import Role, Triple
 from onboard.wire.geodesy import Frame
-from onboard.wire.mavlink.telemetry import decode
 from onboard.wire.mavlink.tlog import read_tlog
 from onboard.wire.mavlink.values import AirData, GlobalPosition, SysStatus, Wind
 
@@ -90,7 +90,7 @@ def _read(path: Path, system: int) -> _Log:
     for stamp_ns, packet in read_tlog(data, log.causes):
         if packet.system != system:
             continue
-        value = decode(packet.message)
+        value = packet.value
         if isinstance(value, GlobalPosition):
             log.places.append((stamp_ns, value))
         elif isinstance(value, AirData):
@@ -118,7 +118,7 @@ def _roles(files: Beside, logs: dict[int, _Log]) -> dict[int, Role]:
 
 
 def _flown(vehicle: int, role: Role, log: _Log, zero_ns: int, frame: Frame) -> Flown:
-    t = np.array([(stamp - zero_ns) / NS for stamp, _ in log.places])
+    t = np.array([(stamp - zero_ns) / NS_PER_S for stamp, _ in log.places])
     places = [frame.ned_from_geodetic(p.latitude_deg, p.longitude_deg, p.altitude_m) for _, p in log.places]
     velocity = np.array([p.velocity for _, p in log.places], dtype=np.float64)
     airspeed = _at(t, log.airspeeds, zero_ns)
@@ -132,12 +132,13 @@ def _flown(vehicle: int, role: Role, log: _Log, zero_ns: int, frame: Frame) -> F
 def _at(t: Array, samples: list[tuple[int, float]], zero_ns: int) -> Array:
     if not samples:
         return np.full(len(t), nan)
-    found: Array = np.interp(t, [(stamp - zero_ns) / NS for stamp, _ in samples], [v for _, v in samples])
+    at = [(stamp - zero_ns) / NS_PER_S for stamp, _ in samples]
+    found: Array = np.interp(t, at, [v for _, v in samples])
     return found
 
 
 def _link(log: _Log, zero_ns: int) -> Link:
-    t = np.array([(stamp - zero_ns) / NS for stamp, _ in log.batteries])
+    t = np.array([(stamp - zero_ns) / NS_PER_S for stamp, _ in log.batteries])
     unknown = np.full(len(t), nan)
     battery = np.array([value for _, value in log.batteries])
     return Link(t, unknown, battery, unknown, unknown, unknown)

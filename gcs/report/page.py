@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from gcs.report import theme as look
-from gcs.report.data import NS, Run
+from gcs.report.data import Run
 from gcs.report.plotly_parts import Figure
+from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus.messages import Role, Severity
 
 # The browser itself refuses every request; plotly.js compiles functions of its own (`unsafe-eval`).
@@ -69,7 +70,7 @@ def page(run: Run, figures: list[Figure], plotly_js: str) -> str:
     tables = [table for table in tables if table[3]]
     anchors = [(f.name, f.title) for f in figures] + [(name, title) for name, title, _, _ in tables]
     title = escape(run.name)
-    began = datetime.fromtimestamp(run.t0_ns // NS, UTC).strftime("%Y-%m-%d %H:%M:%S UTC")
+    began = datetime.fromtimestamp(run.t0_ns // NS_PER_S, UTC).strftime("%Y-%m-%d %H:%M:%S UTC")
     parts = [
         "<!doctype html>\n<html lang='en'>\n<head>\n<meta charset='utf-8'>\n",
         f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">\n',
@@ -156,7 +157,7 @@ def vehicles(run: Run) -> str:
                 f"<span class='dot' style='background:{colors[vehicle_id]}'></span>"
                 + escape(run.role_of(vehicle_id)),
                 escape(member.strategy or "paper") if member is not None else "",
-                f"{member.speed_max:g}" if member is not None else "",
+                f"{member.speed:g}" if member is not None else "",
                 mean,
                 f"{nearest[vehicle_id]:.2f}" if vehicle_id in nearest else "",
                 f"{median:.0f} / {most:.0f}" if len(late) else "",
@@ -173,7 +174,7 @@ def commands(run: Run) -> str:
     """Each command with who confirmed it, and after what time."""
     rows = []
     for command in run.commands:
-        at = f"{(command.issued_ns - run.t0_ns) / NS:.1f}"
+        at = f"{(command.issued_ns - run.t0_ns) / NS_PER_S:.1f}"
         legs = []
         for leg in command.legs:
             kind = "good" if leg.state == "confirmed" else "error" if leg.state == "refused" else "warning"
@@ -188,10 +189,10 @@ def alerts(run: Run) -> str:
     """Each alert from when to when."""
     rows = []
     for alert in run.alerts:
-        end = f"{(alert.cleared_ns - run.t0_ns) / NS:.1f}" if alert.cleared_ns else "in force"
+        end = f"{(alert.cleared_ns - run.t0_ns) / NS_PER_S:.1f}" if alert.cleared_ns else "in force"
         rows.append(
             [
-                f"{(alert.raised_ns - run.t0_ns) / NS:.1f}",
+                f"{(alert.raised_ns - run.t0_ns) / NS_PER_S:.1f}",
                 end,
                 f"<span class='tag {alert.severity.value}'>{alert.severity.value}</span>",
                 escape(f"vehicle {alert.id}" if alert.id else ""),
@@ -207,7 +208,7 @@ def log(run: Run) -> str:
     """What happened."""
     rows = [
         [
-            f"{(line.at_ns - run.t0_ns) / NS:.2f}",
+            f"{(line.at_ns - run.t0_ns) / NS_PER_S:.2f}",
             f"<span class='tag {line.severity.value}'>{escape(line.kind)}</span>",
             escape(f"vehicle {line.id}" if line.id else ""),
             escape(line.text),
@@ -223,16 +224,16 @@ def parameters(run: Run) -> str:
     setup = run.setup
     if setup is None:
         return ""
-    origin = setup.origin
+    origin, rules = setup.origin, setup.rules
     pairs = {
         "scenario": f"{setup.scenario} ({setup.scenario_hash})",
         "game, master": f"{setup.game}, {setup.master}",
         "origin": f"{origin.latitude_deg:.6f}°, {origin.longitude_deg:.6f}°, {origin.altitude_m:g} m",
-        "R, ρ, ε": f"{setup.capture_radius:g} m, {setup.safety_distance:g} m, {setup.epsilon_min:g} m",
-        "λ, β": f"{setup.lambda_:g}, {setup.beta:g}",
-        "separation": f"{setup.separation:g} m" if setup.separation else "off",
-        "horizon": f"{setup.horizon:g} s",
-        "game": "plane" if setup.planar else "in space",
+        "R, ρ, ε": f"{rules.R:g} m, {rules.rho:g} m, {rules.epsilon_min:g} m",
+        "λ, β": f"{rules.lambda_:g}, {rules.beta:g}",
+        "separation": f"{rules.separation:g} m" if rules.separation else "off",
+        "horizon": f"{rules.horizon:g} s",
+        "game": "plane" if rules.planar else "in space",
         "error of tracks": f"{setup.track_sigma:g} m",
         "seed": str(setup.seed),
     }

@@ -127,7 +127,7 @@ def speeds(run: Run) -> Figure | None:
 
 def heights(run: Run) -> Figure | None:
     """Height above the origin."""
-    if not run.flown or (run.setup is not None and run.setup.planar and not _climbs(run)):
+    if not run.flown or (run.setup is not None and run.setup.rules.planar and not _climbs(run)):
         return None
     colors = look.colors(run)
     data = [

@@ -263,8 +263,7 @@ class Story(NamedTuple):
     """A recorded flight."""
 
     head: Head
-    records: Iterator[Happened | Full | Lost]  # in order; a torn end is left out
-    size: int  # of the file [bytes]
+    records: Iterator[tuple[float, Happened | Full | Lost]]  # in order, each with the share of the file read
 
 
 def read(path: Path) -> Story:
@@ -285,10 +284,11 @@ def read(path: Path) -> Story:
         head = msgspec.msgpack.decode(first, type=Head)
     except msgspec.MsgspecError as error:
         raise ConfigError(f"{path}: the configuration does not fit this release: {error}") from None
-    return Story(head, _records(path, pieces), len(data))
+    return Story(head, _records(path, pieces, len(data)))
 
 
 def _pieces(data: bytes) -> Iterator[bytes]:
+    """The records' bytes; a torn end is left out."""
     at = 0
     while at + 4 <= len(data):
         size = int.from_bytes(data[at : at + 4], "little")
@@ -298,10 +298,14 @@ def _pieces(data: bytes) -> Iterator[bytes]:
         at += 4 + size
 
 
-def _records(path: Path, pieces: Iterator[bytes]) -> Iterator[Happened | Full | Lost]:
+def _records(
+    path: Path, pieces: Iterator[bytes], size: int
+) -> Iterator[tuple[float, Happened | Full | Lost]]:
     decoder = msgspec.msgpack.Decoder(Happened | Full | Lost)
+    done = 0
     for number, piece in enumerate(pieces, 2):
+        done += len(piece) + 4
         try:
-            yield decoder.decode(piece)
+            yield done / size, decoder.decode(piece)
         except msgspec.MsgspecError as error:
             raise ConfigError(f"{path}: record {number} is damaged: {error}") from None

@@ -16,22 +16,23 @@ from typing import NamedTuple
 
 from onboard.agent.config import AgentConfig
 from onboard.agent.core.bus_view import BusView
-from onboard.agent.core.events import NS, Instant, LinkFacts, Outbox, Send, Subscribe
+from onboard.agent.core.events import Instant, LinkFacts, Outbox, Send, Subscribe
 from onboard.agent.core.journal import Journal
 from onboard.agent.core.mavlink_radio import Radio
 from onboard.agent.core.vehicle_link import VehicleLink
 from onboard.agent.opening import close_bus, open_bus, open_links, signing_of
-from onboard.autopilot.base import NEVER, Telemetry
+from onboard.autopilot.base import Telemetry
 from onboard.autopilot.parameters import findings
 from onboard.config.strict import ConfigError
+from onboard.core.math.constants import NEVER, NS_PER_S
 from onboard.runtime.bus_zenoh import DEFAULT_ENDPOINT
 from onboard.runtime.clock import RealClock
 from onboard.runtime.protocols import Bus, Clock, Link, Sample
 from onboard.wire.mavlink import commands
+from onboard.wire.mavlink.ids import MessageId
 from onboard.wire.mavlink.modes import Kind
 from onboard.wire.mavlink.signing import Signing
 
-VERSION_MESSAGE = 148  # AUTOPILOT_VERSION
 ENOUGH = 0.7  # of the position rate that was asked for
 DISK_MIN = 200e6  # bytes free, for logs
 HARMLESS = ("no_peer", "muted", "twin")  # counted, but no bad frames
@@ -274,7 +275,7 @@ class Ears:
                 self._vehicle.chores(now.s)
                 if past >= asked and self._vehicle.version is None:
                     asked += 1
-                    self._radio.send(commands.request_message(self._vehicle.to, VERSION_MESSAGE))
+                    self._radio.send(commands.request_message(self._vehicle.to, MessageId.AUTOPILOT_VERSION))
                 self._do(now)
             await asyncio.sleep(0.05)
         return self._found(seen)
@@ -306,7 +307,7 @@ class Ears:
         )
 
     def _instant(self) -> Instant:
-        return Instant(self._clock.monotonic_ns() / NS, self._clock.wall_ns())
+        return Instant(self._clock.monotonic_ns() / NS_PER_S, self._clock.wall_ns())
 
     def _arrived(self, index: int, data: bytes, peer: Hashable) -> None:
         numbers = self._numbers[index]

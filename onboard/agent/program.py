@@ -18,6 +18,7 @@ from onboard.agent.opening import close_bus, open_bus, open_links, signing_of
 from onboard.agent.shell import Agent, Equipment
 from onboard.agent.version import version
 from onboard.config.strict import ConfigError
+from onboard.core.math.constants import NS_PER_S
 from onboard.game.route_file import load_route
 from onboard.runtime.clock import RealClock
 from onboard.runtime.protocols import Link
@@ -25,7 +26,7 @@ from onboard.runtime.systemd import Notifier
 from onboard.wire.bus.messages import Role
 from onboard.wire.mavlink.tlog import TlogWriter
 
-FLUSH_NS = 1_000_000_000
+FLUSH_NS = NS_PER_S
 
 
 def fly(config: AgentConfig, timing: Path | None = None) -> int:

@@ -15,7 +15,6 @@ from typing import Any, NamedTuple
 from onboard.agent.config import AgentConfig
 from onboard.agent.core.events import (
     ANY_PEER,
-    NS,
     Announce,
     AnyEvent,
     Beat,
@@ -53,6 +52,7 @@ from onboard.agent.event_file import EventFile
 from onboard.agent.thinker import Thinker
 from onboard.agent.timing import Timing
 from onboard.autopilot.mavsdk import Child
+from onboard.core.math.constants import NS_PER_S
 from onboard.game.route_file import Route
 from onboard.runtime.protocols import Bus, Clock, Link, Sample, Subscription
 from onboard.wire.mavlink.signing import Signing
@@ -174,7 +174,7 @@ class Agent:
     @property
     def now(self) -> float:
         """Monotonic time [s]."""
-        return self.clock.monotonic_ns() / NS
+        return self.clock.monotonic_ns() / NS_PER_S
 
     async def run(self) -> None:
         """Fly until `stop` (or until cancelled). Raises what the machine raises."""
@@ -237,7 +237,7 @@ class Agent:
         self._waiting.append((event, self._instant()))
 
     def _instant(self) -> Instant:
-        return Instant(self.clock.monotonic_ns() / NS, self.clock.wall_ns())
+        return Instant(self.clock.monotonic_ns() / NS_PER_S, self.clock.wall_ns())
 
     def _arm(self) -> None:
         """Set the one timer."""

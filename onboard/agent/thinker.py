@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from onboard.agent.core.events import NS, Answered, Load, Loaded, Think
+from onboard.agent.core.events import Answered, Load, Loaded, Think
 from onboard.config.strict import ConfigError
+from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec
 from onboard.core.strategy.knowledge import Decision, RuleId
 from onboard.core.strategy.registry import EVADERS, PURSUERS
@@ -46,7 +47,7 @@ class Thinker:
             decision = self.strategies[question.side, question.strategy](question.view)
         except Exception as trouble:
             error = f"{type(trouble).__name__}: {trouble}"
-        return Answered(question.number, decision, error, (self._clock.monotonic_ns() - begun) / NS)
+        return Answered(question.number, decision, error, (self._clock.monotonic_ns() - begun) / NS_PER_S)
 
 
 def _foreign(strategy: Strategy) -> Strategy:

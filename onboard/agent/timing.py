@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections import deque
 
+from onboard.core.math.constants import NS_PER_S
+
 KEPT = 4000  # last measurements
 
 
@@ -14,7 +16,7 @@ class Timing:
         self.overruns = 0  # that were longer than a control period
         self.worst_ns = 0
         self.latencies: deque[int] = deque(maxlen=KEPT)
-        self._period_ns = round(period_s * 1e9)
+        self._period_ns = round(period_s * NS_PER_S)
 
     def answered(self, ns: int) -> None:
         """A control step that a position caused is complete after `ns`."""

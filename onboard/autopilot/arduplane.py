@@ -8,19 +8,20 @@ and the plain variant's course (43002) never does: so to end is to command LOITE
 
 from __future__ import annotations
 
-from math import atan, atan2, pi, tan
+from math import atan, atan2, isfinite, tan
 
-from onboard.autopilot.base import NEVER, Envelope, Note, ReleaseMode, Setpoint, Stage, Step, Telemetry
-from onboard.autopilot.envelope import is_finite, within
+from onboard.autopilot.base import Envelope, Note, ReleaseMode, Setpoint, Stage, Step, Telemetry
+from onboard.autopilot.envelope import within
 from onboard.autopilot.mode_control import Control
+from onboard.core.math.angles import wrap
+from onboard.core.math.constants import NEVER, STANDARD_GRAVITY
 from onboard.core.math.vectors import Vec, add, clamp, norm
 from onboard.wire.mavlink import commands
-from onboard.wire.mavlink.commands import Target
-from onboard.wire.mavlink.frames import MavMessage
+from onboard.wire.mavlink.commands import Outgoing, RollTarget, Target
+from onboard.wire.mavlink.ids import CommandId
 from onboard.wire.mavlink.modes import Kind
 from onboard.wire.mavlink.values import CommandAck
 
-G = 9.80665  # [m/s²]
 GAIN = 1.1  # [1/s] turn rate for an error of the course
 ROLL_EVERY = 0.03  # [s] at least between two roll targets: every step of a 20 Hz loop passes
 COURSE_EVERY = 0.1  # [s] between two course commands of the plain variant
@@ -32,8 +33,11 @@ SPEED_STEP = 0.2  # [m/s] that is a new airspeed
 LOOK_AHEAD = 3.3  # [s] a climb rate is an altitude this far ahead, at rate 0
 DRIFT = 8.0  # [m] by which the reference of altitude may leave the aircraft
 CREEP = 3.0  # [m/s; ground] below this there is no course: the nose counts
-CHANGE_SPEED, CHANGE_ALTITUDE, CHANGE_HEADING = 43000, 43001, 43002
-NAMES = {CHANGE_SPEED: "airspeed", CHANGE_ALTITUDE: "altitude", CHANGE_HEADING: "course"}
+NAMES: dict[int, str] = {
+    CommandId.CHANGE_SPEED: "airspeed",
+    CommandId.CHANGE_ALTITUDE: "altitude",
+    CommandId.CHANGE_HEADING: "course",
+}
 FAULTS = {
     "not_finite": "a setpoint that is no number was not sent",
     "no_direction": "a plane cannot stand still: give no setpoint, or leave to loiter",
@@ -45,11 +49,6 @@ WAYS = {
 }
 
 
-def wrapped(angle: float) -> float:
-    """The angle in (−π, π]."""
-    return pi - (pi - angle) % (2.0 * pi)
-
-
 def bank_for(course: float, velocity: Vec, yaw: float, bank_max: float) -> float:
     """Bank [rad, right positive] that turns the flight over ground towards a course [rad].
 
@@ -57,12 +56,12 @@ def bank_for(course: float, velocity: Vec, yaw: float, bank_max: float) -> float
     """
     ground = (velocity.x * velocity.x + velocity.y * velocity.y) ** 0.5
     present = atan2(velocity.y, velocity.x) if ground > CREEP else yaw
-    rate = GAIN * wrapped(course - present)
-    return clamp(atan(max(ground, CREEP) * rate / G), -bank_max, bank_max)
+    rate = GAIN * wrap(course - present)
+    return clamp(atan(max(ground, CREEP) * rate / STANDARD_GRAVITY), -bank_max, bank_max)
 
 
 def _fault(setpoint: Setpoint) -> str:
-    if not (is_finite(setpoint.velocity) and is_finite(setpoint.wind)):
+    if not (isfinite(norm(setpoint.velocity)) and isfinite(norm(setpoint.wind))):
         return "not_finite"
     return "no_direction" if norm(setpoint.velocity) <= 1e-6 else ""
 
@@ -144,15 +143,16 @@ class ArduPlaneAdapter:
     def acknowledge(self, now: float, ack: CommandAck) -> None:
         """Hear the answer to a command."""
         self._control.acknowledge(now, ack)
-        if ack.command not in NAMES:
+        name = NAMES.get(ack.command)
+        if name is None:
             return
         if ack.result == 0:
             self._refused = {pair for pair in self._refused if pair[0] != ack.command}
-            if ack.command != CHANGE_HEADING:
-                (self._altitude if ack.command == CHANGE_ALTITUDE else self._speed).open = False
+            if ack.command != CommandId.CHANGE_HEADING:
+                (self._altitude if ack.command == CommandId.CHANGE_ALTITUDE else self._speed).open = False
         elif (ack.command, ack.result) not in self._refused:
             self._refused.add((ack.command, ack.result))
-            text = f"{NAMES[ack.command]} refused: result {ack.result}"
+            text = f"{name} refused: result {ack.result}"
             self._notes.append(Note("warning", "setpoint_refused", text))
 
     def step(self, now: float, telemetry: Telemetry, setpoint: Setpoint | None) -> Step:
@@ -181,7 +181,7 @@ class ArduPlaneAdapter:
             messages.append(commands.change_speed(self._to, speed))
         return Step(tuple(messages), tuple(notes))
 
-    def _turn(self, now: float, telemetry: Telemetry, ground: Vec) -> list[MavMessage]:
+    def _turn(self, now: float, telemetry: Telemetry, ground: Vec) -> list[Outgoing]:
         if ground.x * ground.x + ground.y * ground.y < 1e-6:
             return []
         course = atan2(ground.y, ground.x)
@@ -190,16 +190,16 @@ class ArduPlaneAdapter:
                 return []
             self._turned_at = now
             bank = bank_for(course, telemetry.velocity, telemetry.yaw, self.envelope.bank_max)
-            return [commands.roll_target(self._to, telemetry.time_boot_s, bank)]
+            return [RollTarget(self._to, telemetry.time_boot_s, bank)]
         stale = now - self._turned_at >= 1.0  # it may have been lost
-        new = self._course == NEVER or abs(wrapped(course - self._course)) >= COURSE_STEP
+        new = self._course == NEVER or abs(wrap(course - self._course)) >= COURSE_STEP
         if now - self._turned_at < COURSE_EVERY or not (new or stale):
             return []
         self._turned_at, self._course = now, course
-        lateral = G * tan(self.envelope.bank_max)
+        lateral = STANDARD_GRAVITY * tan(self.envelope.bank_max)
         return [commands.change_heading(self._to, course, lateral)]
 
-    def _climb(self, now: float, telemetry: Telemetry, ground: Vec) -> list[MavMessage]:
+    def _climb(self, now: float, telemetry: Telemetry, ground: Vec) -> list[Outgoing]:
         """Altitude that follows the commanded climb: a reference integrates it, so that level stays level."""
         climb = clamp(-ground.z, -self.envelope.sink_max, self.envelope.climb_max)
         present = telemetry.altitude_m

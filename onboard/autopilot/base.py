@@ -15,12 +15,11 @@ from __future__ import annotations
 from enum import Enum
 from typing import NamedTuple, Protocol
 
+from onboard.core.math.constants import NEVER
 from onboard.core.math.vectors import ZERO, Vec
-from onboard.wire.mavlink.frames import MavMessage
+from onboard.wire.mavlink.commands import Outgoing
 from onboard.wire.mavlink.modes import Kind
 from onboard.wire.mavlink.values import UNKNOWN, CommandAck
-
-NEVER = float("-inf")  # the instant of something that has not happened
 
 
 class Telemetry(NamedTuple):
@@ -116,7 +115,7 @@ class Note(NamedTuple):
 class Step(NamedTuple):
     """What one step wants done: messages to send, in order, and notes."""
 
-    messages: tuple[MavMessage, ...] = ()
+    messages: tuple[Outgoing, ...] = ()
     notes: tuple[Note, ...] = ()
 
 

@@ -2,17 +2,11 @@
 
 from __future__ import annotations
 
-from math import isfinite
-
-from onboard.autopilot.base import NEVER, Envelope
+from onboard.autopilot.base import Envelope
+from onboard.core.math.constants import NEVER
 from onboard.core.math.vectors import Vec, norm, scale, sub
 
 GAP = 0.4  # [s] without a target: the stream has to begin again
-
-
-def is_finite(velocity: Vec) -> bool:
-    """Whether all three numbers are, and their squares too."""
-    return isfinite(velocity.x * velocity.x + velocity.y * velocity.y + velocity.z * velocity.z)
 
 
 def within(velocity: Vec, envelope: Envelope) -> Vec:

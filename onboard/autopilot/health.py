@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from onboard.autopilot.base import NEVER, Telemetry
+from onboard.autopilot.base import Telemetry
+from onboard.core.math.constants import NEVER
 
 HEARTBEAT_AGE = 2.0  # [s]
 TELEMETRY_AGE = 0.5  # [s]

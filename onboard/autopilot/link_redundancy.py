@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections import OrderedDict
 from typing import NamedTuple
 
-from onboard.autopilot.base import NEVER
+from onboard.core.math.constants import NEVER
 from onboard.wire.mavlink.frames import Packet
 
 LOSS = 0.25  # [s] of silence at 20 Hz telemetry: half of the age at which telemetry counts as lost
@@ -59,7 +59,7 @@ class Redundant:
             self.active = link
             self.take_overs += before != link and self._heard_at[before] != NEVER
         took_over = self.active != before
-        once = packet.message.get_type() in ONCE
+        once = packet.name in ONCE
         if self._seen(now, _content(packet.raw) if once else packet.raw):
             self.duplicates += 1
             return Heard(False, took_over)

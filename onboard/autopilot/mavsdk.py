@@ -13,16 +13,18 @@ import subprocess
 import sys
 from collections.abc import Callable
 from importlib.util import find_spec
-from math import degrees
+from math import degrees, isfinite
 from struct import Struct
 from typing import Protocol
 
-from onboard.autopilot.base import NEVER, Envelope, Note, ReleaseMode, Setpoint, Stage, Step, Telemetry
-from onboard.autopilot.envelope import Shaper, is_finite
+from onboard.autopilot.base import Envelope, Note, ReleaseMode, Setpoint, Stage, Step, Telemetry
+from onboard.autopilot.envelope import Shaper
 from onboard.autopilot.mode_control import Control
 from onboard.autopilot.velocity import GUIDED, WAYS, yaw_along
-from onboard.core.math.vectors import add
-from onboard.wire.mavlink.commands import Target
+from onboard.core.math.constants import NEVER
+from onboard.core.math.vectors import add, norm
+from onboard.wire.mavlink.commands import CommandLong, Target
+from onboard.wire.mavlink.ids import CommandId
 from onboard.wire.mavlink.modes import Kind
 from onboard.wire.mavlink.values import CommandAck
 
@@ -30,7 +32,6 @@ LINE = Struct("<cd4d")  # what, when [s, monotonic], north, east, down [m/s], ya
 SETPOINT, ENTER, HOLD, RETURN, LAND, RELEASE = b"S", b"E", b"H", b"R", b"L", b"X"
 ORDERS = {ReleaseMode.HOLD: HOLD, ReleaseMode.RETURN: RETURN, ReleaseMode.LAND: LAND}
 SILENCE = 0.2  # [s] without a setpoint after which the child stops offboard and exits
-ARM = 400  # MAV_CMD_COMPONENT_ARM_DISARM
 RELAUNCH = 1.0  # [s] at least between two starts of the child
 
 
@@ -173,11 +174,13 @@ class MavsdkAdapter:
         ended = self._ended()  # before the mode is judged: it was the child that changed it
         messages, notes = self._control.step(now, telemetry)
         notes = ended + notes
-        asking = any(message.command == 176 for message in messages)
-        messages = [message for message in messages if message.command == ARM]  # the rest is the child's
+        ids = [message.command for message in messages if isinstance(message, CommandLong)]
+        asking = CommandId.SET_MODE in ids
+        # The child asks for modes; over the agent's own link go requests to arm alone.
+        arming = [m for m, number in zip(messages, ids, strict=True) if number == CommandId.ARM]
         courier = self._present(now)
         if courier is None:
-            return Step(tuple(messages), tuple(notes))
+            return Step(tuple(arming), tuple(notes))
         notes += courier.said()
         stage = self._control.stage
         if stage is Stage.TAKEN:  # it must not ask for hold: that would take the vehicle from the pilot
@@ -188,11 +191,11 @@ class MavsdkAdapter:
             courier.send(LINE.pack(order, now, 0.0, 0.0, 0.0, 0.0))
         if setpoint is not None and stage in (Stage.ENTERING, Stage.ACTIVE):
             wanted = add(setpoint.velocity, setpoint.wind)
-            if is_finite(wanted):
+            if isfinite(norm(wanted)):
                 v = self._shaper.shape(now, wanted)
                 yaw = degrees(yaw_along(v, telemetry.yaw))
                 courier.send(LINE.pack(SETPOINT, now, v.x, v.y, v.z, yaw))
-        return Step(tuple(messages), tuple(notes))
+        return Step(tuple(arming), tuple(notes))
 
     def _ended(self) -> list[Note]:
         """What there is to tell of a child that has ended: control is given up."""

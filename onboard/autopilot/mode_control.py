@@ -11,10 +11,11 @@ refusal a second passes. From IDLE, LEFT and TAKEN the pilot hands (back) by cho
 
 from __future__ import annotations
 
-from onboard.autopilot.base import NEVER, Note, ReleaseMode, Stage, Telemetry
+from onboard.autopilot.base import Note, ReleaseMode, Stage, Telemetry
+from onboard.core.math.constants import NEVER
 from onboard.wire.mavlink import commands
-from onboard.wire.mavlink.commands import Target
-from onboard.wire.mavlink.frames import MavMessage
+from onboard.wire.mavlink.commands import Outgoing, Target
+from onboard.wire.mavlink.ids import COMPANION, CommandId, MessageId
 from onboard.wire.mavlink.modes import MODES, Kind
 from onboard.wire.mavlink.values import CommandAck
 
@@ -22,12 +23,9 @@ RETRY = 0.08  # [s] between two tries
 PATIENCE = 25  # tries at that pace, then a warning and
 SLOW_RETRY = 0.5  # [s] this pace
 AFTER_YES = 1.5  # [s] an accepted command is not repeated for so long: the heartbeat is asked for
-HEARTBEAT = 0  # message id
 AFTER_NO = 1.0  # [s] a refused one waits before it is tried again
 ARM_AFTER_NO = 2.0  # [s] arming may be refused for many seconds although the pre-arm bit is set
 RESTART = 3.0  # [s] between the first mode and the first clock of an autopilot that started again
-SET_MODE, ARM = 176, 400  # MAV_CMD_DO_SET_MODE, MAV_CMD_COMPONENT_ARM_DISARM
-COMPANION = 191  # MAV_COMP_ID_ONBOARD_COMPUTER: the agent's component
 RESULTS = {0: "accepted", 1: "temporarily rejected", 2: "denied", 3: "unsupported", 4: "failed"}
 
 
@@ -126,16 +124,17 @@ class Control:
             return
         why = RESULTS.get(ack.result, f"result {ack.result}")
         asking = self.stage in (Stage.ENTERING, Stage.LEAVING)
-        if ack.command == SET_MODE and asking and self._mode.answered(now, ack.result, AFTER_NO):
+        if ack.command == CommandId.SET_MODE and asking and self._mode.answered(now, ack.result, AFTER_NO):
             self._notes.append(Note("warning", "mode_refused", f"{self._wanted} {why}"))
-        if ack.command == ARM and self._arm is not None and self._arm.answered(now, ack.result, ARM_AFTER_NO):
+        arming = self._arm if ack.command == CommandId.ARM else None
+        if arming is not None and arming.answered(now, ack.result, ARM_AFTER_NO):
             self._notes.append(Note("warning", "arming_refused", f"arming {why}"))
 
     def step(
         self, now: float, telemetry: Telemetry, *, ready: bool = True
-    ) -> tuple[list[MavMessage], list[Note]]:
+    ) -> tuple[list[Outgoing], list[Note]]:
         """Commands due now, and what changed. `ready` False holds the request for the guided mode back."""
-        messages: list[MavMessage] = []
+        messages: list[Outgoing] = []
         if telemetry.reboots != self._reboots:
             self._restarted(now, telemetry)
         heard = (telemetry.heartbeat_at, telemetry.mode)
@@ -149,12 +148,12 @@ class Control:
             px4 = self.kind is Kind.PX4_MULTICOPTER
             messages.append(commands.set_mode(self.to, number, px4=px4))
             if self._mode.unanswered:  # it may have been obeyed, and heartbeat and answer lost
-                messages.append(commands.request_message(self.to, HEARTBEAT))
+                messages.append(commands.request_message(self.to, MessageId.HEARTBEAT))
             if self._mode.tries == PATIENCE:
                 text = f"{self._wanted} asked for {PATIENCE} times, {telemetry.mode} reported: asking on"
                 self._notes.append(Note("error", "mode_unconfirmed", text))
         elif asking and known and self._mode.proof_due(now):
-            messages.append(commands.request_message(self.to, HEARTBEAT))
+            messages.append(commands.request_message(self.to, MessageId.HEARTBEAT))
         if self._arm is not None and known and self._arm.due(now):
             messages.append(commands.arm(self.to))
         notes, self._notes = self._notes, []

@@ -13,9 +13,9 @@ from collections.abc import Sequence
 from math import sqrt
 from typing import NamedTuple
 
-from onboard.autopilot.base import NEVER
-from onboard.wire.mavlink.commands import Target, set_message_interval
-from onboard.wire.mavlink.frames import MavMessage, frame_size, message_number
+from onboard.core.math.constants import NEVER
+from onboard.wire.mavlink.commands import CommandLong, Target, set_message_interval
+from onboard.wire.mavlink.ids import frame_size, message_number
 from onboard.wire.mavlink.modes import Kind
 
 SHARE = 0.75  # of a link's capacity to plan with: the rest is for answers, texts and what is not asked for
@@ -112,7 +112,7 @@ class Asking:
 
     def step(
         self, now: float, arrived: dict[str, float], buffer_free: float = 1.0, quality: float = 1.0
-    ) -> list[MavMessage]:
+    ) -> list[CommandLong]:
         """Requests due now; call about once a second.
 
         `arrived`: measured rates [Hz] by message, as they were sent; `quality`: the share of frames that
@@ -168,5 +168,5 @@ class Asking:
         """The least of the three that matter most."""
         return sum(need.least * frame_size(need.message, self._signed) for need in self._needs[:3])
 
-    def _requests(self, names: Sequence[str]) -> list[MavMessage]:
+    def _requests(self, names: Sequence[str]) -> list[CommandLong]:
         return [set_message_interval(self._to, message_number(name), self.rates[name]) for name in names]

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from typing import TypeVar, cast
 
-from onboard.autopilot.base import NEVER, Telemetry
+from onboard.autopilot.base import Telemetry
+from onboard.core.math.constants import NEVER
 from onboard.core.math.vectors import ZERO, Vec
 from onboard.wire.geodesy import Frame
 from onboard.wire.mavlink.frames import Packet
+from onboard.wire.mavlink.ids import AUTOPILOT
 from onboard.wire.mavlink.modes import Kind
-from onboard.wire.mavlink.telemetry import decode
 from onboard.wire.mavlink.values import (
     UNKNOWN,
     AirData,
@@ -30,7 +31,6 @@ from onboard.wire.mavlink.values import (
     Wind,
 )
 
-AUTOPILOT = 1  # MAV_COMP_ID_AUTOPILOT1
 OLD = 0.5  # [s] within which a lower sequence number means a late frame rather than a restart
 REBOOT = 3.0  # [s] by which the autopilot's clock must fall back to count as a restart
 NO_NUMBER = -1  # of a frame that came over another link
@@ -78,7 +78,7 @@ class Observer:
             self._link, self._heard_at = link, NEVER
             self._latest = {kind: (at, NO_NUMBER, value) for kind, (at, _, value) in self._latest.items()}
         self._count(now, packet.sequence)
-        value = decode(packet.message)
+        value = packet.value
         if value is None:
             return None
         if isinstance(value, Heartbeat) and value.kind is Kind.UNKNOWN and value.autopilot == 8:

@@ -9,8 +9,6 @@ from __future__ import annotations
 from collections import deque
 from typing import NamedTuple
 
-from onboard.wire.mavlink import commands
-from onboard.wire.mavlink.frames import MavMessage
 from onboard.wire.mavlink.values import Timesync
 
 WINDOW = 16  # answers from which the best is taken
@@ -36,15 +34,15 @@ class TimesyncEstimator:
         self._against: list[tuple[int, int]] = []
         self.jumps = 0
 
-    def ask(self, now_ns: int) -> MavMessage:
+    def ask(self, now_ns: int) -> Timesync:
         """A question to send now; about one a second is enough."""
         self._asked.append(now_ns)
-        return commands.timesync(now_ns)
+        return Timesync(0, now_ns)
 
-    def take(self, now_ns: int, value: Timesync) -> MavMessage | None:
+    def take(self, now_ns: int, value: Timesync) -> Timesync | None:
         """Take a TIMESYNC in; the answer to send where it was the autopilot's own question."""
         if value.answered_ns == 0:
-            return commands.timesync(value.asked_ns, now_ns)
+            return Timesync(now_ns, value.asked_ns)
         if value.asked_ns not in self._asked:
             return None
         self._asked.remove(value.asked_ns)

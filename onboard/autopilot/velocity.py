@@ -8,14 +8,13 @@ east and down: a velocity needs no origin.
 
 from __future__ import annotations
 
-from math import atan2
+from math import atan2, isfinite
 
 from onboard.autopilot.base import Envelope, Note, ReleaseMode, Setpoint, Stage, Step, Telemetry
-from onboard.autopilot.envelope import Shaper, is_finite
+from onboard.autopilot.envelope import Shaper
 from onboard.autopilot.mode_control import Control
-from onboard.core.math.vectors import Vec, add
-from onboard.wire.mavlink import commands
-from onboard.wire.mavlink.commands import Target
+from onboard.core.math.vectors import Vec, add, norm
+from onboard.wire.mavlink.commands import Target, VelocityTarget
 from onboard.wire.mavlink.modes import Kind
 from onboard.wire.mavlink.values import CommandAck
 
@@ -100,7 +99,7 @@ class VelocityAdapter:
         if setpoint is None or not self._may_send(px4):
             return Step(tuple(messages), tuple(notes))
         wanted = add(setpoint.velocity, setpoint.wind)
-        if not is_finite(wanted):
+        if not isfinite(norm(wanted)):
             if not self._complained:
                 notes.append(Note("error", "not_finite", "a setpoint that is no number was not sent"))
             self._complained = True
@@ -108,7 +107,7 @@ class VelocityAdapter:
         self._complained = False
         wanted = self._shaper.shape(now, wanted)
         yaw = yaw_along(wanted, telemetry.yaw) if px4 else None
-        messages.append(commands.velocity_target(self._to, telemetry.time_boot_s, wanted, yaw=yaw))
+        messages.append(VelocityTarget(self._to, telemetry.time_boot_s, wanted, yaw))
         return Step(tuple(messages), tuple(notes))
 
     def _may_send(self, px4: bool) -> bool:

@@ -12,7 +12,9 @@ from collections.abc import Mapping
 from enum import Enum
 from typing import NamedTuple
 
-from onboard.core.game.referee import Score, Verdict, judge, opening, passage
+from onboard.core.game.referee import GameResult, Score, Step, judge, opening, passage
+from onboard.core.game.rules import Target
+from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import ZERO, Vec, along, sub
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus.messages import (
@@ -28,14 +30,13 @@ from onboard.wire.bus.messages import (
 )
 from onboard.wire.bus.topics import EVADER_BRIEF, MASTER, OUTCOME, PHASE, SETUP, Topic
 
-NS = 1_000_000_000
 LEASE_S = 2.0
-LEASE_EVERY_NS = NS // 2
-LISTEN_NS = 12 * NS // 10  # a master that holds the lease speaks twice in this time
-HEALTH_NS = 3 * NS  # an agent silent for longer is not there: six heartbeats lost in a row
-SUPERSEDED_NS = 15 * NS // 10  # an agent's earlier process counts as gone after this silence
+LEASE_EVERY_NS = NS_PER_S // 2
+LISTEN_NS = 12 * NS_PER_S // 10  # a master that holds the lease speaks twice in this time
+HEALTH_NS = 3 * NS_PER_S  # an agent silent for longer is not there: six heartbeats lost in a row
+SUPERSEDED_NS = 15 * NS_PER_S // 10  # an agent's earlier process counts as gone after this silence
 READY_STAGES = ("ready", "acting")
-_WORDS = {Verdict.CAPTURED: "captured", Verdict.ARRIVED: "arrived", Verdict.ESCAPED: "escaped"}
+_WORDS = {GameResult.CAPTURED: "captured", GameResult.ARRIVED: "arrived", GameResult.ESCAPED: "escaped"}
 
 
 class Standing(Enum):
@@ -88,7 +89,7 @@ class GameMaster:
         self.nearest: dict[int, float] = {}  # smallest distance of each pursuer to the evader so far [m]
         self._timing = timing
         self._target = target
-        self._flat = setup.planar or setup.field_profile
+        self._rules = setup.rules.core()
         self._agents = {member.id: _Agent() for member in setup.roster}
         self._evader = next(member.id for member in setup.roster if member.role is Role.EVADER)
         self._pursuers = tuple(member.id for member in setup.roster if member.role is Role.PURSUER)
@@ -167,7 +168,7 @@ class GameMaster:
             self._count_down(wall_ns, now_ns)
         elif self.phase is Phase.RUNNING:
             self._look_after(wall_ns, now_ns)
-        elif self.phase is Phase.ENDED and now_ns - self._ended_ns >= round(self._timing.recovery_s * NS):
+        elif self.phase is Phase.ENDED and now_ns - self._ended_ns >= self._timing.recovery_s * NS_PER_S:
             self._enter(Phase.RECOVERY, wall_ns, "")
 
     def lacking(self, now_ns: int) -> dict[int, str]:
@@ -216,11 +217,11 @@ class GameMaster:
 
     def _stage(self, wall_ns: int, now_ns: int) -> None:
         lacking = self.lacking(now_ns)
-        patience_ns = self._timing.timeout_s * NS
+        patience_ns = self._timing.timeout_s * NS_PER_S
         if not lacking and self._started:
             for agent in self._agents.values():
                 agent.acting_nonce = agent.health.nonce if agent.health else 0
-            self.t0_ns = wall_ns + round(self._timing.ready_s * NS)
+            self.t0_ns = wall_ns + round(self._timing.ready_s * NS_PER_S)
             self._enter(Phase.READY, wall_ns, "")
         elif lacking and patience_ns > 0 and now_ns - self._staged_ns > patience_ns:
             missing = "; ".join(f"vehicle {id}: {reason}" for id, reason in sorted(lacking.items()))
@@ -260,32 +261,30 @@ class GameMaster:
 
     def _judge(self, wall_ns: int, now_ns: int, here: dict[int, Vec]) -> None:
         assert self.score is not None
-        setup, evader = self.setup, self._evader
-        start, dt = (self._before_ns - self.t0_ns) / NS, (wall_ns - self._before_ns) / NS
+        evader = self._evader
+        start, dt = (self._before_ns - self.t0_ns) / NS_PER_S, (wall_ns - self._before_ns) / NS_PER_S
         ids = tuple(id for id in self._pursuers if id in self._before and id in here)
         before = tuple(self._before[id] for id in ids)
         after = tuple(here[id] for id in ids)
         target = ZERO if self._target is None else self._judged(self._target)
-        self.score = score = judge(
-            self.score, start, dt, self._before[evader], here[evader], before, after,
-            setup.capture_radius, setup.safety_distance, self._target is not None, target,
-            setup.epsilon_min, setup.horizon,
-        )  # fmt: skip
+        step = Step(start, dt, self._before[evader], here[evader], before, after)
+        goal = Target(self._target is not None, target)
+        self.score = score = judge(self.score, step, self._rules, goal)
         played = min(1.0, (score.time - start) / dt)  # a game ends within a step
         end = _part(self._before[evader], here[evader], played)
         for id, p0, p1 in zip(ids, before, after, strict=True):
             seen = passage(p0, _part(p0, p1, played), self._before[evader], end, 0.0).smallest
             self.nearest[id] = min(self.nearest.get(id, seen), seen)
-        if score.verdict != Verdict.RUNNING:
+        if score.verdict != GameResult.RUNNING:
             captor = ids[score.captor] if score.captor >= 0 else 0
-            self._end(_WORDS[Verdict(score.verdict)], score.time, captor, wall_ns, now_ns, "")
+            self._end(_WORDS[GameResult(score.verdict)], score.time, captor, wall_ns, now_ns, "")
 
     def _judged(self, position: Vec) -> Vec:
         """Plane games and field profiles are judged horizontally."""
-        return Vec(position.x, position.y, 0.0) if self._flat else position
+        return Vec(position.x, position.y, 0.0) if self.setup.flat else position
 
     def _elapsed(self, wall_ns: int) -> float:
-        return max(0.0, (wall_ns - self.t0_ns) / NS) if self.phase is Phase.RUNNING else 0.0
+        return max(0.0, (wall_ns - self.t0_ns) / NS_PER_S) if self.phase is Phase.RUNNING else 0.0
 
     def _end(self, verdict: str, time: float, captor: int, wall_ns: int, now_ns: int, reason: str) -> None:
         smallest = self.score.smallest if self.score is not None else -1.0

@@ -14,7 +14,7 @@ import msgspec
 
 from onboard.config import strict as config
 from onboard.config.strict import ConfigError
-from onboard.core.math.states import Limits
+from onboard.core.math.states import VehicleLimits
 from onboard.core.math.vectors import Vec, distance
 from onboard.core.route.tracking import Waypoint
 
@@ -50,7 +50,7 @@ class Route(NamedTuple):
     name: str
     waypoints: tuple[Waypoint, ...]
     nominal: float  # [m/s; air]
-    limits: Limits
+    limits: VehicleLimits
 
 
 def load_route(path: Path) -> Route:
@@ -95,7 +95,7 @@ def check_route(spec: RouteSpec, name: str) -> Route:
         climb = degrees(asin(max(-1.0, min(1.0, (height - before.position[2]) / far))))
         demand(pitch[0] <= climb <= pitch[1], f"{at}.position", f"unreachable: a climb of {climb:.1f} deg",
                f"{pitch[0]:g} to {pitch[1]:g} deg")  # fmt: skip
-    limits = Limits(low, high, radians(pitch[0]), radians(pitch[1]))
+    limits = VehicleLimits(low, high, radians(pitch[0]), radians(pitch[1]))
     return Route(spec.name, tuple(Waypoint(vec(p), p.time) for p in points), spec.nominal, limits)
 
 

@@ -9,19 +9,43 @@ from __future__ import annotations
 
 from enum import Enum
 from hashlib import sha256
-from math import inf, radians
+from math import inf
 from pathlib import Path
 from typing import Annotated
 
 import msgspec
 
 from onboard.config import strict as config
+from onboard.config.bounds import (
+    Altitude,
+    ControlRate,
+    Coordinate,
+    Distance,
+    Duration,
+    Latitude,
+    Longitude,
+    NotNegative,
+    PartialShare,
+    PitchDeg,
+    PositiveAcceleration,
+    PositiveDistance,
+    PositiveDuration,
+    Rate,
+    Seed,
+    Share,
+    Speed,
+    SystemId,
+    TurnRateDeg,
+    YawDeg,
+)
+from onboard.config.derive import Key, core_from, struct_from
 from onboard.config.strict import ConfigError
-from onboard.core.math.states import Limits
+from onboard.core.game.rules import Rules
+from onboard.core.math.states import VehicleLimits
 from onboard.core.math.vectors import Vec
 from onboard.pilot.predictor_choice import Predicting
 
-Point = Annotated[tuple[float, ...], msgspec.Meta(min_length=2, max_length=3)]
+Point = Annotated[tuple[Coordinate, ...], msgspec.Meta(min_length=2, max_length=3)]
 
 
 class Part(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -45,36 +69,51 @@ class AirframeKind(Enum):
     COORDINATED = "coordinated"
 
 
-class Parameters(Part, frozen=True, rename={"lambda_": "lambda"}):
-    """The game's parameters, in the paper's symbols."""
+TimeStep = Annotated[float, msgspec.Meta(gt=0.0, le=1.0, description="a time step in (0, 1] s")]
 
-    R: float = 2.0  # capture radius of (6) [m]
-    rho: float | None = None  # safety distance ρ of (4) [m]; 2R where it is not given
-    lambda_: float = 100.0  # λ of (21)–(22)
-    beta: float = 1.0  # β of (22)
-    epsilon_min: float = 1.0  # ε_min of (5) [m]
-    dt: float = 0.05  # time step of the plane and compiled games [s]
-    horizon: float = 100.0  # not captured until then = escaped [s]
-    separation: float = 0.0  # between pursuers [m]; 0 = off (Figure 8b)
+RULE_KEYS = {
+    "R": Key(PositiveDistance, 2.0),
+    "rho": Key(PositiveDistance, None),  # 2R where it is not given
+    "lambda_": Key(NotNegative, name="lambda"),
+    "beta": Key(NotNegative),
+    "epsilon_min": Key(PositiveDistance),
+    "dt": Key(TimeStep, 0.05),  # of the plane and compiled games
+    "horizon": Key(PositiveDuration),
+    "separation": Key(Distance),
+}
+"""How `[parameters]` writes the core's Rules; `planar` follows from the positions."""
+
+LIMIT_KEYS = {
+    "speed_min": Key(Speed),
+    "speed_max": Key(Speed, None),  # `speed` where it is not given
+    "pitch_min": Key(PitchDeg, degrees=True),
+    "pitch_max": Key(PitchDeg, degrees=True),
+    "yaw_min": Key(YawDeg, degrees=True),
+    "yaw_max": Key(YawDeg, degrees=True),
+    "turn_rate": Key(TurnRateDeg, 60.0, degrees=True),
+}
+"""How a vehicle's table writes the core's VehicleLimits."""
 
 
-class VehicleSpec(Part, frozen=True):
-    """One vehicle. Angles in degrees."""
+class Parameters(struct_from(Rules, Part, RULE_KEYS, ("planar",))):  # type: ignore[misc]
+    """The game's rules in the paper's symbols, and the time step `dt` of the plane and compiled games [s]."""
+
+
+class Player(Part, frozen=True):
+    """Who plays and from where."""
 
     position: Point
-    speed: float  # [m/s; air] what the game reckons with
-    id: int | None = None  # evader 1, pursuers from 2 where not given
+    speed: Speed  # [m/s; air] what the game reckons with
+    id: SystemId | None = None  # evader 1, pursuers from 2 where not given
     strategy: str = ""  # "" = the default of the role
     target: Point | None = None  # the evader's alone
     heading_deg: float | None = None  # at the start; None = towards the target or the evader
-    speed_min: float = 0.0
-    speed_max: float | None = None  # None = speed
-    pitch_min_deg: float = -90.0
-    pitch_max_deg: float = 90.0
-    yaw_min_deg: float = -180.0
-    yaw_max_deg: float = 180.0
-    turn_rate_deg: float = 60.0  # [deg/s] of the kinematic airframe
-    acceleration: float = 4.0  # [m/s²] of the kinematic airframe
+
+
+class VehicleSpec(struct_from(VehicleLimits, Player, LIMIT_KEYS)):  # type: ignore[misc]
+    """One vehicle: who plays, its limits, and how it is simulated. Angles in degrees."""
+
+    acceleration: PositiveAcceleration = 4.0  # [m/s²] of the kinematic airframe
     autopilot: Kind | None = None  # None = the scenario's
     airframe: AirframeKind | None = None
 
@@ -82,67 +121,66 @@ class VehicleSpec(Part, frozen=True):
         """Start in the game frame."""
         return vec(self.position)
 
-    def limits(self) -> Limits:
+    def limits(self) -> VehicleLimits:
         """(2)–(3) for the core [rad]."""
-        return Limits(
-            self.speed_min,
-            self.speed if self.speed_max is None else self.speed_max,
-            radians(self.pitch_min_deg),
-            radians(self.pitch_max_deg),
-            radians(self.yaw_min_deg),
-            radians(self.yaw_max_deg),
-        )
+        fastest = self.speed if self.speed_max is None else self.speed_max
+        return core_from(self, VehicleLimits, LIMIT_KEYS, speed_max=fastest)
 
 
 class OriginSpec(Part, frozen=True):
     """Origin of the game frame (WGS-84; altitude above mean sea level)."""
 
-    latitude_deg: float = 47.397742
-    longitude_deg: float = 8.545594
-    altitude_m: float = 488.0
+    latitude_deg: Latitude = 47.397742
+    longitude_deg: Longitude = 8.545594
+    altitude_m: Altitude = 488.0
 
 
 class SensorSpec(Part, frozen=True):
     """The simulated sensor that publishes tracks."""
 
-    rate_hz: float = 10.0
-    sigma: float = 0.0  # position noise, one sigma an axis [m]
-    sigma_velocity: float = 0.0  # velocity noise [m/s]
-    delay_s: float = 0.0
-    dropout: float = 0.0  # share of lost measurements
+    rate_hz: Rate = 10.0
+    sigma: Distance = 0.0  # position noise, one sigma an axis [m]
+    sigma_velocity: Speed = 0.0  # velocity noise [m/s]
+    delay_s: Duration = 0.0
+    dropout: PartialShare = 0.0  # share of lost measurements
 
 
 class ImpairmentSpec(Part, frozen=True):
     """What happens to datagrams (and, where `bus` says so, to the memory bus)."""
 
-    loss: float = 0.0  # share
-    delay_s: float = 0.0
-    jitter_s: float = 0.0
-    duplication: float = 0.0  # share
-    reordering: float = 0.0  # share
-    burst_rate: float = 0.0  # bursts per second
-    burst_s: float = 0.0  # mean length of a burst in which all is lost
-    bit_error: float = 0.0  # share of datagrams with a flipped bit
+    loss: Share = 0.0  # share
+    delay_s: Duration = 0.0
+    jitter_s: Duration = 0.0
+    duplication: Share = 0.0  # share
+    reordering: Share = 0.0  # share
+    burst_rate: NotNegative = 0.0  # bursts per second
+    burst_s: Duration = 0.0  # mean length of a burst in which all is lost
+    bit_error: Share = 0.0  # share of datagrams with a flipped bit
     bus: bool = False
 
 
 class WindSpec(Part, frozen=True):
     """Wind. `from_deg` is the direction it comes from, as pilots say it."""
 
-    speed: float = 0.0  # mean, at 6 m (20 ft) above ground [m/s]
+    speed: Speed = 0.0  # mean, at 6 m (20 ft) above ground [m/s]
     from_deg: float = 0.0
     shear: bool = False  # MIL-F-8785C profile
-    gust_sigma: float = 0.0  # σ of the Dryden gusts [m/s]
-    correlation_m: float = 0.0  # 0 = each vehicle its own gusts
+    gust_sigma: Speed = 0.0  # σ of the Dryden gusts [m/s]
+    correlation_m: Distance = 0.0  # 0 = each vehicle its own gusts
     recorded: str = ""  # CSV file in place of the model
+
+
+Polygon = Annotated[
+    tuple[tuple[Coordinate, Coordinate], ...], msgspec.Meta(min_length=3, description="three or more corners")
+]
 
 
 class FenceSpec(Part, frozen=True):
     """Geofence: polygon of [north, east] and a height band [m]."""
 
-    polygon: tuple[tuple[float, float], ...]
-    height_min: float
-    height_max: float
+    polygon: Polygon
+    height_min: Coordinate
+    height_max: Coordinate
 
 
 class Flight(Part, frozen=True):
@@ -151,15 +189,15 @@ class Flight(Part, frozen=True):
     autopilot: Kind = Kind.ARDUCOPTER
     airframe: AirframeKind = AirframeKind.KINEMATIC
     origin: OriginSpec = OriginSpec()
-    height: float = 50.0  # [m] at which a plane game is flown
+    height: Distance = 50.0  # [m] at which a plane game is flown
     ground_start: bool = False
-    ready_s: float = 5.0  # from ready to t₀
-    timeout_s: float = 60.0  # to get everybody ready
+    ready_s: Duration = 5.0  # from ready to t₀
+    timeout_s: Duration = 60.0  # to get everybody ready
     sensor: SensorSpec = SensorSpec()
     impairment: ImpairmentSpec = ImpairmentSpec()
     wind: WindSpec = WindSpec()
     fence: FenceSpec | None = None
-    control_rate_hz: float = 20.0
+    control_rate_hz: ControlRate = 20.0
     prediction: Predicting = Predicting.NETWORK  # what carries tracks forward in the agents
     field_profile: bool = False
 
@@ -172,14 +210,19 @@ class Expect(Part, frozen=True):
     reaches: bool | None = None  # None: no target
 
 
+Pursuers = Annotated[
+    tuple[VehicleSpec, ...], msgspec.Meta(min_length=1, description="at least one pursuer")
+]
+
+
 class Scenario(Part, frozen=True):
     """A whole scenario."""
 
     name: str
     evader: VehicleSpec
-    pursuers: tuple[VehicleSpec, ...]
+    pursuers: Pursuers
     description: str = ""
-    seed: int = 0
+    seed: Seed = 0
     parameters: Parameters = Parameters()
     flight: Flight = Flight()
     expect: Expect | None = None
@@ -201,9 +244,11 @@ class Scenario(Part, frozen=True):
         return tuple(index + 1 if v.id is None else v.id for index, v in enumerate(self.vehicles))
 
     @property
-    def rho(self) -> float:
-        """Safety distance ρ of (4) [m]."""
-        return 2.0 * self.parameters.R if self.parameters.rho is None else self.parameters.rho
+    def rules(self) -> Rules:
+        """The rules for the core."""
+        p = self.parameters
+        rho = 2.0 * p.R if p.rho is None else p.rho
+        return core_from(p, Rules, RULE_KEYS, rho=rho, planar=self.planar)
 
     def hash(self) -> str:
         """Short fingerprint of the contents (not of the file's layout)."""
@@ -227,56 +272,24 @@ def check(scenario: Scenario, name: str) -> Scenario:
         if not ok:
             raise ConfigError(f"{name}: {key}: found {found}, expected {expected}")
 
-    demand(scenario.seed >= 0, "seed", scenario.seed, "zero or more")
-    demand(len(scenario.pursuers) > 0, "pursuers", "none", "at least one pursuer")
     p = scenario.parameters
-    demand(p.R > 0, "parameters.R", p.R, "a positive distance [m]")
     demand(p.rho is None or p.rho >= p.R, "parameters.rho", p.rho, f"at least R = {p.R:g} m")
-    demand(p.lambda_ >= 0, "parameters.lambda", p.lambda_, "zero or more")
-    demand(p.beta >= 0, "parameters.beta", p.beta, "zero or more")
-    demand(p.epsilon_min > 0, "parameters.epsilon_min", p.epsilon_min, "a positive distance [m]")
-    demand(p.separation >= 0, "parameters.separation", p.separation, "zero or more [m]")
-    demand(0 < p.dt <= 1, "parameters.dt", p.dt, "a time step in (0, 1] s")
-    demand(0 < p.horizon <= 86400, "parameters.horizon", p.horizon, "a duration in (0, 86400] s")
     for index, v in enumerate(scenario.vehicles):
         at = "evader" if index == 0 else f"pursuers[{index - 1}]"
-        demand(v.speed >= 0, f"{at}.speed", v.speed, "zero or more [m/s]")
         demand(index > 0 or v.speed > 0, f"{at}.speed", v.speed, "a positive speed [m/s]")
         high = inf if v.speed_max is None else v.speed_max
-        demand(0 <= v.speed_min <= v.speed, f"{at}.speed_min", v.speed_min, f"0 to speed = {v.speed:g} m/s")
+        demand(v.speed_min <= v.speed, f"{at}.speed_min", v.speed_min, f"0 to speed = {v.speed:g} m/s")
         demand(high >= v.speed, f"{at}.speed_max", v.speed_max, f"at least speed = {v.speed:g} m/s")
-        demand(-90 <= v.pitch_min_deg <= v.pitch_max_deg <= 90, f"{at}.pitch_min_deg",
-               f"{v.pitch_min_deg:g} with pitch_max_deg {v.pitch_max_deg:g}", "−90 ≤ min ≤ max ≤ 90")
-        demand(-360 <= v.yaw_min_deg <= v.yaw_max_deg <= 360, f"{at}.yaw_min_deg",
-               f"{v.yaw_min_deg:g} with yaw_max_deg {v.yaw_max_deg:g}", "−360 ≤ min ≤ max ≤ 360")
-        demand(v.turn_rate_deg > 0, f"{at}.turn_rate_deg", v.turn_rate_deg, "a positive rate [deg/s]")
-        demand(v.acceleration > 0, f"{at}.acceleration", v.acceleration, "a positive acceleration [m/s²]")
+        for angle, most in (("pitch", 90), ("yaw", 360)):
+            low, high = (getattr(v, f"{angle}_{end}_deg") for end in ("min", "max"))
+            demand(low <= high, f"{at}.{angle}_min_deg", f"{low:g} with {angle}_max_deg {high:g}",
+                   f"−{most} ≤ min ≤ max ≤ {most}")
         demand(v.target is None or index == 0, f"{at}.target", v.target, "no target: only the evader has one")
-        demand(v.id is None or 1 <= v.id <= 250, f"{at}.id", v.id, "a MAVLink system id from 1 to 250")
     ids = scenario.ids
     demand(len(set(ids)) == len(ids), "pursuers.id", list(ids), "ids that differ")
     demand(max(ids) <= 250, "pursuers", f"{len(scenario.pursuers)} pursuers", "system ids up to 250")
-    f = scenario.flight
-    demand(-90 < f.origin.latitude_deg < 90, "flight.origin.latitude_deg", f.origin.latitude_deg, "−90 to 90")
-    demand(-180 <= f.origin.longitude_deg <= 180, "flight.origin.longitude_deg", f.origin.longitude_deg,
-           "−180 to 180")
-    demand(f.sensor.rate_hz > 0, "flight.sensor.rate_hz", f.sensor.rate_hz, "a positive rate [Hz]")
-    demand(0 < f.control_rate_hz <= 50, "flight.control_rate_hz", f.control_rate_hz, "a rate in (0, 50] Hz")
-    for key in ("ready_s", "timeout_s"):
-        demand(getattr(f, key) >= 0, f"flight.{key}", getattr(f, key), "zero or more [s]")
-    for key in ("sigma", "sigma_velocity", "delay_s"):
-        demand(getattr(f.sensor, key) >= 0, f"flight.sensor.{key}", getattr(f.sensor, key), "zero or more")
-    demand(0 <= f.sensor.dropout < 1, "flight.sensor.dropout", f.sensor.dropout, "a share in [0, 1)")
-    for key in ("loss", "duplication", "reordering", "bit_error"):
-        share = getattr(f.impairment, key)
-        demand(0 <= share <= 1, f"flight.impairment.{key}", share, "a share in [0, 1]")
-    for key in ("delay_s", "jitter_s", "burst_rate", "burst_s"):
-        value = getattr(f.impairment, key)
-        demand(value >= 0, f"flight.impairment.{key}", value, "zero or more")
-    demand(f.wind.speed >= 0, "flight.wind.speed", f.wind.speed, "zero or more [m/s]")
-    demand(f.wind.gust_sigma >= 0, "flight.wind.gust_sigma", f.wind.gust_sigma, "zero or more [m/s]")
-    if f.fence is not None:
-        demand(len(f.fence.polygon) >= 3, "flight.fence.polygon", len(f.fence.polygon), "three or more")
-        demand(f.fence.height_min < f.fence.height_max, "flight.fence.height_min", f.fence.height_min,
-               f"less than height_max = {f.fence.height_max:g} m")
+    fence = scenario.flight.fence
+    if fence is not None:
+        demand(fence.height_min < fence.height_max, "flight.fence.height_min", fence.height_min,
+               f"less than height_max = {fence.height_max:g} m")
     return scenario

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from math import radians
-
 from onboard.core.math.vectors import Vec
 from onboard.game.scenario import Scenario, VehicleSpec, vec
-from onboard.wire.bus.messages import Fence, Member, Origin, Role, Setup
+from onboard.wire.bus.messages import Fence, LimitsMessage, Member, Origin, Role, RulesMessage, Setup
 
 
 def flown(scenario: Scenario, point: Vec) -> Vec:
@@ -28,20 +26,17 @@ def target_of(scenario: Scenario) -> Vec | None:
 
 def setup_of(scenario: Scenario, game: str, master: str) -> Setup:
     """`game/setup`: everything but the evader's target."""
-    p, flight = scenario.parameters, scenario.flight
+    flight = scenario.flight
     roster = []
     for index, (id, spec) in enumerate(zip(scenario.ids, scenario.vehicles, strict=True)):
-        place, limits = staging_place(scenario, spec), spec.limits()
+        place = staging_place(scenario, spec)
         roster.append(
             Member(
                 id=id,
                 role=Role.PURSUER if index else Role.EVADER,
-                speed_max=spec.speed,
+                speed=spec.speed,
                 start=(place.x, place.y, place.z),
-                speed_min=limits.speed_min,
-                pitch_min=limits.pitch_min,
-                pitch_max=limits.pitch_max,
-                turn_rate=radians(spec.turn_rate_deg),
+                limits=LimitsMessage(*spec.limits()),
                 strategy=spec.strategy,
             )
         )
@@ -53,15 +48,8 @@ def setup_of(scenario: Scenario, game: str, master: str) -> Setup:
         master=master,
         origin=Origin(flight.origin.latitude_deg, flight.origin.longitude_deg, flight.origin.altitude_m),
         roster=tuple(roster),
-        capture_radius=p.R,
-        safety_distance=scenario.rho,
-        lambda_=p.lambda_,
-        beta=p.beta,
-        epsilon_min=p.epsilon_min,
-        horizon=p.horizon,
-        planar=scenario.planar,
+        rules=RulesMessage(*scenario.rules),
         fence=None if fence is None else Fence(fence.polygon, fence.height_min, fence.height_max),
-        separation=p.separation,
         track_sigma=flight.sensor.sigma,
         seed=scenario.seed,
         field_profile=flight.field_profile,

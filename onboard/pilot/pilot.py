@@ -1,4 +1,4 @@
-"""The stateful thinker: own state, tracks and team mates in, a decision with its reasons out.
+"""From the own state, tracks and team mates to a decision with its reasons.
 
 Strategies run in the moving air mass: every velocity less the wind, γ from airspeeds, a target on
 the ground moving at −w. Multicopters hold groundspeed: their wind is zero. Tracks are carried
@@ -12,18 +12,26 @@ from math import inf
 from typing import NamedTuple
 
 from onboard.core.game.advance import EvaderStrategy, PursuerStrategy
-from onboard.core.geometry.apollonius import apollonius_sphere, intercept
+from onboard.core.game.views import (
+    EvaderView,
+    PursuerView,
+    Sighting,
+    evader_view,
+    heading_at,
+    level,
+    nearest_mate,
+    pursuer_view,
+)
+from onboard.core.geometry.apollonius import apollonius_sphere
 from onboard.core.geometry.assessment import half_angle
 from onboard.core.geometry.cones import blocked_cones
-from onboard.core.math.states import Vehicle
-from onboard.core.math.vectors import TINY, ZERO, Vec, add, along, clamp, distance, norm, scale, sub
-from onboard.core.strategy.evasion import EvaderView
+from onboard.core.math.states import Mate, Vehicle
+from onboard.core.math.vectors import ZERO, Vec, add, along, clamp, scale, sub
 from onboard.core.strategy.knowledge import Decision, Level, Module
-from onboard.core.strategy.pursuit import PursuerView, heading_at
 from onboard.core.strategy.registry import DEFAULT, EVADERS, PURSUERS
 from onboard.pilot.memory import Memory
 from onboard.pilot.predictor import Prediction, PredictorKind
-from onboard.pilot.setup import GameSetup, MateState, Own, Player, Side, TrackSample
+from onboard.pilot.setup import GameSetup, Own, Player, Side
 
 HEIGHT_GAIN = 0.5  # of keeping the height in a plane game [1/s]
 CLIMB_SHARE = 0.3  # and the share of the speed it may use
@@ -45,10 +53,10 @@ class PilotDecision(NamedTuple):
     miss: float  # predicted distance left [m]
     sigma: float  # stated error of the worst track that is needed [m]; inf = none known
     predictor: str  # what spoke for that track
-    lacks: tuple[str, ...]
-    own: Vehicle
+    lacks: tuple[str, ...]  # what is missing for a decision, in words
+    own: Vehicle  # as the strategy saw it
     others: tuple[Vehicle, ...]  # opponents as the strategy saw them
-    rho: float
+    rho: float  # safety distance ρ of the blocked cones [m]
 
 
 def drawing(thought: PilotDecision, side: Side) -> tuple[tuple[Quad, ...], tuple[Quad, ...]]:
@@ -75,10 +83,10 @@ class Question(NamedTuple):
     me: Player
     seen: Vehicle  # the own vehicle as the strategy sees it
     others: tuple[Vehicle, ...]  # opponents as the strategy sees them
-    air: Vec  # wind that the view was made in [m/s; where the air moves to]
+    wind: Vec  # that the view was made in [m/s; where the air moves to]
     sigma: float  # stated error of the worst track that is needed [m]; inf = one is missing
     predictor: str  # what spoke for that track
-    lacks: tuple[str, ...]
+    lacks: tuple[str, ...]  # what is missing, in words
 
 
 class Viewpoint:
@@ -95,17 +103,20 @@ class Viewpoint:
         self._modules: dict[int, Module] = {} if known is None else {r.id: r.module for r in known.table}
 
     def look(
-        self, now: float, own: Own, mates: tuple[MateState, ...], setup: GameSetup, wind: Vec, memory: Memory
+        self, now: float, own: Own, mates: tuple[Mate, ...], setup: GameSetup, memory: Memory
     ) -> Question | PilotDecision:
         """What the strategy is to be asked at instant `now` [s]; where it cannot be asked, a decision that
-        says what is lacking. `wind` is ZERO for multicopters [m/s; where the air moves to]."""
+        says what is lacking.
+
+        `mates` are the team mates as they are now (`carried`); the own vehicle among them is left out.
+        `memory` holds the tracks that were taken so far; it is changed in place.
+        """
         me = setup.player(self.id)
         if me is None:
-            return self._silent(own, ("a place in the roster",), inf)
-        air = _flat(wind) if setup.planar else wind
-        seen = Vehicle(
-            _seen(own.position, setup.planar), sub(_seen(own.velocity, setup.planar), air), me.speed
-        )
+            return self._silent(own, ("a place in the roster",))
+        planar = setup.rules.planar
+        wind = level(own.wind, planar)
+        seen = Vehicle(level(own.position, planar), sub(level(own.velocity, planar), wind), me.speed)
         known: list[tuple[Player, Prediction]] = []
         lacks: list[str] = []
         for player in setup.opponents(self.side):
@@ -115,30 +126,33 @@ class Viewpoint:
             else:
                 known.append((player, prediction))
         if not known:
-            return self._silent(own, tuple(lacks), inf)
+            return self._silent(own, tuple(lacks))
         worst = max((p for _, p in known), key=lambda p: p.sigma)
-        others = tuple(self._opponent(player, p, now, air, setup, memory) for player, p in known)
+        others = tuple(_opponent(player, p, now, wind, planar, memory) for player, p in known)
         view: EvaderView | PursuerView
         if self.side is Side.EVADER:
-            view = self._as_evader(seen, me, others, setup, air)
+            goal = setup.target._replace(position=level(setup.target.position, planar))
+            view = evader_view(seen, me.limits, others, goal, wind, setup.rules)
         else:
-            view = self._as_pursuer(now, seen, me, others[0], known[0][0], mates, setup, air, memory)
+            later = memory.predict(known[0][0].id, now + setup.control.lookahead)
+            places = tuple(level(mate.position, planar) for mate in mates if mate.id != self.id)
+            mate = nearest_mate(seen.position, places, -1)
+            sighting = _sighting(others[0], later, wind, setup)
+            view = pursuer_view(seen, me.limits, sighting, mate, setup.control, setup.rules)
         sigma = inf if lacks else worst.sigma
-        return Question(
-            view, own, me, seen, others, air, sigma, worst.source.name.lower(), tuple(lacks)
-        )
+        return Question(view, own, me, seen, others, wind, sigma, worst.source.name.lower(), tuple(lacks))
 
     def conclude(self, question: Question, decision: Decision, setup: GameSetup) -> PilotDecision:
         """The strategy's answer to a question, with everything a person needs to see why."""
-        own = question.own
+        own, planar = question.own, setup.rules.planar
         return PilotDecision(
             decides=True,
-            velocity=self._steered(decision, own, question.me, setup),
+            velocity=_steered(decision, own, question.me, planar),
             level=Level.TACTICAL.name.lower(),
             module=self._modules.get(decision.rule, Module.INTELLIGENT).name.lower(),
             strategy=self.strategy,
             rule=decision.rule.name.lower(),
-            aim=along(_at_height(decision.aim, own.position, setup.planar), question.air, decision.time),
+            aim=along(_at_height(decision.aim, own.position, planar), question.wind, decision.time),
             time=decision.time,
             miss=decision.miss,
             sigma=question.sigma,
@@ -146,89 +160,14 @@ class Viewpoint:
             lacks=question.lacks,
             own=question.seen,
             others=question.others,
-            rho=setup.rho,
+            rho=setup.rules.rho,
         )
 
-    def _opponent(
-        self, player: Player, p: Prediction, now: float, wind: Vec, setup: GameSetup, memory: Memory
-    ) -> Vehicle:
-        velocity = sub(_seen(p.velocity, setup.planar), wind)
-        speed = player.speed if player.speed > 0.0 else memory.top_speed(player.id, now, velocity)
-        return Vehicle(_seen(p.position, setup.planar), velocity, speed)
-
-    def _as_evader(
-        self, own: Vehicle, me: Player, pursuers: tuple[Vehicle, ...], setup: GameSetup, wind: Vec
-    ) -> EvaderView:
-        target = _seen(setup.target, setup.planar)
-        drift = norm(wind)
-        if setup.has_target and drift > TINY:  # on the ground, so moving at −w in the air
-            meeting = intercept(target, scale(wind, -1.0 / drift), drift, own.position, own.speed)
-            target = meeting.point if meeting.exists else target
-        return EvaderView(
-            own,
-            me.limits,
-            pursuers,
-            blocked_cones(own, pursuers, setup.rho),
-            setup.has_target,
-            target,
-            setup.R,
-            setup.lambda_,
-            setup.beta,
-            setup.planar,
-        )
-
-    def _as_pursuer(
-        self,
-        now: float,
-        own: Vehicle,
-        me: Player,
-        evader: Vehicle,
-        evader_player: Player,
-        mates: tuple[MateState, ...],
-        setup: GameSetup,
-        wind: Vec,
-        memory: Memory,
-    ) -> PursuerView:
-        ahead = memory.predict(evader_player.id, now + setup.lookahead)
-        place = evader.position
-        if ahead is not None:  # in the air mass as it lies now
-            place = along(_seen(ahead.position, setup.planar), wind, -setup.lookahead)
-        nearest = None
-        for mate in mates:
-            if mate.id == self.id:
-                continue
-            there = _seen(along(mate.position, mate.velocity, clamp(now - mate.t, 0.0, 1.0)), setup.planar)
-            if nearest is None or distance(there, own.position) < distance(nearest, own.position):
-                nearest = there
-        return PursuerView(
-            own,
-            me.limits,
-            evader,
-            heading_at(evader),
-            nearest is not None,
-            own.position if nearest is None else nearest,
-            setup.separation,
-            ahead is not None,
-            place,
-            setup.lookahead,
-            setup.dt,
-            setup.planar,
-        )
-
-    def _steered(self, decision: Decision, own: Own, me: Player, setup: GameSetup) -> Vec:
-        """The decided velocity; in a plane game with what keeps the height of the staging place."""
-        velocity = scale(decision.direction, decision.speed)
-        if not setup.planar:
-            return velocity
-        most = CLIMB_SHARE * decision.speed
-        down = clamp(-HEIGHT_GAIN * (me.height + own.position.z), -most, most)
-        return add(_flat(velocity), Vec(0.0, 0.0, down))
-
-    def _silent(self, own: Own, lacks: tuple[str, ...], sigma: float) -> PilotDecision:
+    def _silent(self, own: Own, lacks: tuple[str, ...]) -> PilotDecision:
         here = Vehicle(own.position, own.velocity, 0.0)
         return PilotDecision(
             False, ZERO, Level.TACTICAL.name.lower(), "", self.strategy, "none", own.position, 0.0, 0.0,
-            sigma, PredictorKind.NOTHING.name.lower(), lacks, here, (), 0.0,
+            inf, PredictorKind.NOTHING.name.lower(), lacks, here, (), 0.0,
         )
 
 
@@ -257,32 +196,42 @@ class Pilot(Viewpoint):
             self._evade = EVADERS[self.strategy].decide
 
     def step(
-        self,
-        now: float,
-        own: Own,
-        tracks: tuple[TrackSample, ...],
-        mates: tuple[MateState, ...],
-        setup: GameSetup,
-        wind: Vec,
-        memory: Memory,
-    ) -> tuple[PilotDecision, Memory]:
-        """Decide at instant `now` [s]. `tracks` are the measurements since the last step, `wind` is ZERO
-        for multicopters [m/s; where the air moves to]. The memory is moved on and given back."""
-        memory.take(tracks)
-        question = self.look(now, own, mates, setup, wind, memory)
+        self, now: float, own: Own, mates: tuple[Mate, ...], setup: GameSetup, memory: Memory
+    ) -> PilotDecision:
+        """Decide at instant `now` [s]; see `look`."""
+        question = self.look(now, own, mates, setup, memory)
         if isinstance(question, PilotDecision):
-            return question, memory
+            return question
         view = question.view
         decision = self._evade(view) if isinstance(view, EvaderView) else self._pursue(view)
-        return self.conclude(question, decision, setup), memory
+        return self.conclude(question, decision, setup)
 
 
-def _flat(v: Vec) -> Vec:
-    return Vec(v.x, v.y, 0.0)
+def _opponent(
+    player: Player, p: Prediction, now: float, wind: Vec, planar: bool, memory: Memory
+) -> Vehicle:
+    """An opponent in the moving air, as fast as it is declared to be or was ever seen to fly."""
+    velocity = sub(level(p.velocity, planar), wind)
+    speed = player.speed if player.speed > 0.0 else memory.top_speed(player.id, now, velocity)
+    return Vehicle(level(p.position, planar), velocity, speed)
 
 
-def _seen(v: Vec, planar: bool) -> Vec:
-    return Vec(v.x, v.y, 0.0) if planar else v
+def _sighting(evader: Vehicle, later: Prediction | None, wind: Vec, setup: GameSetup) -> Sighting:
+    """The evader with its place after the lookahead, in the air mass as it lies now."""
+    if later is None:
+        return Sighting(evader, heading_at(evader), False, evader.position)
+    place = along(level(later.position, setup.rules.planar), wind, -setup.control.lookahead)
+    return Sighting(evader, heading_at(evader), True, place)
+
+
+def _steered(decision: Decision, own: Own, me: Player, planar: bool) -> Vec:
+    """The decided velocity; in a plane game with what keeps the height of the staging place."""
+    velocity = scale(decision.direction, decision.speed)
+    if not planar:
+        return velocity
+    most = CLIMB_SHARE * decision.speed
+    down = clamp(-HEIGHT_GAIN * (me.height + own.position.z), -most, most)
+    return add(level(velocity, True), Vec(0.0, 0.0, down))
 
 
 def _at_height(aim: Vec, own: Vec, planar: bool) -> Vec:

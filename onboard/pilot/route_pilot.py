@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from onboard.core.math.states import Limits, Vehicle
-from onboard.core.math.vectors import Vec, norm, sub
-from onboard.core.route.choice import TrackMemory, TrackRule, follow, fresh
+from onboard.core.math.states import Vehicle, VehicleLimits
+from onboard.core.math.vectors import norm, sub
+from onboard.core.route.choice import Fix, TrackMemory, TrackRule, follow, fresh
 from onboard.core.route.tracking import Setting, Strategy, Waypoint
 from onboard.core.strategy.knowledge import Level, Module
 from onboard.pilot.pilot import PilotDecision
@@ -24,20 +24,25 @@ class TrackPilot:
     """Thinks for one vehicle on one route. Raises KeyError for an unknown strategy."""
 
     def __init__(
-        self, route: tuple[Waypoint, ...], limits: Limits, nominal: float, ahead: float, strategy: str = ""
+        self,
+        route: tuple[Waypoint, ...],
+        limits: VehicleLimits,
+        nominal: float,
+        ahead: float,
+        strategy: str = "",
     ) -> None:
         self.route = route
         self.strategy = strategy or "choose"
         self._setting = Setting(limits, nominal, ahead, ORDERS[strategy])
 
     def step(
-        self, time: float, own: Own, wind: Vec, memory: TrackMemory | None
+        self, time: float, own: Own, memory: TrackMemory | None
     ) -> tuple[PilotDecision, TrackMemory, bool]:
         """Decide at `time` [s since the route's start]; also gives whether the route is done.
 
-        `wind` is the momentary estimate [m/s; where the air moves to], ZERO for multicopters."""
+        The own wind is the momentary estimate."""
         before = fresh() if memory is None else memory
-        step = follow(self.route, self._setting, before, time, own.position, own.velocity, wind)
+        step = follow(self.route, self._setting, before, Fix(time, *own))
         chosen = step.rule is not TrackRule.FIXED
         velocity = step.steering.velocity
         thought = PilotDecision(
@@ -53,7 +58,7 @@ class TrackPilot:
             sigma=0.0,
             predictor="",
             lacks=(),
-            own=Vehicle(own.position, sub(own.velocity, wind), norm(velocity)),
+            own=Vehicle(own.position, sub(own.velocity, own.wind), norm(velocity)),
             others=(),
             rho=0.0,
         )

@@ -1,11 +1,12 @@
-"""What the pilot is told: the game as its setup says, own state, tracks and team mates."""
+"""What the pilot is told: the game as its setup says, the own state, and tracks."""
 
 from __future__ import annotations
 
 from enum import Enum
 from typing import NamedTuple
 
-from onboard.core.math.states import Limits
+from onboard.core.game.rules import NO_TARGET, Control, Rules, Target
+from onboard.core.math.states import VehicleLimits
 from onboard.core.math.vectors import ZERO, Vec
 from onboard.pilot.track_filter import Variance
 
@@ -23,7 +24,7 @@ class Player(NamedTuple):
     id: int
     side: Side
     speed: float  # [m/s; air] declared maximum; 0 = not declared
-    limits: Limits = Limits()
+    limits: VehicleLimits = VehicleLimits()
     height: float = 0.0  # of its staging place above the origin [m]; plane games are flown there
 
 
@@ -31,16 +32,9 @@ class GameSetup(NamedTuple):
     """The game as one pilot knows it; the target only where it is the evader."""
 
     roster: tuple[Player, ...]
-    R: float  # capture radius [m]
-    rho: float  # safety distance ρ [m]
-    lambda_: float = 100.0
-    beta: float = 1.0
-    separation: float = 0.0  # [m]; 0 = off
-    planar: bool = False
-    has_target: bool = False
-    target: Vec = ZERO  # [m; NED]
-    dt: float = 0.05  # control step [s]
-    lookahead: float = 1.0  # of rule 6's alternative [s]
+    rules: Rules
+    control: Control = Control()
+    target: Target = NO_TARGET
 
     def player(self, id: int) -> Player | None:
         """The roster's entry of a vehicle."""
@@ -52,10 +46,11 @@ class GameSetup(NamedTuple):
 
 
 class Own(NamedTuple):
-    """The own vehicle now."""
+    """The own vehicle now, and the air around it."""
 
     position: Vec  # [m; NED]
     velocity: Vec  # [m/s; ground]
+    wind: Vec = ZERO  # [m/s; NED, where the air moves to]; ZERO for multicopters
 
 
 class TrackSample(NamedTuple):
@@ -66,12 +61,3 @@ class TrackSample(NamedTuple):
     position: Vec  # [m; NED]
     velocity: Vec  # [m/s; ground]
     variance: Variance  # a negative velocity variance: velocity not measured
-
-
-class MateState(NamedTuple):
-    """What a team mate said of itself."""
-
-    id: int
-    t: float  # when [s]; the clock of `now`
-    position: Vec  # [m; NED]
-    velocity: Vec  # [m/s; ground]

@@ -17,6 +17,7 @@ from enum import IntEnum
 from math import exp, isfinite, log, sqrt
 from typing import NamedTuple
 
+from onboard.core.math.constants import NEVER
 from onboard.core.math.vectors import ZERO, Vec, along, distance
 
 Variance = tuple[float, float, float, float, float, float]  # diagonal: position [m²], velocity [m²/s²]
@@ -108,7 +109,7 @@ class TrackFilter:
     @property
     def newest(self) -> float:
         """Instant of the newest sample taken [s]; −inf before the first."""
-        return self._steps[-1].sample.t if self._steps else float("-inf")
+        return self._steps[-1].sample.t if self._steps else NEVER
 
     @property
     def oldest(self) -> float:
@@ -118,7 +119,7 @@ class TrackFilter:
     def before(self, t: float) -> float:
         """Instant of the newest sample before `t` [s]; −inf where the history has none."""
         index = bisect_left(self._steps, t, key=_instant) - 1
-        return self._steps[index].sample.t if index >= 0 else float("-inf")
+        return self._steps[index].sample.t if index >= 0 else NEVER
 
     @property
     def count(self) -> int:

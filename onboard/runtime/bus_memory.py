@@ -14,6 +14,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING
 
+from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.impairment import Channel, Impairment
 from onboard.runtime.patterns import matches
 from onboard.runtime.protocols import Sample
@@ -27,7 +28,6 @@ CALLS_MAX = 4096  # calls under way to one connection before LATEST messages to 
 ROUTES_MAX = 10_000  # keys whose hearers are remembered
 RECONNECT_S = 0.5  # a connection is back at most this long after the broker
 RESEND_S = 0.2  # what an impaired connection loses of reliable messages comes this much later
-_NS = 1_000_000_000
 
 
 class _Undo:
@@ -352,10 +352,10 @@ class MemoryBus:
             self._pending += 1
             loop.call_soon(self._land, payload, arrived)
         elif latest:
-            now_ns = round(loop.time() * _NS)
+            now_ns = round(loop.time() * NS_PER_S)
             for arrival_ns, shape in self.channel.fate(payload, now_ns):
                 self._pending += 1
-                loop.call_later((arrival_ns - now_ns) / _NS, self._land, shape, arrived)
+                loop.call_later((arrival_ns - now_ns) / NS_PER_S, self._land, shape, arrived)
         else:
             if len(self._reliable) == self._reliable.maxlen:
                 self._counts["overflow"] += 1
@@ -366,7 +366,7 @@ class MemoryBus:
     def _pump(self, channel: Channel) -> None:
         """Pass on the reliable messages in order; what the channel loses is sent again later."""
         loop = asyncio.get_running_loop()
-        now_ns = round(loop.time() * _NS)
+        now_ns = round(loop.time() * NS_PER_S)
         self._pumping = False
         while self._reliable:
             payload, arrived = self._reliable[0]
@@ -378,7 +378,7 @@ class MemoryBus:
             self._reliable.popleft()
             self._reliable_ns = max(self._reliable_ns, fate[0][0])
             self._pending += 1
-            loop.call_later((self._reliable_ns - now_ns) / _NS, self._land, payload, arrived)
+            loop.call_later((self._reliable_ns - now_ns) / NS_PER_S, self._land, payload, arrived)
 
     def _land(self, payload: bytes, arrived: Callable[[bytes], None]) -> None:
         self._pending -= 1

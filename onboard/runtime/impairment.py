@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
+from onboard.core.math.constants import NS_PER_S
 from onboard.game.scenario import ImpairmentSpec
 from onboard.runtime.protocols import Link, Receiver
 
@@ -25,7 +26,6 @@ IN_FLIGHT_MAX = 20_000  # delayed datagrams of one direction before the next are
 HELD_BACK_S = (0.02, 0.06)  # how much later a reordered datagram comes: later ones overtake it
 _DRAWS = 8  # random numbers a datagram takes
 _STRETCH_S = (1e-3, 1e6)  # shortest and longest stretch of a burst or of good time
-_NS = 1_000_000_000
 
 
 class Impairment(msgspec.Struct, frozen=True, kw_only=True):
@@ -96,16 +96,16 @@ class Channel:
         if u[1] < impairment.bit_error and data:
             self.counts["bit_error"] += 1
             data = _flip(data, int(u[2] * 8 * len(data)))
-        arrival = now_ns + round((impairment.delay_s + u[3] * impairment.jitter_s) * _NS)
+        arrival = now_ns + round((impairment.delay_s + u[3] * impairment.jitter_s) * NS_PER_S)
         if u[4] < impairment.reordering:
             self.counts["reordered"] += 1
             low, high = HELD_BACK_S
-            arrival = max(arrival, self._latest_ns) + round((low + u[5] * (high - low)) * _NS)
+            arrival = max(arrival, self._latest_ns) + round((low + u[5] * (high - low)) * NS_PER_S)
         else:
             arrival = self._latest_ns = max(arrival, self._latest_ns)
         if u[6] < impairment.duplication:
             self.counts["duplicated"] += 1
-            return [(arrival, data), (arrival + round(u[7] * impairment.jitter_s * _NS), data)]
+            return [(arrival, data), (arrival + round(u[7] * impairment.jitter_s * NS_PER_S), data)]
         return [(arrival, data)]
 
     def _burst(self, now_ns: int) -> bool:
@@ -124,7 +124,7 @@ class Channel:
 
     def _exponential_ns(self, mean_s: float) -> int:
         length = -log1p(-float(self._burst_rng.random())) * mean_s
-        return round(min(max(length, _STRETCH_S[0]), _STRETCH_S[1]) * _NS)
+        return round(min(max(length, _STRETCH_S[0]), _STRETCH_S[1]) * NS_PER_S)
 
 
 def _flip(data: bytes, bit: int) -> bytes:
@@ -185,7 +185,7 @@ class Impaired:
     ) -> None:
         loop = asyncio.get_running_loop()
         now = loop.time()
-        now_ns = round(now * _NS)
+        now_ns = round(now * NS_PER_S)
         for arrival_ns, shape in channel.fate(data, now_ns):
             if arrival_ns <= now_ns:
                 to(shape, peer)
@@ -193,7 +193,7 @@ class Impaired:
                 channel.counts["overflow"] += 1
             else:
                 self._flights[id(channel)] += 1
-                loop.call_later((arrival_ns - now_ns) / _NS, self._land, channel, shape, peer, to)
+                loop.call_later((arrival_ns - now_ns) / NS_PER_S, self._land, channel, shape, peer, to)
 
     def _land(
         self, channel: Channel, data: bytes, peer: Hashable | None, to: Callable[[bytes, Hashable], None]

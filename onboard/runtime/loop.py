@@ -15,12 +15,12 @@ from contextvars import Context
 from heapq import heapify, heappop, heappush
 from typing import Any, NoReturn, TypeVar
 
+from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.clock import VirtualClock
 
 T = TypeVar("T")
 
-NS = 1_000_000_000  # nanoseconds in a second
-EPOCH_NS = 1_767_225_600 * NS  # 2026-01-01T00:00:00Z, where virtual time starts unless told otherwise
+EPOCH_NS = 1_767_225_600 * NS_PER_S  # 2026-01-01T00:00:00Z, where virtual time starts unless told otherwise
 _PURGE_ABOVE = 256  # cancelled timers kept in the heap before it is swept
 
 
@@ -44,25 +44,25 @@ class VirtualLoop(asyncio.BaseEventLoop):
 
     def time(self) -> float:
         """Elapsed virtual time [s]."""
-        return self.clock.monotonic_ns() / NS
+        return self.clock.monotonic_ns() / NS_PER_S
 
     def call_later(  # type: ignore[override]
         self, delay: float, callback: Callable[..., object], *args: Any, context: Context | None = None
     ) -> TimerHandle:
         """Call `delay` seconds from now, exact to the nanosecond."""
-        return self._set(self.clock.monotonic_ns() + round(delay * NS), callback, args, context)
+        return self._set(self.clock.monotonic_ns() + round(delay * NS_PER_S), callback, args, context)
 
     def call_at(  # type: ignore[override]
         self, when: float, callback: Callable[..., object], *args: Any, context: Context | None = None
     ) -> TimerHandle:
         """Call at the loop time `when` [s]."""
-        return self._set(round(when * NS), callback, args, context)
+        return self._set(round(when * NS_PER_S), callback, args, context)
 
     def _set(
         self, when_ns: int, callback: Callable[..., object], args: tuple[Any, ...], context: Context | None
     ) -> TimerHandle:
         self._check_closed()  # type: ignore[attr-defined]
-        handle = TimerHandle(when_ns / NS, callback, args, self, context)
+        handle = TimerHandle(when_ns / NS_PER_S, callback, args, self, context)
         handle._scheduled = True  # type: ignore[attr-defined]
         self._order += 1
         heappush(self._heap, (when_ns, self._order, handle))

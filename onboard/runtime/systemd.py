@@ -9,8 +9,6 @@ from collections.abc import Mapping
 
 from onboard.runtime.protocols import Clock
 
-_NS = 1_000_000_000
-
 
 class Notifier:
     """Speaks to the socket in `NOTIFY_SOCKET`; the watchdog is fed at most four times in its interval."""

@@ -5,9 +5,8 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Awaitable, Callable
 
+from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.protocols import Clock
-
-_NS = 1_000_000_000
 
 
 class Pace:
@@ -15,7 +14,7 @@ class Pace:
 
     def __init__(self, name: str, period_s: float) -> None:
         self.name = name
-        self.period_ns = round(period_s * _NS)
+        self.period_ns = round(period_s * NS_PER_S)
         self.runs = 0
         self.overruns = 0  # runs that were not done when the next one was due
         self.skipped = 0  # instants passed over because of them
@@ -50,9 +49,9 @@ async def periodic(
     period makes it skip the instants it missed rather than run several at once. What `step` raises
     ends the task: its owner (a TaskGroup) decides.
     """
-    due = clock.monotonic_ns() + round(delay_s * _NS)
+    due = clock.monotonic_ns() + round(delay_s * NS_PER_S)
     while True:
-        await asyncio.sleep(max(0, due - clock.monotonic_ns()) / _NS)
+        await asyncio.sleep(max(0, due - clock.monotonic_ns()) / NS_PER_S)
         result = step()
         if result is not None:
             await result

@@ -76,6 +76,7 @@ def games(
     from onboard.game.scenario import load
     from sim_bridge.campaign.figures import draw_stages
     from sim_bridge.campaign.spatial_campaign import contest, output, play_seed, spatial, table
+    from sim_bridge.campaign.spatial_game import Evasion
 
     names = ["five", "six"]
     scenarios = [load(path) for path in scenario] if scenario else [spatial(name) for name in names]
@@ -86,7 +87,7 @@ def games(
         print(f"{one.name}: {seeds} seeds, both ways", file=sys.stderr)
         contests.append(contest(one, range(seeds)))
         if figures is not None:
-            for path in draw_stages(one, play_seed(one, 0, False), figures, f"spatial-{name}"):
+            for path in draw_stages(one, play_seed(one, 0, Evasion.STRATEGY), figures, f"spatial-{name}"):
                 print(f"drawn: {path}")
     text = preface("The spatial game", f"python -m sim_bridge.campaign games --seeds {seeds}")
     text += (
@@ -109,6 +110,7 @@ def flown(
     from onboard.runtime.resources import configs
     from sim_bridge.campaign.sil_crosscheck import fly_game
     from sim_bridge.campaign.spatial_campaign import output, play_seed
+    from sim_bridge.campaign.spatial_game import Evasion
 
     path = configs() / "scenarios" / "spatial" / "five.toml" if scenario is None else scenario
     one = load(path)
@@ -118,9 +120,9 @@ def flown(
         "|---|---|---|---|---|---|---|---|",
     ]
     for seed in range(1, seeds + 1):
-        for brave in (False, True):
-            game = fly_game(path, seed, brave, runs)
-            kernel = play_seed(one, seed, brave)
+        for evasion in Evasion:
+            game = fly_game(path, seed, evasion, runs)
+            kernel = play_seed(one, seed, evasion)
             lines.append(
                 f"| {seed} | {game.way} | {game.verdict} | {game.time:.1f} | {game.smallest:.0f} |"
                 f" {kernel.verdict.name.lower()} | {kernel.time:.1f} | {kernel.smallest:.0f} |"

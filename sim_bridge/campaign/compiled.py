@@ -15,6 +15,7 @@ import importlib
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
+from itertools import pairwise
 from types import FunctionType, ModuleType
 from typing import Any, NamedTuple
 
@@ -24,17 +25,26 @@ from numba.core import types
 from numba.extending import overload, register_jitable
 from numpy.typing import NDArray
 
-from onboard.core.game.advance import EvaderStrategy, Game, Params, PursuerStrategy, advance, begin
-from onboard.core.game.referee import Verdict
+from onboard.core.game.advance import (
+    Conditions,
+    EvaderStrategy,
+    Game,
+    PursuerStrategy,
+    advance,
+    begin,
+)
+from onboard.core.game.referee import GameResult
+from onboard.core.game.rules import Target
 from onboard.core.math import each as each_module
 from onboard.core.math.each import each
-from onboard.core.math.states import Limits, Vehicle
+from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import Vec
 
 KERNELS = (
     "onboard.core.math.vectors",
     "onboard.core.geometry.apollonius",
     "onboard.core.geometry.cones",
+    "onboard.core.game.views",
     "onboard.core.strategy.evasion",
     "onboard.core.strategy.pursuit",
     "onboard.core.game.referee",
@@ -109,14 +119,14 @@ class Starts(NamedTuple):
     positions: Array  # (games, players, 3)
     velocities: Array  # (games, players, 3)
     speeds: Array  # (games, players)
-    limits: Array  # (games, players, 6), in the order of `Limits`
-    targets: Array  # (games, 3), unused where the parameters say that there is no target
+    limits: Array  # (games, players, 6), in the order of `VehicleLimits`
+    targets: Array  # (games, 3), unused where the conditions say that there is no target
 
 
 class Ends(NamedTuple):
     """How they ended."""
 
-    verdicts: NDArray[np.int64]  # (games,) of `Verdict`
+    verdicts: NDArray[np.int64]  # (games,) of `GameResult`
     times: Array  # (games,) of the verdict [s]
     captors: NDArray[np.int64]  # (games,) index of the pursuer, −1 = none
     smallest: Array  # (games,) smallest distance [m]
@@ -156,10 +166,12 @@ def _vehicle(player: int, _index: int, table: _Table) -> Vehicle:
     )
 
 
-def _limits(player: int, _index: int, table: _Table) -> Limits:
+def _limits(player: int, _index: int, table: _Table) -> VehicleLimits:
     """What that player may do (for `each`)."""
     a = table.starts.limits[table.game, player]
-    return Limits(float(a[0]), float(a[1]), float(a[2]), float(a[3]), float(a[4]), float(a[5]))
+    return VehicleLimits(
+        float(a[0]), float(a[1]), float(a[2]), float(a[3]), float(a[4]), float(a[5]), float(a[6])
+    )
 
 
 def _begin(table: _Table, pursuers: tuple[int, ...]) -> Game:
@@ -172,13 +184,10 @@ def _begin(table: _Table, pursuers: tuple[int, ...]) -> Game:
     )
 
 
-def _aimed(params: Params, target: Array) -> Params:
-    """The parameters with a game's own target."""
-    return Params(
-        float(params.R), float(params.rho), float(params.lambda_), float(params.beta), float(params.epsilon),
-        float(params.dt), float(params.horizon), float(params.separation), params.planar, params.has_target,
-        Vec(float(target[0]), float(target[1]), float(target[2])), float(params.lookahead),
-    )  # fmt: skip
+def _aimed(conditions: Conditions, target: Array) -> Conditions:
+    """The conditions with a game's own target."""
+    place = Vec(float(target[0]), float(target[1]), float(target[2]))
+    return Conditions(conditions.rules, Target(conditions.target.exists, place), conditions.control)
 
 
 def _note(game: Game, places: Array) -> None:
@@ -199,19 +208,19 @@ Campaign = Callable[..., Ends]
 @cache
 def _player(
     decide_evader: EvaderStrategy, decide_pursuer: PursuerStrategy, pursuers: int, compiled: bool
-) -> Callable[[Starts, Params, Ends, int, int], None]:
+) -> Callable[[Starts, Conditions, Ends, int, int], None]:
     """Plays games first…last − 1 of the starts into the ends."""
     team = tuple(range(1, pursuers + 1))
 
-    def play(starts: Starts, params: Params, ends: Ends, first: int, last: int) -> None:
+    def play(starts: Starts, conditions: Conditions, ends: Ends, first: int, last: int) -> None:
         kept = ends.trace.shape[1]
         for number in range(first, last):
-            mine = _aimed(params, starts.targets[number])
+            mine = _aimed(conditions, starts.targets[number])
             game = _begin(_Table(starts, number), team)
             steps = 0
             if kept > 0:
                 _note(game, ends.trace[number, 0])
-            while game.score.verdict == Verdict.RUNNING:
+            while game.score.verdict == GameResult.RUNNING:
                 game = advance(game, mine, decide_evader, decide_pursuer)
                 steps += 1
                 if steps < kept:
@@ -231,7 +240,7 @@ def _player(
             _registered.add(id(strategy))
             _register_parts(strategy)
             register_jitable(forceinline=True)(strategy)
-    machine: Callable[[Starts, Params, Ends, int, int], None] = numba.njit(nogil=True)(play)
+    machine: Callable[[Starts, Conditions, Ends, int, int], None] = numba.njit(nogil=True)(play)
     return machine
 
 
@@ -240,16 +249,16 @@ def campaign(
 ) -> Callable[..., Ends]:
     """The play of many games of one size under two strategies in kernel style.
 
-    Returns `play(starts, params, workers=1, keep=0) -> Ends`: the games go to that many threads (compiled
+    Returns `play(starts, conditions, workers=1, keep=0) -> Ends`: the games go to that many threads (compiled
     code holds no interpreter lock), and `keep` records everybody's places over the first so many
-    steps. The games differ in their starts, speeds, limits and targets; the rest of the parameters,
+    steps. The games differ in their starts, speeds, limits and targets; the rest of the conditions,
     `planar` too, is common to a call. Compiles at the first call; `compiled=False` runs the same
     functions interpreted. Raises ValueError where the arrays' shapes disagree.
     """
 
-    def play(starts: Starts, params: Params, workers: int = 1, keep: int = 0) -> Ends:
-        games = starts.positions.shape[0]
-        shapes = ((pursuers + 1, 3), (pursuers + 1, 3), (pursuers + 1,), (pursuers + 1, 6), (3,))
+    def play(starts: Starts, conditions: Conditions, workers: int = 1, keep: int = 0) -> Ends:
+        games, players = starts.positions.shape[0], pursuers + 1
+        shapes = ((players, 3), (players, 3), (players,), (players, len(VehicleLimits._fields)), (3,))
         for name, array, shape in zip(Starts._fields, starts, shapes, strict=True):
             if array.shape != (games, *shape):
                 raise ValueError(f"{name}: shape {array.shape}, expected {(games, *shape)}")
@@ -261,12 +270,13 @@ def campaign(
         )  # fmt: skip
         run = _player(decide_evader, decide_pursuer, pursuers, compiled)
         if workers <= 1 or games < 2 * workers:
-            run(starts, params, ends, 0, games)
+            run(starts, conditions, ends, 0, games)
             return ends
         # Small parts, because games differ in length; each writes into rows of its own.
         edges = np.linspace(0, games, 8 * workers + 1).astype(int).tolist()
         with ThreadPoolExecutor(workers) as pool:
-            list(pool.map(lambda k: run(starts, params, ends, edges[k], edges[k + 1]), range(8 * workers)))
+            parts = pairwise(edges)
+            list(pool.map(lambda part: run(starts, conditions, ends, *part), parts))
         return ends
 
     return play

@@ -8,9 +8,11 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from onboard.core.math.vectors import Vec, norm, pitch_of, yaw_of
+from onboard.core.math.vectors import NORTH, Vec, norm, pitch_of, unit, yaw_of
+from onboard.game.scenario import WindSpec
 from sim_bridge.vehicle.flight.plane import Command, PlaneModel, PlaneState, Steer, step_plane
 from sim_bridge.vehicle.wind.dryden import GustNoise, GustState, first_gust, gust_of, step_gust
+from sim_bridge.vehicle.wind.field import wind_vector
 from sim_bridge.vehicle.wind.shear import ROUGHNESS, mean_wind
 
 GUST_EVERY = 2  # samples of the aircraft between two of the gusts (100 Hz and 50 Hz)
@@ -31,6 +33,13 @@ class Flown(NamedTuple):
 
     plane: PlaneState
     gusts: GustState
+
+
+def climate_of(wind: WindSpec) -> Climate:
+    """The wind of a scenario for the kernels."""
+    reference = wind_vector(wind.speed, wind.from_deg)
+    axis = unit(reference, NORTH)
+    return Climate(reference, wind.shear, wind.gust_sigma, axis.x, axis.y)
 
 
 def wind_at(climate: Climate, position: Vec) -> Vec:

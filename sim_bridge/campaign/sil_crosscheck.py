@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 
 from onboard.game.scenario import load
 from sim_bridge.campaign.spatial_campaign import draw
+from sim_bridge.campaign.spatial_game import Evasion
 
 PATIENCE = 1800.0  # [s] of wall time for one game
 
@@ -41,28 +42,28 @@ def inline(value: Any) -> str:
     return json.dumps(value) if isinstance(value, str) else repr(value)
 
 
-def drawn(path: Path, seed: int, brave: bool) -> str:
-    """The scenario file of a seed's draw; `brave` flies straight at the target."""
+def drawn(path: Path, seed: int, evasion: Evasion) -> str:
+    """The scenario file of a seed's draw, and of how the evader flies."""
     data = tomllib.loads(path.read_text(encoding="utf-8"))
     d = draw(load(path), seed)
     for spec, flown in zip([data["evader"], *data["pursuers"]], d.players, strict=True):
         place = flown.plane.position
         spec["position"] = [round(float(x), 3) for x in (place.x, place.y, -place.z)]
-    wind = d.climate.reference
+    wind = d.start.climate.reference
     data["flight"]["wind"]["from_deg"] = round(degrees(atan2(-wind.y, -wind.x)) % 360.0, 3)
     data["seed"] = seed
-    if brave:
+    if evasion is Evasion.STRAIGHT:
         data["evader"]["strategy"] = "straight"
     return "\n".join(f"{key} = {inline(value)}" for key, value in data.items()) + "\n"
 
 
-def fly_game(path: Path, seed: int, brave: bool, folder: Path) -> FlownGame:
+def fly_game(path: Path, seed: int, evasion: Evasion, folder: Path) -> FlownGame:
     """Fly one game in a process of its own; the run folder stays under `folder`."""
-    way = "straight" if brave else "strategy"
+    way = evasion.name.lower()
     home = folder / f"{path.stem}-{seed}-{way}"
     home.mkdir(parents=True, exist_ok=True)
     scenario = home / "scenario.toml"
-    scenario.write_text(drawn(path, seed, brave), encoding="utf-8")
+    scenario.write_text(drawn(path, seed, evasion), encoding="utf-8")
     command = [sys.executable, "-c", "from sim_bridge.cli import main; main()", "fly", "--fast"]
     subprocess.run(
         [*command, str(scenario), "--runs", str(home), "--quiet", "--no-report"],

@@ -12,25 +12,24 @@ from math import degrees, exp, radians, sqrt
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from onboard.core.game.advance import Game, Params, begin
-from onboard.core.game.referee import Verdict
-from onboard.core.math.states import Vehicle
-from onboard.core.math.vectors import ZERO, Vec, scale, sub, unit, yaw_of
+from onboard.core.game.referee import GameResult
+from onboard.core.math.vectors import NORTH, Vec, add, sub, unit, yaw_of
 from onboard.game.scenario import Scenario, load
 from onboard.runtime.resources import configs
 from sim_bridge.campaign.compiled import KERNELS as CORE
 from sim_bridge.campaign.compiled import register
-from sim_bridge.campaign.plane_in_wind import GUST_EVERY, Climate, Flown, launched, wind_at
-from sim_bridge.campaign.spatial_game import Band, Fleet, Sensor, SpatialPlay, play
+from sim_bridge.campaign.plane_in_wind import GUST_EVERY, Flown, climate_of, launched, wind_at
+from sim_bridge.campaign.spatial_game import Band, Evasion, Fleet, Noise, Sensor, SpatialPlay, Start, play
+from sim_bridge.plane_game.setup import conditions_of, game_of, places_of
 from sim_bridge.vehicle.flight import KERNELS as FLIGHT
 from sim_bridge.vehicle.flight.aircraft import named, within
 from sim_bridge.vehicle.flight.plane import Command, Steer, start_state, trimmed
 from sim_bridge.vehicle.wind import KERNELS as WIND
 from sim_bridge.vehicle.wind.dryden import GustNoise
-from sim_bridge.vehicle.wind.field import wind_vector
 
 KERNELS = (
     *CORE,
@@ -51,7 +50,7 @@ Array = NDArray[np.float64]
 class Played(NamedTuple):
     """One game of the campaign."""
 
-    verdict: Verdict
+    verdict: GameResult
     time: float  # [s]
     smallest: float  # distance of any pursuer [m]
     reversals: int  # of the evader's flown course
@@ -63,15 +62,9 @@ class Played(NamedTuple):
 class Draw(NamedTuple):
     """Everything a seed fixes."""
 
-    game: Game
-    params: Params
-    fleet: Fleet
-    climate: Climate
-    sensor: Sensor
-    band: Band
-    players: list[Flown]
-    gusts: Array
-    tracks: Array
+    start: Start
+    players: list[Flown]  # evader first
+    noise: Noise
 
 
 def spatial(name: str) -> Scenario:
@@ -82,49 +75,46 @@ def spatial(name: str) -> Scenario:
 def draw(scenario: Scenario, seed: int) -> Draw:
     """The game of a seed; seed 0 starts from the scenario's places exactly."""
     rng = np.random.default_rng([scenario.seed, seed])
-    p = scenario.parameters
-    spec = scenario.evader
+    conditions = conditions_of(scenario)
     wind = scenario.flight.wind
-    reference = wind_vector(wind.speed, wind.from_deg if seed == 0 else float(rng.uniform(0.0, 360.0)))
-    axis = unit(reference, Vec(1.0, 0.0, 0.0))
-    climate = Climate(reference, wind.shear, wind.gust_sigma, axis.x, axis.y)
-    target = ZERO if spec.target is None else Vec(spec.target[0], spec.target[1], -spec.target[2])
-    has_target = spec.target is not None
-    params = Params(
-        p.R, scenario.rho, p.lambda_, p.beta, p.epsilon_min, p.dt, p.horizon, p.separation, False, has_target,
-        target,
-    )  # fmt: skip
-    starts = [spec.start()]
-    for other in scenario.pursuers:
-        n = rng.standard_normal(3) * (0.0 if seed == 0 else 1.0)
-        off = Vec(PLACE_SIGMA * float(n[0]), PLACE_SIGMA * float(n[1]), HEIGHT_SIGMA * float(n[2]))
-        start = other.start()
-        starts.append(Vec(start.x + off.x, start.y + off.y, start.z + off.z))
-    count = len(starts)
+    if seed != 0:
+        wind = msgspec.structs.replace(wind, from_deg=float(rng.uniform(0.0, 360.0)))
+    climate = climate_of(wind)
+    places = drawn_places(scenario, rng, 0.0 if seed == 0 else 1.0)
     aircraft = named(scenario.flight.airframe.value).model
-    fleet = Fleet(within(aircraft, spec.limits()), within(aircraft, scenario.pursuers[0].limits()))
-    ticks = int(p.horizon / fleet.evader.dt) // GUST_EVERY + 8
-    steps = int(p.horizon / p.dt) + 8
-    gusts = rng.standard_normal((ticks, count, 5))
-    tracks = filtered(rng.standard_normal((steps, count, 6)), p.dt)
+    fleet = Fleet(*(within(aircraft, spec.limits()) for spec in scenario.vehicles[:2]))
+    horizon, dt = conditions.rules.horizon, conditions.control.dt
+    ticks = int(horizon / fleet.evader.dt) // GUST_EVERY + 8
+    gusts = rng.standard_normal((ticks, len(places), 5))
+    tracks = filtered(rng.standard_normal((int(horizon / dt) + 8, len(places), 6)), dt)
+    game = game_of(scenario, places)
     players: list[Flown] = []
-    vehicles: list[Vehicle] = []
-    for index, (vehicle, start) in enumerate(zip(scenario.vehicles, starts, strict=True)):
-        aim = target if index == 0 else starts[0]
-        heading = unit(sub(aim, start), Vec(1.0, 0.0, 0.0))
-        yaw = yaw_of(heading) if vehicle.heading_deg is None else radians(vehicle.heading_deg)
-        model = fleet.evader if index == 0 else fleet.pursuer
+    for index, vehicle in enumerate((game.evader, *game.pursuers)):
+        start = vehicle.position
+        aim = places[0] if index else conditions.target.position
+        spec = scenario.vehicles[index]
+        yaw = yaw_of(unit(sub(aim, start), NORTH)) if spec.heading_deg is None else radians(spec.heading_deg)
+        model = fleet.pursuer if index else fleet.evader
         plane = trimmed(start_state(start, yaw, vehicle.speed, wind_at(climate, start)), model)
         players.append(launched(plane, GustNoise(*map(float, gusts[0, index]))))
-        vehicles.append(Vehicle(start, scale(heading, vehicle.speed), float(vehicle.speed)))
-    limits = tuple(v.limits() for v in scenario.vehicles)
-    game = begin(vehicles[0], tuple(vehicles[1:]), limits[0], limits[1:])
-    spec_sensor = scenario.flight.sensor
-    left = sqrt(2.0 / (spec_sensor.rate_hz * FILTER_TIME))  # of white noise, by a constant-velocity filter
-    noise = Sensor(spec_sensor.sigma * min(1.0, left), spec_sensor.sigma_velocity * min(1.0, left))
+    sensor = scenario.flight.sensor
+    # What a constant-velocity filter leaves of white noise.
+    left = min(1.0, sqrt(2.0 / (sensor.rate_hz * FILTER_TIME)))
+    seen = Sensor(sensor.sigma * left, sensor.sigma_velocity * left)
     fence = scenario.flight.fence
     band = Band(-1e9, 1e9) if fence is None else Band(fence.height_min, fence.height_max)
-    return Draw(game, params, fleet, climate, noise, band, players, gusts, tracks)
+    return Draw(Start(game, conditions, fleet, climate, seen, band), players, Noise(gusts, tracks))
+
+
+def drawn_places(scenario: Scenario, rng: np.random.Generator, share: float) -> tuple[Vec, ...]:
+    """Where everybody starts [m; NED]: the evader at its place, each pursuer off it by `share` of a draw."""
+    evader, *others = places_of(scenario)
+    places = [evader]
+    for place in others:
+        n = rng.standard_normal(3) * share
+        off = Vec(PLACE_SIGMA * float(n[0]), PLACE_SIGMA * float(n[1]), HEIGHT_SIGMA * float(n[2]))
+        places.append(add(place, off))
+    return tuple(places)
 
 
 def filtered(white: Array, dt: float) -> Array:
@@ -158,19 +148,18 @@ def _list(items: list[Any], compiled: bool) -> Any:
     return typed
 
 
-def play_seed(scenario: Scenario, seed: int, brave: bool, compiled: bool = True) -> Played:
-    """One game of a scenario: with the evader's strategy, or `brave`, straight at its target."""
+def play_seed(scenario: Scenario, seed: int, evasion: Evasion, compiled: bool = True) -> Played:
+    """One game of a scenario, compiled or by the same kernels interpreted."""
     d = draw(scenario, seed)
-    log = np.zeros((d.tracks.shape[0], len(d.players), 5))
+    log = np.zeros((d.noise.tracks.shape[0], len(d.players), 5))
     still = [Command(Steer.COURSE, 0.0, 0.0, 0.0)] * len(d.players)
     found = (compiled_play() if compiled else play)(
-        d.game, d.params, _list(d.players, compiled), _list(still, compiled), d.fleet, d.climate, d.sensor,
-        d.band, brave, d.gusts, d.tracks, log,
-    )  # fmt: skip
+        d.start, evasion, _list(d.players, compiled), _list(still, compiled), d.noise, log
+    )
     log = log[: found.steps]
-    span = round(WITHIN / d.params.dt)
+    span = round(WITHIN / d.start.conditions.control.dt)
     return Played(
-        Verdict(found.game.score.verdict),
+        GameResult(found.game.score.verdict),
         found.game.score.time,
         found.game.score.smallest,
         reversals(log[:, 0, 3], span),
@@ -222,14 +211,14 @@ class Tally(NamedTuple):
 def tally(way: str, games: list[Played]) -> Tally:
     """Counts of one way of flying."""
     verdicts = [g.verdict for g in games]
-    arrivals = [g.time for g in games if g.verdict == Verdict.ARRIVED]
+    arrivals = [g.time for g in games if g.verdict == GameResult.ARRIVED]
     reach = [g.play.envelope for g in games]
     return Tally(
         way,
         len(games),
-        verdicts.count(Verdict.CAPTURED),
-        verdicts.count(Verdict.ARRIVED),
-        verdicts.count(Verdict.ESCAPED),
+        verdicts.count(GameResult.CAPTURED),
+        verdicts.count(GameResult.ARRIVED),
+        verdicts.count(GameResult.ESCAPED),
         float(np.mean(arrivals)) if arrivals else float("nan"),
         float(np.median([g.smallest for g in games])),
         sum(g.reversals for g in games),
@@ -254,10 +243,10 @@ class Contest(NamedTuple):
 
 def contest(scenario: Scenario, seeds: range, compiled: bool = True) -> Contest:
     """Play all seeds both ways."""
-    with_it = [play_seed(scenario, seed, False, compiled) for seed in seeds]
-    straight = [play_seed(scenario, seed, True, compiled) for seed in seeds]
+    with_it = [play_seed(scenario, seed, Evasion.STRATEGY, compiled) for seed in seeds]
+    straight = [play_seed(scenario, seed, Evasion.STRAIGHT, compiled) for seed in seeds]
     pairs = [
-        (a.verdict == Verdict.CAPTURED, b.verdict == Verdict.CAPTURED)
+        (a.verdict == GameResult.CAPTURED, b.verdict == GameResult.CAPTURED)
         for a, b in zip(with_it, straight, strict=True)
     ]
     saved = sum(b and not a for a, b in pairs)
@@ -279,16 +268,6 @@ def mcnemar(saved: int, lost: int) -> float:
     return float(binomtest(saved, saved + lost, 0.5).pvalue) if saved + lost else 1.0
 
 
-def wilson(count: int, games: int) -> tuple[float, float]:
-    """95 % confidence interval of a share."""
-    z = 1.959963984540054
-    share = count / games
-    middle = share + z * z / (2 * games)
-    spread = z * sqrt(share * (1 - share) / games + z * z / (4 * games * games))
-    below = 1 + z * z / games
-    return (middle - spread) / below, (middle + spread) / below
-
-
 def table(contests: list[Contest]) -> str:
     """Contests as a Markdown table."""
     lines = [
@@ -300,7 +279,7 @@ def table(contests: list[Contest]) -> str:
         for t in (c.strategy, c.straight):
             minutes = t.flown_s / 60.0
             lines.append(
-                f"| {c.scenario} | {t.way} | {_share(t.captured, t.games)} | {_share(t.arrived, t.games)} |"
+                f"| {c.scenario} | {t.way} | {share(t.captured, t.games)} | {share(t.arrived, t.games)} |"
                 f" {t.neither} | {t.arrival_time:.0f} | {t.smallest:.0f} |"
                 f" {t.reversals / minutes:.3f} ({t.decided_reversals / minutes:.3f}) |"
             )
@@ -316,8 +295,11 @@ def table(contests: list[Contest]) -> str:
     return "\n".join(lines)
 
 
-def _share(count: int, games: int) -> str:
-    low, high = wilson(count, games)
+def share(count: int, games: int) -> str:
+    """A count with its share and Wilson's 95 % confidence interval."""
+    from scipy.stats import binomtest
+
+    low, high = binomtest(count, games).proportion_ci(method="wilson")
     return f"{count} = {100 * count / games:.0f} % ({100 * low:.0f}–{100 * high:.0f})"
 
 

@@ -8,26 +8,33 @@ the safety distance are judged on ground positions.
 
 from __future__ import annotations
 
+from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from onboard.core.game.advance import Field, Game, Params, decide_one, judged, seats
-from onboard.core.game.referee import Verdict
-from onboard.core.geometry.apollonius import intercept
-from onboard.core.geometry.cones import blocked_cones
+from onboard.core.game.advance import Conditions, Game, decide_pursuers, judged
+from onboard.core.game.referee import GameResult
+from onboard.core.game.views import EvaderView, evader_view, heading_at, sighted
 from onboard.core.math.each import each
-from onboard.core.math.states import Limits, Vehicle
-from onboard.core.math.vectors import TINY, Vec, clamp, norm, scale
-from onboard.core.strategy.evasion import EvaderView, evader, straight
+from onboard.core.math.states import Vehicle, VehicleLimits
+from onboard.core.math.vectors import Vec, clamp, scale
+from onboard.core.strategy.evasion import evader, straight
 from onboard.core.strategy.knowledge import Decision
-from onboard.core.strategy.pursuit import heading_at, pursuer
+from onboard.core.strategy.pursuit import pursuer
 from sim_bridge.campaign.plane_in_wind import GUST_EVERY, Climate, Flown, blown, command_for, fly, wind_at
 from sim_bridge.vehicle.flight.plane import Command, PlaneModel
 from sim_bridge.vehicle.wind.dryden import GustNoise
 
 Array = NDArray[np.float64]
+
+
+class Evasion(IntEnum):
+    """How the evader flies."""
+
+    STRATEGY = 0  # by the strategy of 3.4.1
+    STRAIGHT = 1  # straight at its target, whoever is in the way
 
 
 class Fleet(NamedTuple):
@@ -66,18 +73,19 @@ class Envelope(NamedTuple):
     surface: float  # largest share of a servo's stroke
 
 
-def banded(limits: Limits, height: float, band: Band) -> Limits:
+def banded(limits: VehicleLimits, height: float, band: Band) -> VehicleLimits:
     """Limits (2)–(3) at `height` [m]: no descent at the band's lower edge, no climb at its upper one,
     and beyond them back into it."""
     down = clamp((height - band.low) / MARGIN, BACK, 1.0)
     up = clamp((band.high - height) / MARGIN, BACK, 1.0)
-    return Limits(
+    return VehicleLimits(
         limits.speed_min,
         limits.speed_max,
         limits.pitch_min * down,
         limits.pitch_max * up,
         limits.yaw_min,
         limits.yaw_max,
+        limits.turn_rate,
     )
 
 
@@ -88,7 +96,7 @@ class Heights(NamedTuple):
     band: Band
 
 
-def banded_pursuer(limits: Limits, index: int, heights: Heights) -> Limits:
+def banded_pursuer(limits: VehicleLimits, index: int, heights: Heights) -> VehicleLimits:
     """Pursuer `index`'s limits where it is (for `each`)."""
     return banded(limits, -heights.states[index + 1, 2], heights.band)
 
@@ -136,40 +144,11 @@ def seen_pursuer(vehicle: Vehicle, index: int, sight: Sight) -> Vehicle:
     return seen(index + 1, vehicle.speed, sight)
 
 
-def ground_target(params: Params, own: Vehicle, wind: Vec) -> Vec:
-    """Where the target, which moves at −w in the air, will be met; the target itself where it cannot."""
-    drift = norm(wind)
-    if drift <= TINY:
-        return params.target
-    meeting = intercept(params.target, scale(wind, -1.0 / drift), drift, own.position, own.speed)
-    if meeting.exists:
-        return meeting.point
-    return params.target
-
-
-def decide_evader(game: Game, params: Params, wind: Vec, brave: bool) -> Decision:
-    """The evader's decision: by its strategy, or straight at the target where it is `brave`."""
-    view = EvaderView(
-        game.evader,
-        game.evader_limits,
-        game.pursuers,
-        blocked_cones(game.evader, game.pursuers, params.rho),
-        params.has_target,
-        ground_target(params, game.evader, wind),
-        params.R,
-        params.lambda_,
-        params.beta,
-        params.planar,
-    )
-    if brave:
+def decide_evader(view: EvaderView, evasion: Evasion) -> Decision:
+    """The evader's decision."""
+    if evasion == Evasion.STRAIGHT:
         return straight(view)
     return evader(view)
-
-
-def decide_pursuers(game: Game, params: Params) -> tuple[Decision, ...]:
-    """All pursuers' decisions against the evader as they see it."""
-    field = Field(game.evader, heading_at(game.evader), params, pursuer)
-    return each(decide_one, seats(game, params), field)
 
 
 def order(decision: Decision, course: float) -> Command:
@@ -206,99 +185,117 @@ def widened(e: Envelope, flown: Flown, model: PlaneModel, declared: float) -> En
     )
 
 
+class Gusts(NamedTuple):
+    """What drives the gusts that one aircraft meets."""
+
+    climate: Climate
+    noise: Array  # (ticks, players, 5) standard normal
+    player: int  # the aircraft, 0 = the evader
+
+
 def flown_on(
-    flown: Flown,
-    model: PlaneModel,
-    command: Command,
-    climate: Climate,
-    gusts: Array,
-    index: int,
-    sample: int,
-    count: int,
+    flown: Flown, model: PlaneModel, command: Command, gusts: Gusts, sample: int, count: int
 ) -> Flown:
     """`count` samples of one aircraft, with the gusts' grid, from sample number `sample` on."""
     for k in range(sample, sample + count):
         if k % GUST_EVERY == 0 and k > 0:
-            n = gusts[k // GUST_EVERY, index]
+            n = gusts.noise[k // GUST_EVERY, gusts.player]
             drive = GustNoise(n[0], n[1], n[2], n[3], n[4])
             flown = blown(flown, GUST_EVERY * model.dt, drive)
-        flown = fly(flown, model, command, climate)
+        flown = fly(flown, model, command, gusts.climate)
     return flown
 
 
+class Start(NamedTuple):
+    """A game before its first step, and what it is played under."""
+
+    game: Game
+    conditions: Conditions
+    fleet: Fleet
+    climate: Climate
+    sensor: Sensor
+    band: Band
+
+
+class Noise(NamedTuple):
+    """The random numbers of a game."""
+
+    gusts: Array  # (ticks, players, 5) standard normal
+    tracks: Array  # (steps, players, 6) errors of the tracks, in sigmas
+
+
+def decide_all(
+    start: Start, game: Game, states: Array, noise: Array, evasion: Evasion, commands: list[Command]
+) -> None:
+    """Everybody's decision as `commands`, evader first; `noise` (players, 6) is that of the tracks now."""
+    climate, sensor, band, conditions = start.climate, start.sensor, start.band, start.conditions
+    exact = Sight(states, climate, noise, 0.0, 0.0)
+    noisy = Sight(states, climate, noise, sensor.position, sensor.velocity)
+    own = seen(0, game.evader.speed, exact)
+    others = each(seen_pursuer, game.pursuers, noisy)
+    limits = banded(game.evader_limits, -own.position.z, band)
+    wind = wind_at(climate, own.position)
+    view = evader_view(own, limits, others, conditions.target, wind, conditions.rules)
+    commands[0] = order(decide_evader(view, evasion), states[0, 6])
+    spotted = seen(0, game.evader.speed, noisy)
+    sighting = sighted(spotted, heading_at(spotted), conditions.control.lookahead)
+    team = Game(
+        game.time,
+        spotted,
+        each(seen_pursuer, game.pursuers, exact),
+        game.evader_limits,
+        each(banded_pursuer, game.pursuer_limits, Heights(states, band)),
+        game.score,
+    )
+    decisions = decide_pursuers(team, sighting, conditions, pursuer)
+    for i in range(len(decisions)):
+        commands[i + 1] = order(decisions[i], states[i + 1, 6])
+
+
+def write_down(log: Array, states: Array, commands: list[Command]) -> None:
+    """Everybody's place, flown course and decided course into `log` (players, 5)."""
+    for i in range(len(commands)):
+        log[i, 0] = states[i, 0]
+        log[i, 1] = states[i, 1]
+        log[i, 2] = states[i, 2]
+        log[i, 3] = states[i, 6]
+        log[i, 4] = commands[i].angle
+
+
 def play(
-    game: Game,
-    params: Params,
-    players: list[Flown],
-    commands: list[Command],
-    fleet: Fleet,
-    climate: Climate,
-    sensor: Sensor,
-    band: Band,
-    brave: bool,
-    gusts: Array,
-    tracks: Array,
-    log: Array,
+    start: Start, evasion: Evasion, players: list[Flown], commands: list[Command], noise: Noise, log: Array
 ) -> SpatialPlay:
     """Play a game out. Kernel style but for the lists, which it changes in place.
 
-    `players` and `commands` (evader first), `gusts` (ticks, players, 5) standard normal, `tracks`
-    (steps, players, 6) the tracks' errors in sigmas, `log` (steps, players, 5): position [m; NED],
-    flown and decided course [rad].
+    `players` and `commands`: evader first; `log` (steps, players, 5): position [m; NED], flown and decided
+    course [rad].
     """
-    ratio = int(params.dt / fleet.evader.dt + 0.5)
+    game, conditions, fleet, climate, _sensor, _band = start
+    ratio = int(conditions.control.dt / fleet.evader.dt + 0.5)
     reach = Envelope(0.0, 0.0, 1.0, 1.0, 1e300, 0.0)
     states = np.empty((len(players), 7))
     for i in range(len(players)):
         note(states, i, players[i])
     steps = 0
     sample = 0
-    while game.score.verdict == Verdict.RUNNING:
-        noise = tracks[steps]
-        exact = Sight(states, climate, noise, 0.0, 0.0)
-        noisy = Sight(states, climate, noise, sensor.position, sensor.velocity)
-        own = seen(0, game.evader.speed, exact)
-        others = each(seen_pursuer, game.pursuers, noisy)
-        wind = wind_at(climate, own.position)
-        limits = banded(game.evader_limits, -own.position.z, band)
-        view = Game(game.time, own, others, limits, game.pursuer_limits, game.score)
-        escape = decide_evader(view, params, wind, brave)
-        spotted = seen(0, game.evader.speed, noisy)
-        team = each(seen_pursuer, game.pursuers, exact)
-        decisions = decide_pursuers(
-            Game(
-                game.time,
-                spotted,
-                team,
-                game.evader_limits,
-                each(banded_pursuer, game.pursuer_limits, Heights(states, band)),
-                game.score,
-            ),
-            params,
-        )
-        commands[0] = order(escape, states[0, 6])
-        for i in range(len(decisions)):
-            commands[i + 1] = order(decisions[i], states[i + 1, 6])
-        for i in range(len(players)):
-            log[steps, i, 0] = states[i, 0]
-            log[steps, i, 1] = states[i, 1]
-            log[steps, i, 2] = states[i, 2]
-            log[steps, i, 3] = states[i, 6]
-            log[steps, i, 4] = commands[i].angle
+    while game.score.verdict == GameResult.RUNNING:
+        decide_all(start, game, states, noise.tracks[steps], evasion, commands)
+        write_down(log[steps], states, commands)
         # Between two decisions nobody looks at anybody: each flies on alone.
-        flown = flown_on(players[0], fleet.evader, commands[0], climate, gusts, 0, sample, ratio)
+        gusts = Gusts(climate, noise.gusts, 0)
+        flown = flown_on(players[0], fleet.evader, commands[0], gusts, sample, ratio)
         reach = widened(reach, flown, fleet.evader, game.evader.speed)
         note(states, 0, flown)
         players[0] = flown
         for i in range(1, len(players)):
-            flown = flown_on(players[i], fleet.pursuer, commands[i], climate, gusts, i, sample, ratio)
+            gusts = Gusts(climate, noise.gusts, i)
+            flown = flown_on(players[i], fleet.pursuer, commands[i], gusts, sample, ratio)
             reach = widened(reach, flown, fleet.pursuer, game.pursuers[i - 1].speed)
             note(states, i, flown)
             players[i] = flown
         sample += ratio
-        after = Sight(states, climate, noise, 0.0, 0.0)
-        game = judged(
-            game, seen(0, game.evader.speed, after), each(seen_pursuer, game.pursuers, after), params
-        )
+        after = Sight(states, climate, noise.tracks[steps], 0.0, 0.0)
+        e = seen(0, game.evader.speed, after)
+        game = judged(game, e, each(seen_pursuer, game.pursuers, after), conditions)
         steps += 1
     return SpatialPlay(game, steps, sample, reach)

@@ -11,11 +11,12 @@ from functools import cache
 from math import sqrt
 from typing import NamedTuple
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from onboard.core.math.vectors import NORTH, add, distance, sub, unit, yaw_of
-from onboard.core.route.choice import follow, fresh
+from onboard.core.math.vectors import add, distance, sub, yaw_of
+from onboard.core.route.choice import Fix, follow, fresh
 from onboard.core.route.tracking import Setting, Strategy, Waypoint, pseudo_target
 from onboard.game.route_file import Route
 from onboard.game.scenario import WindSpec
@@ -24,6 +25,7 @@ from sim_bridge.campaign.plane_in_wind import (
     GUST_EVERY,
     Climate,
     blown,
+    climate_of,
     command_for,
     fly,
     gust_at,
@@ -35,7 +37,6 @@ from sim_bridge.vehicle.flight.aircraft import named, within
 from sim_bridge.vehicle.flight.plane import PlaneModel, PlaneState, start_state, trimmed
 from sim_bridge.vehicle.wind import KERNELS as WIND
 from sim_bridge.vehicle.wind.dryden import GustNoise
-from sim_bridge.vehicle.wind.field import wind_vector
 
 CONTROL_EVERY = 5  # samples between two decisions: 20 Hz
 OVERTIME = 90.0  # [s] after the last waypoint's instant at which a flight ends at the latest
@@ -67,9 +68,15 @@ class Tracked(NamedTuple):
     away: float  # mean distance to the pseudo-target [m]
 
 
+class Craft(NamedTuple):
+    """An aircraft at the start of its route."""
+
+    plane: PlaneState
+    model: PlaneModel
+
+
 def fly_route(
-    plane: PlaneState,
-    model: PlaneModel,
+    craft: Craft,
     route: tuple[Waypoint, ...],
     setting: Setting,
     climate: Climate,
@@ -80,6 +87,7 @@ def fly_route(
 
     Kernel style.
     """
+    plane, model = craft
     flown = launched(plane, GustNoise(noise[0, 0], noise[0, 1], noise[0, 2], noise[0, 3], noise[0, 4]))
     memory = fresh()
     command = command_for(sub(plane.velocity, wind_at(climate, plane.position)), plane.course)
@@ -105,7 +113,7 @@ def fly_route(
         if k % CONTROL_EVERY == 0:
             air = add(wind_at(climate, state.position), gust_at(climate, flown))
             before = memory
-            step = follow(route, setting, memory, time, state.position, state.velocity, air)
+            step = follow(route, setting, memory, Fix(time, state.position, state.velocity, air))
             memory = step.memory
             if memory.leg != before.leg:
                 out[before.leg - 1, 0] = best
@@ -143,19 +151,12 @@ class Flight(NamedTuple):
     tracked: Tracked
 
 
-def climate_of(wind: WindSpec) -> Climate:
-    """The wind of a scenario for the kernels."""
-    reference = wind_vector(wind.speed, wind.from_deg)
-    axis = unit(reference, NORTH)
-    return Climate(reference, wind.shear, wind.gust_sigma, axis.x, axis.y)
-
-
 def fly_seed(
     route: Route, aircraft: str, way: Strategy, seed: int, wind: WindSpec, interpreted: bool = False
 ) -> Flight:
     """Fly a route once. The mean wind comes from a direction drawn from the seed, as do the gusts."""
     rng = np.random.default_rng(seed)
-    climate = climate_of(_from(wind, float(rng.uniform(0.0, 360.0))))
+    climate = climate_of(msgspec.structs.replace(wind, from_deg=float(rng.uniform(0.0, 360.0))))
     points = route.waypoints
     model = within(named(aircraft).model, route.limits)
     leg = sub(points[1].position, points[0].position)
@@ -167,12 +168,8 @@ def fly_seed(
     out = np.full((len(points) - 1, 2), np.nan)
     setting = Setting(route.limits, route.nominal, AHEAD[aircraft], way)
     play = fly_route if interpreted else compiled_route()
-    tracked = play(plane, model, points, setting, climate, rng.standard_normal((ticks, 5)), out)
+    tracked = play(Craft(plane, model), points, setting, climate, rng.standard_normal((ticks, 5)), out)
     return Flight(out[:, 0], out[:, 1], Tracked(*tracked))
-
-
-def _from(wind: WindSpec, from_deg: float) -> WindSpec:
-    return WindSpec(speed=wind.speed, from_deg=from_deg, shear=wind.shear, gust_sigma=wind.gust_sigma)
 
 
 class Row(NamedTuple):

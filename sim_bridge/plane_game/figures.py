@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from onboard.config.strict import ConfigError
-from onboard.core.game.advance import evader_view
+from onboard.core.game.advance import still_view
 from onboard.core.geometry.apollonius import apollonius_sphere
 from onboard.core.geometry.assessment import half_angle
 from onboard.core.math.vectors import Vec, norm
@@ -60,8 +60,8 @@ def draw_game(played: Played, folder: Path) -> list[Path]:
 def draw_stage(axis: Any, played: Played, index: int) -> None:
     """One instant: paths so far, circles and centres, cones, forces, headings."""
     frame = played.frames[index]
-    game, params = frame.game, played.params
-    view = evader_view(game, params)
+    game, target = frame.game, played.conditions.target
+    view = still_view(game, played.conditions)
     span = _extent(played)
     _paths(axis, played, index)
     for number, pursuer in enumerate(game.pursuers):
@@ -91,9 +91,9 @@ def draw_stage(axis: Any, played: Played, index: int) -> None:
         size = 1.0 / norm(force)
         way = Vec(force.x * size, force.y * size, 0.0)
         _arrow(axis, e, way, 0.09 * span, "#9467bd", "resultant force F_res")
-    if params.has_target:
+    if target.exists:
         _arrow(axis, e, target_direction(view), 0.09 * span, TARGET, "direction of the target F_g")
-        axis.plot(params.target.y, params.target.x, "*", color=TARGET, ms=14, label="target")
+        axis.plot(target.position.y, target.position.x, "*", color=TARGET, ms=14, label="target")
     rule = frame.decisions.evader.rule.name.lower().replace("_", " ")
     words = f"t = {game.time:.2f} s\nevader: {rule}"
     axis.text(0.02, 0.98, words, transform=axis.transAxes, va="top", fontsize=9)
@@ -183,7 +183,8 @@ def _arrow(axis: Any, start: Vec, way: Vec, length: float, colour: str, label: s
 def _points(played: Played) -> list[Vec]:
     step = max(1, len(played.frames) // 100)
     points = [v.position for f in played.frames[::step] for v in (f.game.evader, *f.game.pursuers)]
-    return [*points, played.params.target] if played.params.has_target else points
+    target = played.conditions.target
+    return [*points, target.position] if target.exists else points
 
 
 def _extent(played: Played) -> float:

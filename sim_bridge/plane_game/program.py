@@ -10,20 +10,20 @@ import msgspec
 
 from onboard.config.strict import ConfigError
 from onboard.core.game.advance import (
+    Conditions,
     Decisions,
     EvaderStrategy,
     Game,
-    Params,
     PursuerStrategy,
     advance,
     decide,
 )
-from onboard.core.game.referee import Verdict
+from onboard.core.game.referee import GameResult
 from onboard.core.math.vectors import Vec
 from onboard.game.scenario import Scenario, load
 from onboard.runtime.plugins import evader_strategy, pursuer_strategy
 from onboard.runtime.resources import configs
-from sim_bridge.plane_game.setup import game_of, params_of
+from sim_bridge.plane_game.setup import conditions_of, game_of
 
 EARLIER = "earlier"
 THIS_PAPER = "paper"
@@ -41,12 +41,12 @@ class Played(NamedTuple):
 
     scenario: Scenario
     strategy: str
-    params: Params
+    conditions: Conditions
     frames: tuple[Frame, ...]  # every step
     final: Game  # at the instant of the verdict
 
     @property
-    def verdict(self) -> Verdict:
+    def verdict(self) -> GameResult:
         """How it ended."""
         return self.final.score.verdict
 
@@ -71,21 +71,21 @@ class Result(msgspec.Struct, frozen=True):
 
 def play(scenario: Scenario, strategy: str, dt: float | None = None, keep: bool = True) -> Played:
     """Play a plane game under a pursuers' strategy; `keep` records every step."""
-    params = params_of(scenario, dt)
+    conditions = conditions_of(scenario, dt)
     decide_evader: EvaderStrategy = evader_strategy(scenario.evader.strategy)
     decide_pursuer: PursuerStrategy = pursuer_strategy(strategy)
     game = game_of(scenario)
     frames = []
     before = game
-    while game.score.verdict == Verdict.RUNNING:
+    while game.score.verdict == GameResult.RUNNING:
         if keep:
-            frames.append(Frame(game, decide(game, params, decide_evader, decide_pursuer)))
+            frames.append(Frame(game, decide(game, conditions, decide_evader, decide_pursuer)))
         before = game
-        game = advance(game, params, decide_evader, decide_pursuer)
+        game = advance(game, conditions, decide_evader, decide_pursuer)
     final = _cut(before, game)
     if keep:
-        frames.append(Frame(final, decide(final, params, decide_evader, decide_pursuer)))
-    return Played(scenario, strategy, params, tuple(frames), final)
+        frames.append(Frame(final, decide(final, conditions, decide_evader, decide_pursuer)))
+    return Played(scenario, strategy, conditions, tuple(frames), final)
 
 
 def _cut(before: Game, after: Game) -> Game:
@@ -117,13 +117,13 @@ def result(played: Played) -> Result:
         played.scenario.name,
         played.strategy,
         score.verdict.name.lower(),
-        score.verdict != Verdict.CAPTURED,
-        score.verdict == Verdict.ARRIVED if played.params.has_target else None,
+        score.verdict != GameResult.CAPTURED,
+        score.verdict == GameResult.ARRIVED if played.conditions.target.exists else None,
         round(score.time, 6),
         score.captor + 1,
         round(score.smallest, 6),
         round(score.unsafe, 6),
-        played.params.dt,
+        played.conditions.control.dt,
         [(round(v.position.x, 6), round(v.position.y, 6)) for v in vehicles],
         wanted,
         expect.reaches if expect is not None and played.strategy == THIS_PAPER else None,

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from onboard.config.strict import ConfigError
+from onboard.core.math.constants import NS_PER_S
 from onboard.game.scenario import Scenario, load
 from onboard.runtime.clock import RealClock
 from onboard.runtime.loop import run_virtual, virtual_clock
@@ -65,7 +66,7 @@ def fly(path: Path, options: Options, say: Callable[[str], None] = print) -> Flo
     except ConfigError:
         run_folder.discard(folder)
         raise
-    wall_s = (clock.monotonic_ns() - began) / 1e9
+    wall_s = (clock.monotonic_ns() - began) / NS_PER_S
     run_folder.write(folder / "summary.json", summary)
     timing = {"wall_s": round(wall_s, 3), **timing}
     run_folder.write(folder / "timing.json", timing)
@@ -90,11 +91,11 @@ def _fast(
             run_folder.write(folder / "configuration.json", game.configuration())
             await game.until_ended()
             await game.land_agents()
-            return game.summary(), virtual.monotonic_ns() / 1e9
+            return game.summary(), virtual.monotonic_ns() / NS_PER_S
 
     began = clock.monotonic_ns()
     summary, virtual_s = run_virtual(play())
-    took = max((clock.monotonic_ns() - began) / 1e9, 1e-9)
+    took = max((clock.monotonic_ns() - began) / NS_PER_S, 1e-9)
     return summary, {
         "virtual_s": round(virtual_s, 3),
         "times_real_time": round(virtual_s / took, 2),

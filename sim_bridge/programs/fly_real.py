@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from onboard.config.strict import ConfigError
+from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import distance
 from onboard.game.master import Standing
 from onboard.game.scenario import Scenario
@@ -154,7 +155,7 @@ class Show:
                 continue
             rules = bridge.master.rules
             if rules.phase is Phase.RUNNING:
-                self._say(self._line(bridge, (bridge.world.wall_ns - rules.t0_ns) / 1e9))
+                self._say(self._line(bridge, (bridge.world.wall_ns - rules.t0_ns) / NS_PER_S))
             elif rules.phase is Phase.STAGING:
                 lacking = rules.lacking(RealClock().monotonic_ns())
                 for id, reason in sorted(lacking.items()):

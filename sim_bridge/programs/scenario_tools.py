@@ -10,7 +10,7 @@ from onboard.core.geometry.assessment import assess
 from onboard.core.geometry.cones import blocked_cones
 from onboard.core.math.vectors import ZERO, distance
 from onboard.game.scenario import Scenario
-from sim_bridge.plane_game.setup import params_of, vehicles_of
+from sim_bridge.plane_game.setup import conditions_of, vehicles_of
 
 TEMPLATE = '''\
 # A scenario of Apollonius. Metres, metres a second, degrees where a key ends in _deg.
@@ -89,13 +89,12 @@ def new(path: Path) -> str:
 
 def check(scenario: Scenario) -> str:
     """What a scenario promises, in lines for people."""
-    params = params_of(scenario)
+    rules, target, _ = conditions_of(scenario)
     evader, *pursuers = vehicles_of(scenario)
-    rho = params.rho
-    seen = assess(evader, tuple(pursuers), rho, params.has_target, params.target, params.planar)
+    seen = assess(evader, tuple(pursuers), rules.rho, target.exists, target.position, rules.planar)
     lines = [
-        f"{scenario.name}: {len(pursuers)} pursuers, {'plane' if params.planar else 'in space'}, "
-        f"R = {params.R:g} m, ρ = {rho:g} m, horizon {params.horizon:g} s",
+        f"{scenario.name}: {len(pursuers)} pursuers, {'plane' if rules.planar else 'in space'}, "
+        f"R = {rules.R:g} m, ρ = {rules.rho:g} m, horizon {rules.horizon:g} s",
         "",
         "vehicle   role      speed    turn radius  distance  γ      half-angle  intercepts  denies target",
     ]
@@ -105,7 +104,7 @@ def check(scenario: Scenario) -> str:
         if index:
             prospect = seen.prospects[index - 1]
             meets = f"in {prospect.time:.1f} s" if prospect.intercepts else "no"
-            denies = ("yes" if prospect.denies_target else "no") if params.has_target else "–"
+            denies = ("yes" if prospect.denies_target else "no") if target.exists else "–"
             row += (
                 f"   {distance(pursuers[index - 1].position, evader.position):7.1f} m"
                 f"  {spec.speed / evader.speed:5.2f}  {degrees(prospect.half_angle):8.1f}°"
@@ -117,17 +116,17 @@ def check(scenario: Scenario) -> str:
 
 
 def _freedom(scenario: Scenario) -> list[str]:
-    params = params_of(scenario)
+    rules, target, _ = conditions_of(scenario)
     evader, *pursuers = vehicles_of(scenario)
-    seen = assess(evader, tuple(pursuers), params.rho, params.has_target, params.target, params.planar)
+    seen = assess(evader, tuple(pursuers), rules.rho, target.exists, target.position, rules.planar)
     if seen.encircled:
         return ["free rays at the start: none, the evader is encircled"]
-    if params.planar:
+    if rules.planar:
         gaps = ", ".join(
             f"{degrees(g.start) % 360:.0f}° to {degrees(g.start + g.width) % 360:.0f}°" for g in seen.gaps
         )
         return [f"free headings at the start: {gaps} (largest gap {degrees(seen.largest_gap):.0f}°)"]
-    cones = blocked_cones(evader, tuple(pursuers), params.rho)
+    cones = blocked_cones(evader, tuple(pursuers), rules.rho)
     return [
         f"free rays at the start: the largest free cap has a radius of {degrees(seen.cap.radius):.1f}° "
         f"({len(cones)} cones)"
@@ -136,14 +135,14 @@ def _freedom(scenario: Scenario) -> list[str]:
 
 def _duration(scenario: Scenario) -> list[str]:
     """How long it will last, as far as one can say without playing it."""
-    params = params_of(scenario)
+    rules, target, _ = conditions_of(scenario)
     evader, *pursuers = vehicles_of(scenario)
     lines = []
-    if params.has_target:
-        straight = distance(evader.position, params.target) / evader.speed
-        lines.append(f"straight to the target: {straight:.1f} s; the game lasts at most {params.horizon:g} s")
+    if target.exists:
+        straight = distance(evader.position, target.position) / evader.speed
+        lines.append(f"straight to the target: {straight:.1f} s; the game lasts at most {rules.horizon:g} s")
     else:
-        lines.append(f"no target: the game lasts until a capture, at most {params.horizon:g} s")
+        lines.append(f"no target: the game lasts until a capture, at most {rules.horizon:g} s")
     turn = radians(scenario.evader.turn_rate_deg)
     half_turn = pi / turn
     lines.append(f"a half turn of the evader takes {half_turn:.1f} s")
@@ -151,10 +150,10 @@ def _duration(scenario: Scenario) -> list[str]:
     if faster:
         least = min(distance(p.position, evader.position) / (p.speed - evader.speed) for p in faster)
         lines.append(f"{len(faster)} faster than the evader: a chase from behind ends within {least:.0f} s")
-    if params.has_target and distance(evader.position, params.target) <= params.epsilon:
+    if target.exists and distance(evader.position, target.position) <= rules.epsilon_min:
         lines.append("warning: the evader starts at its target")
-    if any(distance(p.position, evader.position) <= params.R for p in pursuers):
+    if any(distance(p.position, evader.position) <= rules.R for p in pursuers):
         lines.append("warning: a pursuer starts within the capture radius")
-    if scenario.flight.airframe.value != "kinematic" and evader.position == ZERO and params.R < 10.0:
+    if scenario.flight.airframe.value != "kinematic" and evader.position == ZERO and rules.R < 10.0:
         lines.append("warning: R below 10 m is less than what transfer-function aircraft can aim at")
     return lines

@@ -14,7 +14,8 @@ import numpy.typing as npt
 
 from onboard.config.strict import ConfigError
 from onboard.core.game.advance import advance
-from onboard.core.game.referee import Verdict
+from onboard.core.game.referee import GameResult
+from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import ZERO, Vec, along, distance
 from onboard.game.scenario import Scenario, load
 from onboard.pilot.predictor import PredictorKind, TrackPredictor, Trainer
@@ -22,7 +23,7 @@ from onboard.pilot.predictor.paper import PaperNetwork, PaperSettings
 from onboard.pilot.track_filter import Variance
 from onboard.runtime.clock import RealClock
 from onboard.runtime.plugins import evader_strategy, pursuer_strategy
-from sim_bridge.plane_game.setup import game_of, params_of
+from sim_bridge.plane_game.setup import conditions_of, game_of
 from sim_bridge.vehicle.motion import Motion
 from sim_bridge.world.sensor import Sensor
 
@@ -233,12 +234,12 @@ def recording_of(path: Path, seed: int = 0) -> Recording:
 def simulate(scenario: Scenario, seed: int = 0) -> Recording:
     """Play the scenario in the core and measure the evader as the scenario's sensor would; a sensor
     without noise is given 3 m, so that there is something to filter."""
-    params = params_of(scenario)
+    conditions = conditions_of(scenario)
     flee, chase = evader_strategy(scenario.evader.strategy), pursuer_strategy("")
     game = game_of(scenario)
     times, states = [0.0], [game.evader]
-    while game.score.verdict == Verdict.RUNNING:
-        game = advance(game, params, flee, chase)
+    while game.score.verdict == GameResult.RUNNING:
+        game = advance(game, conditions, flee, chase)
         times.append(game.time)
         states.append(game.evader)
     spec = scenario.flight.sensor
@@ -247,7 +248,7 @@ def simulate(scenario: Scenario, seed: int = 0) -> Recording:
     sensor = Sensor(spec, (1,), np.random.default_rng([scenario.seed, seed]))
     samples = []
     for t, state in zip(times, states, strict=True):
-        now = round(t * 1e9)
+        now = round(t * NS_PER_S)
         motion = Motion(state.position, state.velocity, state.speed, 0.0, 0.0, 0.0)
         for track in sensor.step(now, {1: motion}):
             of = track.stamp_ns * 1e-9

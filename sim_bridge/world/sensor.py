@@ -6,6 +6,7 @@ from collections import deque
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from onboard.core.math.constants import NS_PER_S
 from onboard.game.scenario import SensorSpec
 from onboard.wire.bus.messages import Track
 from sim_bridge.vehicle.motion import Motion
@@ -15,7 +16,6 @@ if TYPE_CHECKING:
 
 NAME = "sim-bridge"
 UNDER_WAY_MAX = 1000  # measurements of one vehicle on their way before the oldest is lost
-_NS = 1_000_000_000
 
 
 class Sensor:
@@ -27,8 +27,8 @@ class Sensor:
 
     def __init__(self, spec: SensorSpec, ids: Sequence[int], rng: Generator) -> None:
         self._spec = spec
-        self._period_ns = round(_NS / spec.rate_hz)
-        self._delay_ns = round(spec.delay_s * _NS)
+        self._period_ns = round(NS_PER_S / spec.rate_hz)
+        self._delay_ns = round(spec.delay_s * NS_PER_S)
         self._rngs = dict(zip(ids, rng.spawn(len(ids)), strict=True))
         self._due_ns: dict[int, int] = {}
         self._under_way: deque[Track] = deque()

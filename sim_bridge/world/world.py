@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Mapping, Sequence
 
+from onboard.core.math.constants import NS_PER_S
 from onboard.game.scenario import Scenario, VehicleSpec
 from onboard.runtime.protocols import Clock, Link
 from sim_bridge.vehicle.autopilot.autopilot import Autopilot
@@ -17,7 +18,6 @@ from sim_bridge.world.staging import Wind, airframe_of, calm, frame_of, kind_of,
 
 RATE_HZ = 100.0
 BEHIND_MAX = 50  # physics steps made up for in one call; beyond them time is lost, and counted
-_NS = 1_000_000_000
 
 Tap = Callable[[int, int, bytes, bool], None]  # (vehicle id, wall instant [ns], bytes, sent by the autopilot)
 
@@ -60,7 +60,7 @@ class World:
         tap: Tap | None = None,
         battery_s: float = 1200.0,
     ) -> None:
-        self.step_ns = round(_NS / rate_hz)
+        self.step_ns = round(NS_PER_S / rate_hz)
         self.lost_steps = 0
         self._clock = clock
         self._wind = wind
@@ -129,10 +129,10 @@ class World:
         autopilot, airframe = vehicle.autopilot, vehicle.airframe
         now_ns = self.elapsed_ns
         motion = airframe.motion
-        vehicle.air = air = self._wind(vehicle.id, motion, now_ns / _NS)
+        vehicle.air = air = self._wind(vehicle.id, motion, now_ns / NS_PER_S)
         demand = autopilot.step(now_ns, motion, air)
         if not autopilot.parked:
-            airframe.step(demand, air, self.step_ns / _NS)
+            airframe.step(demand, air, self.step_ns / NS_PER_S)
         self._flush(vehicle)
 
     def _flush(self, vehicle: SimVehicle) -> None:

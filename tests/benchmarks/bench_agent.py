@@ -28,6 +28,7 @@ from typing import NamedTuple
 import psutil  # type: ignore[import-untyped]
 import pytest
 
+from onboard.core.math.constants import NS_PER_S
 from onboard.game.scenario import Flight, Parameters, Scenario, SensorSpec, VehicleSpec
 from onboard.game.staging import setup_of
 from onboard.runtime.bus_zenoh import ZenohBus, open_zenoh
@@ -35,7 +36,7 @@ from onboard.runtime.clock import RealClock
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import Master, Phase, PhaseChange, Role, State, Track
-from onboard.wire.mavlink.frames import Sender
+from onboard.wire.mavlink.dialect import DialectSender
 from onboard.wire.mavlink.signing import MemoryStore, Signing
 from sim_bridge.world.world import World
 from tests.support import measured
@@ -48,7 +49,6 @@ HEAVY = ("scipy", "control", "numba", "matplotlib", "pymavlink.mavutil")
 SETTLE_S, LOOK_S = 3.0, 20.0
 ROUND_S, ROUNDS = 6.0, 3
 ENV = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
-_NS = 1_000_000_000
 
 
 class Taken(NamedTuple):
@@ -208,7 +208,7 @@ class Stage:
         autopilot = self.world.vehicles[PURSUER].autopilot
         if signing is not None:
             autopilot.setup = autopilot.setup._replace(signing=signing)
-            autopilot._sender = Sender(PURSUER, 1, signing=signing)
+            autopilot._sender = DialectSender(PURSUER, 1, signing=signing)
         self._begun_ns = self._clock.wall_ns()
 
     async def run(self) -> None:
@@ -246,7 +246,7 @@ class Stage:
 
     def _tracks(self) -> None:
         now = self._clock.wall_ns()
-        t = (now - self._begun_ns) / _NS
+        t = (now - self._begun_ns) / NS_PER_S
         for id in (EVADER, *self._mates):
             place = (-4.0 * t, 20.0 * sin(0.3 * t), -50.0)
             velocity = (-4.0, 6.0 * cos(0.3 * t), 0.0)

@@ -6,7 +6,7 @@ from time import process_time
 
 from onboard.core.math.vectors import Vec
 from onboard.game.scenario import Kind
-from onboard.wire.mavlink.frames import Sender, dialect
+from onboard.wire.mavlink.dialect import DialectSender, dialect
 from tests.support.flown import Flown
 
 SECONDS = 10
@@ -35,7 +35,7 @@ def test_six_autopilots_and_airframes_beside_bare_encoding_of_what_they_send() -
             airframe.step(autopilot.step(now_ns, airframe.motion, air), air, flown.tick_ns * 1e-9)
             frames += len(autopilot.outgoing())
         taken = process_time() - began
-        sender = Sender(1, 1)
+        sender = DialectSender(1, 1)
         began = process_time()
         for number in range(frames):
             sender.pack(dialect.MAVLink_local_position_ned_message(number, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0))

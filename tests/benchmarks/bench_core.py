@@ -19,19 +19,22 @@ import numpy as np
 import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from onboard.core.game.advance import FREE, Params, begin
+from onboard.core.game.advance import Conditions, begin
+from onboard.core.game.rules import Control, Rules, Target
+from onboard.core.game.views import EvaderView, Nearest, PursuerView
 from onboard.core.geometry.cones import blocked_cones
-from onboard.core.math.states import Vehicle
+from onboard.core.math.states import FREE, Vehicle
 from onboard.core.math.vectors import NORTH, ZERO, Vec, scale, unit
-from onboard.core.strategy.evasion import EvaderView, evader
+from onboard.core.strategy.evasion import evader
 from onboard.core.strategy.knowledge import RuleId
-from onboard.core.strategy.pursuit import PursuerView, pursuer
+from onboard.core.strategy.pursuit import pursuer
 from sim_bridge.campaign.compiled import Starts, campaign, starts_of
 from tests.benchmarks import numpy_core, plain_kernel
 from tests.support.paths import RESULTS
 
 COMMAND = "make bench"
 TARGET = Vec(300.0, 0.0, 0.0)
+RULES = Rules(R=2.0, rho=4.0)
 SIZES = tuple(int(n) for n in os.environ.get("APOLLONIUS_BENCH_PURSUERS", "2,5,10,20,50").split(","))
 
 
@@ -82,7 +85,7 @@ ENCLOSED = tuple(
 def evader_decides(team: tuple[Vehicle, ...]) -> Any:
     own = Vehicle(ZERO, scale(NORTH, 5.0), 5.0)
     cones = blocked_cones(own, team, 4.0)
-    return evader(EvaderView(own, FREE, team, cones, True, TARGET, 2.0, 100.0, 1.0, False))
+    return evader(EvaderView(own, FREE, team, cones, Target(True, TARGET), RULES))
 
 
 @pytest.mark.parametrize(
@@ -122,7 +125,7 @@ def test_pursuer_beside_numpy(bearing: float, benchmark: BenchmarkFixture) -> No
     own, quarry = Vehicle(place, ZERO, 4.0), Vehicle(ZERO, scale(NORTH, 5.0), 5.0)
     e, heading, p = np.zeros(3), np.array(NORTH), np.array(place)
 
-    view = PursuerView(own, FREE, quarry, NORTH, False, ZERO, 0.0, False, ZERO, 0.0, 0.05, False)
+    view = PursuerView(own, FREE, quarry, NORTH, False, ZERO, Nearest(False, ZERO), Control(), RULES)
 
     def ours() -> Any:
         return pursuer(view)
@@ -161,10 +164,10 @@ def starts(games: int, pursuers: int) -> Starts:
 
 def compiled_row(pursuers: int) -> tuple[float, float, float]:
     """Game steps a CPU-second, compiled and of the plain kernel; share of games that end alike."""
-    params = Params(2.0, 4.0, 100.0, 1.0, 1.0, 0.05, 100.0, 0.0, False, True, TARGET)
+    conditions = Conditions(RULES, Target(True, TARGET), Control())
     play = campaign(evader, pursuer, pursuers)
     at = starts(max(6, 600 // pursuers), pursuers)
-    play(starts(2, pursuers), params)  # compiles
+    play(starts(2, pursuers), conditions)  # compiles
 
     def plain() -> list[Any]:
         return [
@@ -173,10 +176,10 @@ def compiled_row(pursuers: int) -> tuple[float, float, float]:
             for place, speeds, target in zip(at.positions, at.speeds, at.targets, strict=True)
         ]  # fmt: skip
 
-    ends, theirs = play(at, params), plain()
+    ends, theirs = play(at, conditions), plain()
     same = float(np.mean([a == b[0] and v == b[1] for a, v, b in
                           zip(ends.steps, ends.verdicts, theirs, strict=True)]))  # fmt: skip
-    found = beside(lambda: play(at, params), plain, 1, rounds=5)
+    found = beside(lambda: play(at, conditions), plain, 1, rounds=5)
     return float(ends.steps.sum()) / found.ours, sum(r[0] for r in theirs) / found.theirs, same
 
 

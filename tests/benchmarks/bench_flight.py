@@ -9,11 +9,14 @@ from typing import Any
 import numpy as np
 import pytest
 
+from onboard.core.game.rules import Rules, Target
+from onboard.core.game.views import EvaderView
 from onboard.core.geometry.cones import blocked_cones
-from onboard.core.math.states import Limits, Vehicle
+from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import ZERO, Vec
-from onboard.core.strategy.evasion import EvaderView, evader
+from onboard.core.strategy.evasion import evader
 from sim_bridge.campaign.spatial_campaign import _list, compiled_play, draw, spatial
+from sim_bridge.campaign.spatial_game import Evasion
 from sim_bridge.vehicle.flight.aircraft import named
 from sim_bridge.vehicle.flight.plane import Command, Steer, start_state, step_plane, trimmed
 from tests.benchmarks import plain_aircraft
@@ -35,12 +38,12 @@ def decision() -> Any:
     own = Vehicle(ZERO, Vec(50.0, 0.0, 0.0), 50.0)
     places = [(2000, 100, 50), (2500, 900, -100), (1800, -900, 30), (2200, 300, 400), (2600, -300, -300)]
     others = tuple(Vehicle(Vec(*map(float, p)), Vec(-40.0, 0.0, 0.0), 40.0) for p in places)
-    limits = Limits(40.0, 50.0, radians(-20), radians(20))
-    target = Vec(6000.0, 0.0, 0.0)
+    limits = VehicleLimits(40.0, 50.0, radians(-20), radians(20))
+    target, rules = Vec(6000.0, 0.0, 0.0), Rules(25.0, 88.0)
 
     def work() -> object:
         view = EvaderView(
-            own, limits, others, blocked_cones(own, others, 88.0), True, target, 25.0, 100.0, 1.0, False
+            own, limits, others, blocked_cones(own, others, rules.rho), Target(True, target), rules
         )
         return evader(view)
 
@@ -70,22 +73,22 @@ def test_the_compiled_game_of_six_aircraft_beside_a_plain_kernel() -> None:
 
     def ours() -> float:
         d = draw(scenario, 1)
-        params = d.params._replace(R=0.0, epsilon=0.0, horizon=count * d.params.dt)
-        log = np.zeros((d.tracks.shape[0], 6, 5))
+        conditions = d.start.conditions
+        rules = conditions.rules._replace(R=0.0, epsilon_min=0.0, horizon=count * conditions.control.dt)
+        endless = d.start._replace(conditions=conditions._replace(rules=rules))
+        log = np.zeros((d.noise.tracks.shape[0], 6, 5))
         players = _list(d.players, True)
         commands = _list([Command(Steer.COURSE, 0.0, 0.0, 0.0)] * 6, True)
         start = process_time()
-        found = play(
-            d.game, params, players, commands, d.fleet, d.climate, d.sensor, d.band, False, d.gusts, d.tracks,
-            log,
-        )  # fmt: skip
+        found = play(endless, Evasion.STRATEGY, players, commands, d.noise, log)
         spent = process_time() - start
         assert found.steps == count
         return spent
 
     def theirs() -> float:
         d = draw(scenario, 1)
-        m = d.fleet.evader
+        game, noise = d.start, d.noise
+        m, goal = game.fleet.evader, game.conditions.target.position
         state = np.zeros((6, 29))
         for index, flown in enumerate(d.players):
             p = flown.plane
@@ -98,14 +101,14 @@ def test_the_compiled_game_of_six_aircraft_beside_a_plain_kernel() -> None:
             s.gain, s.integral_gain, s.acceleration_min, s.acceleration_max, s.lag, s.lead, s.drag, s.gravity,
             s.trim,
         )  # fmt: skip
-        c, f = d.climate, m.follow
+        c, f = game.climate, m.follow
         wind = np.array([*c.reference, c.axis_x, c.axis_y, f.carry_along, f.carry_across, f.carry_up])
         declared = np.array([50.0] + [40.0] * 5)
         arrays = [np.array(flat(x)) for x in (m.pitch, m.yaw, m.pitch_law, m.yaw_law)]
         start = process_time()
         plain_aircraft.play(
-            state, *arrays, speeds, declared, wind, c.sigma, d.gusts, d.tracks, np.array(d.sensor),
-            np.array(d.params.target), d.params.rho, count, radians(20.0),
+            state, *arrays, speeds, declared, wind, c.sigma, noise.gusts, noise.tracks,
+            np.array(game.sensor), np.array(goal), game.conditions.rules.rho, count, radians(20.0),
         )  # fmt: skip
         spent = process_time() - start
         assert np.all(np.isfinite(state))

@@ -17,7 +17,7 @@ class Echo(asyncio.DatagramProtocol):
     """One datagram in, one out."""
 
     def __init__(self, system: int) -> None:
-        from onboard.wire.mavlink.frames import dialect
+        from onboard.wire.mavlink.dialect import dialect
 
         self._dialect = dialect
         self._system = system

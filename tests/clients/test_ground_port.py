@@ -10,7 +10,8 @@ import pytest
 
 from onboard.game.scenario import Kind
 from onboard.runtime.links import open_udp
-from onboard.wire.mavlink.frames import Framer, Sender, dialect
+from onboard.wire.mavlink.dialect import DialectSender, dialect
+from onboard.wire.mavlink.frames import Framer
 from tests.support.udp_fleet import HOST, fleet
 from tests.support.waiting import until
 
@@ -36,7 +37,7 @@ class Listener:
 
     def take(self, data: bytes, peer: Hashable) -> None:
         for packet in self.framers[peer].feed(data):
-            self.heard[packet.system].add(packet.message.get_type())
+            self.heard[packet.system].add(packet.name)
 
     @property
     def bad(self) -> int:
@@ -58,7 +59,7 @@ async def test_agents_and_ground_stations_ports_hear_all_that_lists_a_vehicle(ki
                 assert ear.heard[id] >= NEEDED
             # It speaks up without a word of welcome, and is answered on every port.
             command = dialect.MAVLink_command_long_message(2, 1, 512, 0, 148, 0, 0, 0, 0, 0, 0)
-            ground.send(Sender(255, 190).pack(command), vehicles.address(2))
+            ground.send(DialectSender(255, 190).pack(command), vehicles.address(2))
             await until(lambda: "AUTOPILOT_VERSION" in together.heard[2])
             await asyncio.sleep(0.1)
             assert "AUTOPILOT_VERSION" not in together.heard[1] | together.heard[3]

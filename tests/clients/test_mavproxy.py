@@ -132,7 +132,7 @@ def check_log(folder: Path, parameters: int) -> None:
     while (message := log.recv_msg()) is not None:
         theirs[message.get_type()] += 1
     causes: Counter[str] = Counter()
-    ours = Counter(entry.packet.message.get_type() for entry in read_tlog(path.read_bytes(), causes))
+    ours = Counter(entry.packet.name for entry in read_tlog(path.read_bytes(), causes))
     assert theirs["BAD_DATA"] == 0
     assert not causes
     assert ours == theirs

@@ -10,8 +10,8 @@ import pytest
 from onboard.config.strict import ConfigError
 from onboard.core.math.vectors import Vec, distance
 from onboard.wire.geodesy import Frame
-from onboard.wire.mavlink.frames import Framer, Sender, dialect
-from onboard.wire.mavlink.telemetry import decode
+from onboard.wire.mavlink.dialect import DialectSender, dialect
+from onboard.wire.mavlink.frames import Framer
 from tests.support.paths import ROOT
 
 FILE = ROOT / "examples" / "field-tracks" / "feed_tracks.py"
@@ -38,8 +38,8 @@ def adsb(icao: int, north_m: float):
         icao, round(place.latitude_deg * 1e7), round(place.longitude_deg * 1e7), 1, 588_000, 9000, 4000, 0,
         b"TEST1", 0, 0, FLAGS, 0,
     )  # fmt: skip
-    (packet,) = Framer().feed(Sender(1, 156).pack(message))
-    return decode(packet.message)
+    (packet,) = Framer().feed(DialectSender(1, 156).pack(message))
+    return packet.value
 
 
 def test_an_adsb_target_becomes_the_track_of_the_vehicle_it_is_mapped_to():

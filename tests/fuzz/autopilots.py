@@ -13,7 +13,8 @@ from struct import pack
 import numpy as np
 
 from onboard.game.scenario import Kind
-from onboard.wire.mavlink.frames import Framer, dialect
+from onboard.wire.mavlink.dialect import dialect
+from onboard.wire.mavlink.frames import Framer
 from tests.fuzz import campaign
 from tests.fuzz.frames import EXTRA, befallen
 from tests.support.flown import Flown

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from onboard.wire.mavlink.frames import dialect
+from onboard.wire.mavlink.dialect import dialect
 from onboard.wire.mavlink.telemetry import READ
 
 KINDS = sorted(dialect.mavlink_map)

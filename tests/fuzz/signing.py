@@ -11,7 +11,8 @@ from hashlib import sha256
 
 import numpy as np
 
-from onboard.wire.mavlink.frames import Framer, Sender, dialect
+from onboard.wire.mavlink.dialect import DialectSender, dialect
+from onboard.wire.mavlink.frames import Framer
 from onboard.wire.mavlink.signing import EPOCH_NS, TICK_NS, MemoryStore, Signing, ticks
 from tests.fuzz import campaign
 from tests.fuzz.frames import EXTRA, KINDS
@@ -67,7 +68,7 @@ def play(rng: np.random.Generator, count: int, totals: Counter[str]) -> None:
     """`count` forgeries of each kind; a legitimate frame after every ten."""
     store = MemoryStore()
     framer = Framer(signing=Signing(KEY, store))
-    sender = Sender(1, 1, signing=Signing(KEY, MemoryStore()), link_id=1)
+    sender = DialectSender(1, 1, signing=Signing(KEY, MemoryStore()), link_id=1)
     now = START
     heard: list[bytes] = []
     for k in range(count):

@@ -11,6 +11,7 @@ import pytest
 
 from gcs.master import FieldMaster, Fix, Positions
 from gcs.station import Station
+from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec
 from onboard.game.master import Standing
 from onboard.game.scenario import Flight, Parameters, Scenario, VehicleSpec
@@ -21,7 +22,7 @@ from onboard.wire.bus import messages as swarm
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import CommandKind, Phase
 from tests.support.crews import Crew
-from tests.support.radio import GAME, NS, health, on_bus, state, track
+from tests.support.radio import GAME, health, on_bus, state, track
 from tests.support.virtual import virtual
 
 MEETING = Scenario(
@@ -57,7 +58,7 @@ class Flyer:
         clock = virtual_clock()
         while True:
             now_ns = clock.wall_ns()
-            t = max(0, now_ns - self.t0_ns) / NS if self.t0_ns else 0.0
+            t = max(0, now_ns - self.t0_ns) / NS_PER_S if self.t0_ns else 0.0
             v = self.velocity if t > 0 else Vec(0.0, 0.0, 0.0)
             place = tuple(s + w * t for s, w in zip(self.start, v, strict=True))
             own = state(self.id, now_ns, position=place, velocity=tuple(v))
@@ -231,10 +232,10 @@ async def test_who_leaves_in_mid_game_ends_it():
 
 def test_positions_are_put_side_by_side_at_one_instant():
     positions = Positions()
-    positions.add(1, Fix(1 * NS, Vec(0.0, 0.0, 0.0), Vec(10.0, 0.0, 0.0)))
-    positions.add(1, Fix(2 * NS, Vec(20.0, 0.0, 0.0), Vec(10.0, 0.0, 0.0)))
-    positions.add(1, Fix(1 * NS + 5, Vec(99.0, 0.0, 0.0), Vec(0.0, 0.0, 0.0)))  # late: no news
-    assert positions.at(1 * NS + NS // 2) == {1: Vec(10.0, 0.0, 0.0)}
-    assert positions.at(2 * NS + NS // 2) == {1: Vec(25.0, 0.0, 0.0)}
-    assert positions.at(3 * NS + 1) == {}
-    assert positions.at(NS // 2) == {}
+    positions.add(1, Fix(1 * NS_PER_S, Vec(0.0, 0.0, 0.0), Vec(10.0, 0.0, 0.0)))
+    positions.add(1, Fix(2 * NS_PER_S, Vec(20.0, 0.0, 0.0), Vec(10.0, 0.0, 0.0)))
+    positions.add(1, Fix(1 * NS_PER_S + 5, Vec(99.0, 0.0, 0.0), Vec(0.0, 0.0, 0.0)))  # late: no news
+    assert positions.at(1 * NS_PER_S + NS_PER_S // 2) == {1: Vec(10.0, 0.0, 0.0)}
+    assert positions.at(2 * NS_PER_S + NS_PER_S // 2) == {1: Vec(25.0, 0.0, 0.0)}
+    assert positions.at(3 * NS_PER_S + 1) == {}
+    assert positions.at(NS_PER_S // 2) == {}

@@ -11,7 +11,7 @@ from onboard.runtime.impairment import CLEAR, CUT, Impairment
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus.messages import Phase
 from onboard.wire.bus.topics import PHASE, SETUP, STATE, Delivery, key
-from onboard.wire.mavlink.frames import Sender, dialect
+from onboard.wire.mavlink.dialect import DialectSender, dialect, dialect_packet
 from onboard.wire.mavlink.tlog import read_tlog
 from tests.support.duels import duel
 from tests.support.flights import (
@@ -67,8 +67,8 @@ async def test_in_the_log_of_a_reboot_sequence_and_boot_time_begin_anew_and_the_
         assert "reboot" not in game.kinds(MATE)
         assert game.phase is Phase.RUNNING
     packets = [entry.packet for entry in read_tlog((tmp_path / "vehicle-2.tlog").read_bytes())]
-    boots = [p for p in packets if p.message.get_type() == "GLOBAL_POSITION_INT"]
-    times = [p.message.time_boot_ms for p in boots]
+    boots = [p for p in packets if p.name == "GLOBAL_POSITION_INT"]
+    times = [dialect_packet(p.raw).message.time_boot_ms for p in boots]
     (again,) = [n for n in range(1, len(times)) if times[n] < times[n - 1]]
     assert times[again - 1] > 8000
     assert times[again] < 1500
@@ -90,7 +90,7 @@ async def test_a_second_ground_station_on_the_same_links_changes_nothing() -> No
 async def flown(game, stranger: bool) -> list[tuple[float, ...]]:  # type: ignore[no-untyped-def]
     """The pursuer's way, a place each quarter of a second from t₀ on; what the stranger says is for others,
     or is asked of the autopilot without touching who flies it."""
-    station = Sender(STATION, STATION_COMPONENT)
+    station = DialectSender(STATION, STATION_COMPONENT)
     await under_way(game, 0.0)
     way = []
     for _ in range(40):
@@ -181,7 +181,7 @@ async def test_on_a_noisy_field_everything_bad_is_counted_by_cause_and_shown_in_
     async with game_of(chase(pursuers=2)) as game:
         await under_way(game, 1.0)
         game.impair(PURSUER, noisy)
-        foreign = Sender(77, 1)
+        foreign = DialectSender(77, 1)
         vehicle = game.bridge.world.vehicles[PURSUER]
         heartbeat = words(1, 1)[0]
         wrong_schema = b"\x92\x09" + swarm.TRACK.encode(_track(game))[2:]

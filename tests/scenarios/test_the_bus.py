@@ -56,7 +56,8 @@ async def test_with_two_agents_of_one_id_no_game_begins_until_one_of_them_is_sto
     async with game_of(chase()) as game:
         near, _ = memory_pair("another aircraft")
         config = AgentConfig(id=PURSUER, game=game.game, role=Role.PURSUER)
-        twin = Agent(config, game.clock, [near], game.broker.connect("twin"), Equipment(nonce=99, log=game.told.append))
+        twin = Agent(config, game.clock, [near], game.broker.connect("twin"),
+                     Equipment(nonce=99, log=game.told.append))  # fmt: skip
         task = asyncio.create_task(twin.run())
         await passes(game, 15.0)
         assert game.phase is Phase.STAGING

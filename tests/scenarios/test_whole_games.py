@@ -65,7 +65,7 @@ async def test_with_three_in_ten_messages_lost_everywhere_it_still_plays_to_the_
         assert len({vehicle_of(sample.key) for sample in heard.samples}) > 3
     log = [entry.packet for entry in read_tlog((tmp_path / "vehicle-2.tlog").read_bytes())]
     assert {packet.component for packet in log} == {1, 191}
-    assert sum(packet.message.get_type() == "GLOBAL_POSITION_INT" for packet in log) > 80
+    assert sum(packet.name == "GLOBAL_POSITION_INT" for packet in log) > 80
 
 
 @virtual

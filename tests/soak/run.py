@@ -192,7 +192,8 @@ class Soak:
         last = [line for line in self.game.told if f"vehicle {id} " in line][-12:]
         return (
             f"vehicle {id} {what} at {self.now:.1f} s: mode {autopilot.mode_name}, "
-            f"{'armed' if autopilot.armed else 'disarmed'}, agent {agent.core.stage}, lacks {agent.core.lacks}, "
+            f"{'armed' if autopilot.armed else 'disarmed'}, "
+            f"agent {agent.core.stage}, lacks {agent.core.lacks}, "
             f"{agent.core.vehicle.stage}, {verdict and verdict.cause!r}, in force {sorted(self._in_force)}\n"
             + "\n".join(last)
         )

@@ -11,12 +11,12 @@ from math import asin, atan2, cos, sin, sqrt
 from typing import NamedTuple
 
 from gcs.picture import journal
+from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import CommandKind, Phase, Role, Severity, Triple
 
-NS = 1_000_000_000
-EPOCH_NS = 1_760_000_000 * NS
+EPOCH_NS = 1_760_000_000 * NS_PER_S
 TARGET = (400.0, 100.0, -60.0)
 
 
@@ -42,14 +42,8 @@ def setup(game: str, vehicles: int) -> swarm.Setup:
         master="bridge",
         origin=swarm.Origin(47.397742, 8.545594, 488.0),
         roster=tuple(roster),
-        capture_radius=5.0,
-        safety_distance=10.0,
-        lambda_=100.0,
-        beta=1.0,
-        epsilon_min=3.0,
-        horizon=60.0,
+        rules=swarm.RulesMessage(5.0, 10.0, epsilon_min=3.0, horizon=60.0, separation=4.0),
         fence=swarm.Fence(((-100.0, -400.0), (600.0, -400.0), (600.0, 400.0), (-100.0, 400.0)), 5.0, 150.0),
-        separation=4.0,
         track_sigma=0.5,
     )
 
@@ -68,7 +62,7 @@ def chase(
     def item(topic: topics.Topic, vehicle: int | None, payload: bytes, at_ns: int) -> Item:
         return Item(topics.key(game, topic, vehicle), payload, at_ns)
 
-    t0_ns = EPOCH_NS + 2 * NS
+    t0_ns = EPOCH_NS + 2 * NS_PER_S
     if not state_only:
         yield item(topics.SETUP, None, swarm.SETUP.encode(plan), EPOCH_NS)
         yield item(
@@ -90,7 +84,7 @@ def chase(
     for step in range(steps):
         now_ns = EPOCH_NS + 10_000 + step * 50_000_000
         running = now_ns >= t0_ns and not captured
-        time = (now_ns - t0_ns) / NS
+        time = (now_ns - t0_ns) / NS_PER_S
         if not state_only:
             if step == 20:
                 yield item(
@@ -108,7 +102,7 @@ def chase(
                 )
         for member in plan.roster:
             aim = TARGET if member.role is Role.EVADER else places[1]
-            velocity = _towards(places[member.id], aim, member.speed_max) if running else (0.0, 0.0, 0.0)
+            velocity = _towards(places[member.id], aim, member.speed) if running else (0.0, 0.0, 0.0)
             velocities[member.id] = velocity
             at = now_ns + member.id * 1000
             yield item(
@@ -137,7 +131,7 @@ def chase(
             north, east, down = places[vehicle]
             places[vehicle] = (north + velocity[0] * dt, east + velocity[1] * dt, down + velocity[2] * dt)
         smallest = min(_distance(places[1], places[m.id]) for m in plan.roster[1:])
-        if story and not state_only and not captured and smallest < plan.capture_radius:
+        if story and not state_only and not captured and smallest < plan.rules.R:
             captured = True
             end_ns = now_ns + 950_000
             captor = min(plan.roster[1:], key=lambda m: _distance(places[1], places[m.id])).id
@@ -218,7 +212,7 @@ def _decision(
         rule,
         velocity,
         aim,
-        _distance(places[member.id], aim) / member.speed_max,
+        _distance(places[member.id], aim) / member.speed,
         2.0,
         cones,
     )

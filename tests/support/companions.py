@@ -6,8 +6,9 @@ from collections import Counter
 from collections.abc import Hashable
 
 from onboard.runtime.protocols import Link
-from onboard.wire.mavlink.commands import Target
-from onboard.wire.mavlink.frames import Framer, MavMessage, Packet, Sender
+from onboard.wire.mavlink.commands import Outgoing, Target
+from onboard.wire.mavlink.dialect import MavMessage, dialect_packet
+from onboard.wire.mavlink.frames import Framer, Packet, Sender
 
 COMPONENT = 191
 
@@ -24,12 +25,12 @@ class Companion:
         self._sender = Sender(system, COMPONENT)
         link.receive(self._arrived)
 
-    def send(self, message: MavMessage) -> None:
+    def send(self, message: Outgoing) -> None:
         self._link.send(self._sender.pack(message))
 
     def heard(self, name: str) -> list[MavMessage]:
         """All messages of a name, the oldest first."""
-        return [p.message for p in self.packets if p.message.get_type() == name]
+        return [dialect_packet(p.raw).message for p in self.packets if p.name == name]
 
     def _arrived(self, data: bytes, peer: Hashable) -> None:
         self.packets += self._framer.feed(data)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 
+from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.clock import VirtualClock
 from onboard.runtime.protocols import Bus
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import Command, CommandReply
-from tests.support.radio import GAME, NS, health, on_bus, state
+from tests.support.radio import GAME, health, on_bus, state
 
 MODES = {
     "abort": "LOITER", "hold": "LOITER", "return": "RTL", "land": "LAND",
@@ -49,7 +50,7 @@ class Crew:
             self.in_force, self.since_ns = command, self._clock.monotonic_ns()
         elif self.in_force is not None and command.command_id != self.in_force.command_id:
             return self._reply(command, "superseded", f"by {self.in_force.kind.value}")
-        if self._clock.monotonic_ns() - self.since_ns >= self.takes_s * NS:
+        if self._clock.monotonic_ns() - self.since_ns >= self.takes_s * NS_PER_S:
             self.mode = MODES[command.kind.value]
             return self._reply(command, "confirmed", "")
         return self._reply(command, "pending", "")

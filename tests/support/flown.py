@@ -6,17 +6,18 @@ from collections.abc import Callable
 from math import cos, radians, sin
 from typing import Any
 
+from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import ZERO, Vec
 from onboard.game.scenario import Kind, VehicleSpec
 from onboard.wire.geodesy import Frame
-from onboard.wire.mavlink.frames import Framer, Sender, dialect
+from onboard.wire.mavlink.dialect import DialectSender, dialect, dialect_packet
+from onboard.wire.mavlink.frames import Framer
 from sim_bridge.vehicle.autopilot.autopilot import Autopilot
 from sim_bridge.vehicle.autopilot.make import autopilot_for
 from sim_bridge.vehicle.flight.kinematic import kinematic, start_motion
 from sim_bridge.vehicle.motion import Air, Demand
 
-SECOND = 1_000_000_000
-EPOCH_NS = 1_700_000_000 * SECOND
+EPOCH_NS = 1_700_000_000 * NS_PER_S
 ORIGIN = Frame(47.397742, 8.545594, 488.0)
 MULTICOPTER = VehicleSpec(position=(0.0, 0.0, 50.0), speed=5.0, speed_max=8.0)
 PLANE = VehicleSpec(
@@ -49,7 +50,7 @@ class Flown:
         self.kind = kind
         self.system = system
         self.air = Air(wind, ZERO)
-        self.tick_ns = round(tick_s * SECOND)
+        self.tick_ns = round(tick_s * NS_PER_S)
         self.now_ns = 0
         spec = spec or (PLANE if kind == Kind.ARDUPLANE else MULTICOPTER)
         position = spec.start() if airborne else spec.start()._replace(z=0.0)
@@ -58,7 +59,7 @@ class Flown:
         self.autopilot: Autopilot = autopilot_for(
             spec, kind, system, ORIGIN, start, airborne=airborne, epoch_ns=EPOCH_NS, **more
         )
-        self.client = Sender(*(client or (system, COMPANION)))
+        self.client = DialectSender(*(client or (system, COMPANION)))
         self.framer = Framer()
         self.heard: list[tuple[int, Any]] = []  # (now_ns, message) of everything it sent
         self.frames: list[bytes] = []
@@ -83,20 +84,20 @@ class Flown:
 
     def fly(self, seconds: float, *, every_s: float = 0.0, send: Callable[[], Any] | None = None) -> Flown:
         """Let time pass; `send()` gives a message to be sent every `every_s` seconds."""
-        end = self.now_ns + round(seconds * SECOND)
+        end = self.now_ns + round(seconds * NS_PER_S)
         next_ns = self.now_ns
         self._collect()
         while self.now_ns < end:
             if send is not None and self.now_ns >= next_ns:
                 self.send(send())
-                next_ns += round(every_s * SECOND)
+                next_ns += round(every_s * NS_PER_S)
             self.now_ns += self.tick_ns
             self.demand = self.autopilot.step(self.now_ns, self.airframe.motion, self.air)
-            self.airframe.step(self.demand, self.air, self.tick_ns / SECOND)
+            self.airframe.step(self.demand, self.air, self.tick_ns / NS_PER_S)
             self._collect()
         return self
 
-    def send(self, message: Any, sender: Sender | None = None) -> None:
+    def send(self, message: Any, sender: DialectSender | None = None) -> None:
         """One message from the companion (or another)."""
         self.autopilot.receive(self.now_ns, (sender or self.client).pack(message), "peer")
         self._collect()
@@ -104,7 +105,8 @@ class Flown:
     def _collect(self) -> None:
         for frame in self.autopilot.outgoing():
             self.frames.append(frame)
-            self.heard += [(self.now_ns, packet.message) for packet in self.framer.feed(frame)]
+            packets = self.framer.feed(frame)
+            self.heard += [(self.now_ns, dialect_packet(packet.raw).message) for packet in packets]
 
     def got(self, name: str, since_ns: int = 0) -> list[Any]:
         """Messages of a kind that it has sent."""

@@ -13,9 +13,11 @@ from math import atan2, degrees, hypot
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from onboard.core.math.constants import NS_PER_S
 from onboard.game.scenario import Kind
+from onboard.wire.mavlink.dialect import dialect_packet
 from onboard.wire.mavlink.tlog import read_tlog
-from tests.support.flown import SECOND, Flown
+from tests.support.flown import Flown
 from tests.support.paths import RECORDINGS
 
 FILES = {Kind.ARDUCOPTER: "arducopter-4.5.6-guided.tlog", Kind.ARDUPLANE: "arduplane-4.5.6-guided.tlog"}
@@ -61,17 +63,17 @@ def compared(kind: Kind) -> Comparison:
     """Play a recording's requests to our personality, at the recorded times."""
     entries = list(read_tlog((RECORDINGS / FILES[kind]).read_bytes()))
     zero = entries[0].stamp_ns
-    timed = [((e.stamp_ns - zero) / SECOND, e.packet) for e in entries]
-    requests = [(t, p.message) for t, p in timed if p.component == COMPANION]
-    real = Stream([(t, p.message) for t, p in timed if p.component == 1])
+    timed = [((e.stamp_ns - zero) / NS_PER_S, e.packet) for e in entries]
+    requests = [(t, dialect_packet(p.raw).message) for t, p in timed if p.component == COMPANION]
+    real = Stream([(t, dialect_packet(p.raw).message) for t, p in timed if p.component == 1])
     ready, healthy = READY[kind]
     flown = Flown(kind, airborne=False, ready_s=ready)
     flown.autopilot.setup = flown.autopilot.setup._replace(healthy_s=healthy)
     for t, message in requests:
-        flown.fly(t - flown.now_ns / SECOND)
+        flown.fly(t - flown.now_ns / NS_PER_S)
         flown.send(message)
-    flown.fly(timed[-1][0] - flown.now_ns / SECOND)
-    return Comparison(kind, requests, real, Stream([(t / SECOND, m) for t, m in flown.heard]))
+    flown.fly(timed[-1][0] - flown.now_ns / NS_PER_S)
+    return Comparison(kind, requests, real, Stream([(t / NS_PER_S, m) for t, m in flown.heard]))
 
 
 # ---------------------------------------------------------------------- acknowledgements

@@ -8,12 +8,13 @@ from gcs.picture import journal
 from gcs.picture.alert_rules import Thresholds
 from gcs.picture.values import Picture, VehicleView
 from gcs.picture.watch import Watch
+from onboard.core.game.rules import Rules
+from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import Codec, Message, Phase, Role
 
-NS = 1_000_000_000
-START_NS = 1_700_000_000 * NS
+START_NS = 1_700_000_000 * NS_PER_S
 GAME = "test"
 
 TOPIC: dict[type[Message], tuple[topics.Topic, Codec]] = {  # type: ignore[type-arg]
@@ -84,17 +85,18 @@ def track(i: int, stamp_ns: int = START_NS, **changes: object) -> swarm.Track:
 
 
 def setup(count: int = 3, pursuer_speed: float = 10.0, **changes: object) -> swarm.Setup:
-    """A game of one evader and `count` − 1 pursuers."""
+    """A game of one evader and `count` − 1 pursuers; `changes` of the setup or of its rules."""
     roster = tuple(
         swarm.Member(i, role_of(i), 10.0 if i == 1 else pursuer_speed, (0.0, 100.0 * i, -50.0))
         for i in range(1, count + 1)
     )
     base = swarm.Setup(
         game=GAME, scenario="meeting", scenario_hash="abc", master="bridge",
-        origin=swarm.Origin(47.0, 8.0, 400.0), roster=roster, capture_radius=2.0, safety_distance=4.0,
-        lambda_=100.0, beta=1.0, epsilon_min=1.0, horizon=100.0,
+        origin=swarm.Origin(47.0, 8.0, 400.0), roster=roster, rules=swarm.RulesMessage(2.0, 4.0),
     )  # fmt: skip
-    return msgspec.structs.replace(base, **changes)
+    rules = {name: changes.pop(name) for name in Rules._fields if name in changes}
+    changed = msgspec.structs.replace(base.rules, **rules)
+    return msgspec.structs.replace(base, rules=changed, **changes)
 
 
 class Tower:
@@ -126,7 +128,7 @@ class Tower:
 
     def wait(self, seconds: float) -> None:
         """Let time pass in silence."""
-        self.now_ns += round(seconds * NS)
+        self.now_ns += round(seconds * NS_PER_S)
         self.watch.tick(self.now_ns)
 
     def fly(self, seconds: float, *ids: int, state_hz: int = 20, **changes: object) -> None:

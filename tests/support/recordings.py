@@ -12,8 +12,8 @@ from typing import NamedTuple
 from mcap.reader import make_reader
 
 from gcs.recording.reader import Recording
-from gcs.recording.recorder import NS
 from onboard.config.strict import ConfigError
+from onboard.core.math.constants import NS_PER_S
 from tests.support.chase import EPOCH_NS
 
 CHILD = Path(__file__).with_name("recording_child.py")
@@ -61,4 +61,4 @@ def kill_while_recording(path: Path, lines: int) -> Killed:
     found = read(path)
     last_ns = found.entries[-1][2] if found.entries else EPOCH_NS
     messages = Recording(path).messages if found.entries else 0
-    return Killed((told - last_ns) / NS, messages, library, found.remarks)
+    return Killed((told - last_ns) / NS_PER_S, messages, library, found.remarks)

@@ -7,15 +7,15 @@ from pathlib import Path
 
 from gcs.recording.recorder import Recorder
 from gcs.recording.tlog import TlogRecorder
+from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus import topics
 from onboard.wire.geodesy import Frame
-from onboard.wire.mavlink.frames import Sender, dialect
+from onboard.wire.mavlink.dialect import DialectSender, dialect
 from tests.support.chase import EPOCH_NS, Item, chase, setup
 
-NS = 1_000_000_000
-SILENT = range(EPOCH_NS + 8 * NS, EPOCH_NS + 11 * NS)  # vehicle 2 says nothing: an alert
+SILENT = range(EPOCH_NS + 8 * NS_PER_S, EPOCH_NS + 11 * NS_PER_S)  # vehicle 2 says nothing: an alert
 SCENARIO = """
 name = "a chase"
 [evader]
@@ -61,13 +61,13 @@ def make_tlogs(folder: Path, items: list[Item] | None = None) -> Path:
     logs = TlogRecorder(folder)
     origin = setup("field", 2).origin
     frame = Frame(origin.latitude_deg, origin.longitude_deg, origin.altitude_m)
-    senders: dict[int, Sender] = {}
+    senders: dict[int, DialectSender] = {}
     for item in flight() if items is None else items:
         if topics.topic_of(item.key) is not topics.STATE:
             continue
         state = swarm.STATE.decode(item.payload, {})  # type: ignore[arg-type]
         assert state is not None
-        sender = senders.setdefault(state.id, Sender(state.id, 1))
+        sender = senders.setdefault(state.id, DialectSender(state.id, 1))
         for message in _telemetry(state, frame):
             logs.datagram(sender.pack(message), state.id, item.stamp_ns)
     logs.close()

@@ -11,10 +11,11 @@ from collections.abc import Callable
 
 from onboard.agent.config import AgentConfig
 from onboard.agent.core.clocks import MasterClock
-from onboard.agent.core.events import NS, Instant, Outbox, Subscribe, Unsubscribe
+from onboard.agent.core.events import Instant, Outbox, Subscribe, Unsubscribe
 from onboard.agent.core.journal import Journal
+from onboard.core.math.constants import NEVER, NS_PER_S
+from onboard.core.math.states import MateState
 from onboard.core.math.vectors import Vec
-from onboard.pilot.setup import MateState
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import (
@@ -31,7 +32,6 @@ from onboard.wire.bus.messages import (
 
 MASTERS_MAX = 8
 SAY_AGAIN_S = 30.0  # a trouble that goes on is said again after this
-NEVER = -1e9
 
 
 class Heard:
@@ -115,7 +115,7 @@ class BusView:
         return tuple(
             MateState(
                 heard.state.id,
-                (heard.state.stamp_ns - base_ns) / NS,
+                (heard.state.stamp_ns - base_ns) / NS_PER_S,
                 Vec(*heard.state.position),
                 Vec(*heard.state.velocity),
             )

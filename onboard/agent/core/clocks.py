@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections import deque
 
-from onboard.agent.core.events import NS, Instant
+from onboard.agent.core.events import Instant
+from onboard.core.math.constants import NEVER, NS_PER_S
 
 WINDOW = 20  # of the master's stamps (2 Hz: ten seconds)
 ALERT_S = 0.05  # offset that is an alert; it clears at four fifths
@@ -26,7 +27,7 @@ class MasterClock:
     @property
     def offset_s(self) -> float:
         """Own − master [s]; 0 where it is not known. Up to the bus's least delay too large."""
-        return min(self._samples) / NS if self._samples else 0.0
+        return min(self._samples) / NS_PER_S if self._samples else 0.0
 
     @property
     def ready(self) -> bool:
@@ -51,15 +52,15 @@ class JumpWatch:
     """Wall time against monotonic time: a step of one against the other is a jump."""
 
     def __init__(self, threshold_s: float) -> None:
-        self._threshold_ns = round(threshold_s * NS)
+        self._threshold_ns = round(threshold_s * NS_PER_S)
         self._difference: int | None = None
-        self.jumped_at = -1e9  # monotonic [s]
+        self.jumped_at = NEVER  # monotonic [s]
 
     def look(self, now: Instant) -> float:
         """Compare the clocks; the size of a jump since the last look [s], 0 where there was none."""
-        difference = now.wall_ns - round(now.s * NS)
+        difference = now.wall_ns - round(now.s * NS_PER_S)
         last, self._difference = self._difference, difference
         if last is None or abs(difference - last) <= self._threshold_ns:
             return 0.0
         self.jumped_at = now.s
-        return (difference - last) / NS
+        return (difference - last) / NS_PER_S

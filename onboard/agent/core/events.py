@@ -10,14 +10,12 @@ from typing import NamedTuple
 
 import msgspec
 
-from onboard.core.strategy.evasion import EvaderView
+from onboard.core.game.views import EvaderView, PursuerView
 from onboard.core.strategy.knowledge import Decision
-from onboard.core.strategy.pursuit import PursuerView
 from onboard.pilot.setup import Side
 from onboard.wire.bus.messages import Severity
 from onboard.wire.bus.topics import Delivery
 
-NS = 1_000_000_000
 ANY_PEER = -1  # of a link: whom it was configured for, or who was last heard
 
 

@@ -14,9 +14,11 @@ from onboard.agent.core.journal import Journal
 from onboard.agent.core.part import Part, PartState
 from onboard.agent.core.takeoff import TakeOff
 from onboard.agent.core.vehicle_link import Control, VehicleLink
-from onboard.autopilot.base import NEVER, ReleaseMode, Setpoint, Stage, Telemetry
+from onboard.autopilot.base import ReleaseMode, Setpoint, Stage, Telemetry
+from onboard.core.math.constants import NEVER
+from onboard.core.math.states import Mate
 from onboard.core.math.vectors import ZERO, Vec, along
-from onboard.core.safety.policy import Action, Cause, Mate, SupervisorInput
+from onboard.core.safety.policy import Action, Cause, SupervisorInput
 from onboard.core.safety.supervisor import SupervisorOutput, SupervisorState, handed_back, supervise
 from onboard.core.safety.words import ACTIONS, CAUSES
 from onboard.pilot.pilot import PilotDecision, Question
@@ -115,7 +117,7 @@ class Flight:
         self._number += 1
         step = OpenStep(self._number, now, t, wind, hovers, None)
         try:
-            asked = self.part.ask(now, Own(position, t.velocity), wind)
+            asked = self.part.ask(now, Own(position, t.velocity, wind))
         except Exception as trouble:  # an error of thinking must not end the flight: the supervisor acts
             self._complete(step, 0.0, f"{type(trouble).__name__}: {trouble}")
             return None

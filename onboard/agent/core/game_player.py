@@ -7,12 +7,15 @@ from typing import NamedTuple
 from onboard.agent.config import AgentConfig
 from onboard.agent.core import policy_from_config as limits
 from onboard.agent.core.bus_view import BusView
-from onboard.agent.core.events import NS, Instant, Load, Outbox
+from onboard.agent.core.events import Instant, Load, Outbox
 from onboard.agent.core.journal import Journal
 from onboard.agent.core.part import PartState
 from onboard.agent.core.participation import Participation
 from onboard.agent.core.readiness import lacking
 from onboard.agent.core.vehicle_link import VehicleLink
+from onboard.core.game.rules import Target
+from onboard.core.math.constants import NS_PER_S
+from onboard.core.math.states import carried
 from onboard.core.math.vectors import Vec
 from onboard.core.strategy.knowledge import Decision
 from onboard.pilot.memory import Memory
@@ -105,16 +108,17 @@ class GamePlayer:
             over=part.over(phase),
         )
 
-    def ask(self, now: Instant, own: Own, wind: Vec) -> Question | PilotDecision:
+    def ask(self, now: Instant, own: Own) -> Question | PilotDecision:
         """The view of the game at `now`."""
         flying, bus = self.flying, self._bus
         assert flying is not None
         game = flying.game
-        if self.side is Side.EVADER and bus.target is not None and game.target != bus.target:
-            game = game._replace(has_target=True, target=bus.target)
+        if self.side is Side.EVADER and bus.target is not None and game.target.position != bus.target:
+            game = game._replace(target=Target(True, bus.target))
             self.flying = flying._replace(game=game)
-        mates = bus.mate_states(self._base_ns)
-        return flying.viewpoint.look(self._seconds(now.wall_ns), own, mates, game, wind, self._memory)
+        at = self._seconds(now.wall_ns)
+        mates = tuple(carried(mate, at) for mate in bus.mate_states(self._base_ns))
+        return flying.viewpoint.look(at, own, mates, game, self._memory)
 
     def conclude(self, question: Question, decision: Decision) -> PilotDecision:
         """What the strategy's answer means in this game."""
@@ -182,4 +186,4 @@ class GamePlayer:
         return self.config.strategy or (member.strategy if member is not None else "")
 
     def _seconds(self, stamp_ns: int) -> float:
-        return (stamp_ns - self._base_ns) / NS
+        return (stamp_ns - self._base_ns) / NS_PER_S

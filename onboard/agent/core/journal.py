@@ -5,7 +5,8 @@ from __future__ import annotations
 from datetime import UTC, datetime
 from typing import NamedTuple
 
-from onboard.agent.core.events import NS, Instant, Note, Outbox, Publish
+from onboard.agent.core.events import Instant, Note, Outbox, Publish
+from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus.messages import Event, Severity
 from onboard.wire.bus.topics import EVENTS, key
@@ -83,7 +84,7 @@ class Journal:
         """Publish and log what was stamped."""
         for event in self._events:
             out.put(Publish(self._key, swarm.EVENT.encode(event), EVENTS.delivery))
-            when = datetime.fromtimestamp(event.stamp_ns / NS, UTC).strftime("%H:%M:%S.%f")[:-3]
+            when = datetime.fromtimestamp(event.stamp_ns / NS_PER_S, UTC).strftime("%H:%M:%S.%f")[:-3]
             line = f"{when} {event.severity.value:7} vehicle {self._id} {event.kind}: {event.text}"
             out.put(Note(event.severity, line))
         self._events.clear()

@@ -49,7 +49,8 @@ from onboard.agent.core.reports import Reports, Standing
 from onboard.agent.core.route_player import RoutePlayer
 from onboard.agent.core.schedule import EARLY_S, Grid
 from onboard.agent.core.vehicle_link import VehicleLink
-from onboard.autopilot.base import NEVER, ReleaseMode, Stage
+from onboard.autopilot.base import ReleaseMode, Stage
+from onboard.core.math.constants import NEVER
 from onboard.game.route_file import Route
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus.messages import CommandKind, CommandReply, Role, Severity
@@ -191,6 +192,11 @@ class AgentCore:
         if waits is not None and now.s - waits.begun.s > self.config.safety.strategy_age_s + self._period:
             self.flight.given_up(now.s)
             self._stepped_on(now, waits.begun)
+        if now.s >= self._step_at - EARLY_S:
+            self._by_timer = True
+            self._expect(now.s)
+            self.timer_steps += 1
+            self._step(now)
         if self._heartbeat.due(now.s):
             self.vehicle.heartbeat()
         if self._health.due(now.s):
@@ -202,11 +208,6 @@ class AgentCore:
             if self.vehicle.since_step(now.s) >= ADAPTER_EVERY_S:
                 self.flight.drive(now.s, None)
             self.vehicle.chores(now.s)
-        if now.s >= self._step_at - EARLY_S:
-            self._by_timer = True
-            self._expect(now.s)
-            self.timer_steps += 1
-            self._step(now)
 
     def _stop(self, event: Stop, now: Instant) -> None:
         """Leave the vehicle in a mode that the autopilot can hold alone, as far as it is ours to leave."""

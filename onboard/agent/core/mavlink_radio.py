@@ -14,13 +14,12 @@ from typing import NamedTuple
 
 from onboard.agent.core.events import ANY_PEER, Instant, Keep, LinkFacts, Outbox, Send
 from onboard.autopilot.link_redundancy import Redundant
-from onboard.wire.mavlink.frames import Framer, MavMessage, Packet, Sender
+from onboard.wire.mavlink.commands import Outgoing, SetpointMessage
+from onboard.wire.mavlink.frames import Framer, Packet, Sender
+from onboard.wire.mavlink.ids import AUTOPILOT, COMPANION
 from onboard.wire.mavlink.signing import Signing
 
 PEERS_MAX = 16  # framing states of one link
-AUTOPILOT = 1  # MAV_COMP_ID_AUTOPILOT1
-COMPANION = 191  # MAV_COMP_ID_ONBOARD_COMPUTER: what the agent sends as
-SETPOINTS = ("SET_POSITION_TARGET_LOCAL_NED", "SET_ATTITUDE_TARGET")
 
 
 class _Line:
@@ -62,7 +61,7 @@ class Radio:
         self._sender = Sender(system, COMPANION, signing=signing, link_id=link_id)
         self._lines = [_Line(link) for link in links]
         self._redundant = Redundant(len(links))
-        self._due: list[MavMessage] = []
+        self._due: list[Outgoing] = []
 
     @property
     def active(self) -> str:
@@ -89,7 +88,7 @@ class Radio:
             packets.append(packet)
         return Received(tuple(packets), took_over)
 
-    def send(self, message: MavMessage) -> None:
+    def send(self, message: Outgoing) -> None:
         """Send to the autopilot, with the next `flush`."""
         self._due.append(message)
 
@@ -107,7 +106,7 @@ class Radio:
                 continue
             frame = self._sender.pack(message, now.wall_ns)
             indices = range(len(self._lines))
-            if len(indices) > 1 and message.get_type() in SETPOINTS:
+            if len(indices) > 1 and isinstance(message, SetpointMessage):
                 indices = range(self._redundant.active, self._redundant.active + 1)
             for index in indices:
                 line = self._lines[index]

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import NamedTuple, Protocol
 
 from onboard.agent.core.events import Instant
-from onboard.core.math.vectors import Vec
 from onboard.core.safety.policy import Policy
 from onboard.core.strategy.knowledge import Decision
 from onboard.pilot.pilot import PilotDecision, Question
@@ -37,10 +36,10 @@ class Part(Protocol):
         """Where the part stands."""
         ...
 
-    def ask(self, now: Instant, own: Own, wind: Vec) -> Question | PilotDecision:
+    def ask(self, now: Instant, own: Own) -> Question | PilotDecision:
         """What the strategy is to be asked; or a decision, where none needs to be asked.
 
-        `wind` is where the air moves to [m/s], ZERO for multicopters. May fail in any way."""
+        May fail in any way."""
         ...
 
     def conclude(self, question: Question, decision: Decision) -> PilotDecision:

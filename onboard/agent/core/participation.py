@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus.messages import Phase, PhaseChange
 
 JUST_STARTED_S = 1.0  # who first hears of a running game this soon after t₀ was there for the start
-_NS = 1_000_000_000
 
 
 class Participation:
@@ -21,7 +21,7 @@ class Participation:
         if phase.phase in (Phase.STAGING, Phase.READY):
             self.joined = True
         elif phase.phase is Phase.RUNNING:
-            begun = (wall_ns - phase.t0_ns) / _NS
+            begun = (wall_ns - phase.t0_ns) / NS_PER_S
             if self._id in phase.resume or begun < JUST_STARTED_S:
                 self.joined = True
 
@@ -52,4 +52,4 @@ class Participation:
     @staticmethod
     def game_time(phase: PhaseChange | None, wall_ns: int) -> float:
         """Seconds since t₀, 0 before it is fixed."""
-        return (wall_ns - phase.t0_ns) / _NS if phase is not None and phase.t0_ns > 0 else 0.0
+        return (wall_ns - phase.t0_ns) / NS_PER_S if phase is not None and phase.t0_ns > 0 else 0.0

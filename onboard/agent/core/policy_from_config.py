@@ -6,7 +6,9 @@ from math import asin, pi, radians, sin, tan
 
 from onboard.agent.config import AgentConfig
 from onboard.autopilot import base
-from onboard.core.math.states import Limits
+from onboard.core.game.rules import NO_TARGET, Control, Target
+from onboard.core.math.constants import STANDARD_GRAVITY
+from onboard.core.math.states import VehicleLimits
 from onboard.core.math.vectors import Vec
 from onboard.core.safety.fence import fits
 from onboard.core.safety.field_profile import capture_in_space_refused, field_policy, layers
@@ -14,24 +16,22 @@ from onboard.core.safety.policy import Envelope, Fence, Policy
 from onboard.pilot.setup import GameSetup, Player, Side
 from onboard.wire.bus.messages import Member, Role, Setup
 
-G = 9.80665  # [m/s²]
-
 
 def envelope_of(config: AgentConfig, member: Member | None, hovers: bool) -> Envelope:
     """What the vehicle may be asked to do: the configuration's word, else the setup's, else caution."""
     e = config.envelope
-    declared_max = member.speed_max if member is not None and member.speed_max > 0.0 else 10.0
+    declared_max = member.speed if member is not None and member.speed > 0.0 else 10.0
     speed_max = e.speed_max if e.speed_max is not None else declared_max
-    speed_min = e.speed_min if e.speed_min is not None else (member.speed_min if member is not None else 0.0)
-    up = member.pitch_max if member is not None else pi / 6
-    down = -member.pitch_min if member is not None else pi / 6
+    limits = member.limits if member is not None else VehicleLimits(pitch_min=-pi / 6, pitch_max=pi / 6)
+    speed_min = e.speed_min if e.speed_min is not None else limits.speed_min
+    up, down = limits.pitch_max, -limits.pitch_min
     climb = e.climb_max if e.climb_max is not None else max(0.5, speed_max * sin(max(0.0, up)))
     sink = e.sink_max if e.sink_max is not None else max(0.5, speed_max * sin(max(0.0, down)))
     bank = radians(e.bank_max_deg)
     turn = radians(e.turn_rate_deg) if e.turn_rate_deg is not None else 0.0
-    if turn == 0.0 and member is not None:
-        turn = member.turn_rate
-    coordinated = G * tan(bank) / max(speed_max, 1.0)
+    if turn == 0.0:
+        turn = limits.turn_rate
+    coordinated = STANDARD_GRAVITY * tan(bank) / max(speed_max, 1.0)
     if turn <= 0.0:
         turn = coordinated
     radius = e.turn_radius if e.turn_radius is not None else speed_max / max(1e-3, min(turn, coordinated))
@@ -69,7 +69,7 @@ def policy_of(config: AgentConfig, setup: Setup | None, hovers: bool) -> Policy:
         fences.append(Fence(s.fence.polygon, s.fence.height_min, s.fence.height_max))
     if setup is not None and setup.fence is not None:
         fences.append(Fence(setup.fence.polygon, setup.fence.altitude_min, setup.fence.altitude_max))
-    separation = setup.separation if setup is not None else 0.0
+    separation = setup.rules.separation if setup is not None else 0.0
     if s.separation is not None:
         separation = s.separation
     policy = Policy(
@@ -119,22 +119,21 @@ def contradiction(config: AgentConfig, setup: Setup, hovers: bool | None) -> str
         return f"vehicle {config.id} is not in the roster"
     if member.role is not config.role:
         return f"the setup says {member.role.value}, the configuration says {config.role.value}"
-    if not setup.capture_radius > 0.0 or setup.safety_distance < setup.capture_radius:
-        return f"R = {setup.capture_radius:g} m and ρ = {setup.safety_distance:g} m do not fit"
+    rules = setup.rules
+    if not rules.R > 0.0 or rules.rho < rules.R:
+        return f"R = {rules.R:g} m and ρ = {rules.rho:g} m do not fit"
     if setup.fence is not None and (
         len(setup.fence.polygon) < 3 or setup.fence.altitude_min >= setup.fence.altitude_max
     ):
         return "the fence is no area"
     most, least = config.envelope.speed_max, config.envelope.speed_min
-    if most is not None and member.speed_max > most:
-        return f"the setup wants {member.speed_max:g} m/s, this vehicle is configured for {most:g} m/s"
-    if least is not None and member.speed_max < least:
-        return f"the setup wants {member.speed_max:g} m/s, this vehicle flies at least {least:g} m/s"
-    if config.field and not setup.planar and not setup.field_profile and capture_in_space_refused(
-        setup.capture_radius, setup.track_sigma
-    ):
+    if most is not None and member.speed > most:
+        return f"the setup wants {member.speed:g} m/s, this vehicle is configured for {most:g} m/s"
+    if least is not None and member.speed < least:
+        return f"the setup wants {member.speed:g} m/s, this vehicle flies at least {least:g} m/s"
+    if config.field and not setup.flat and capture_in_space_refused(rules.R, setup.track_sigma):
         return (
-            f"capture in space with R = {setup.capture_radius:g} m and a stated position error of "
+            f"capture in space with R = {rules.R:g} m and a stated position error of "
             f"{setup.track_sigma:g} m: R must be five times as large, or the setup use the field profile"
         )
     if hovers is False:
@@ -152,26 +151,21 @@ def game_setup(config: AgentConfig, setup: Setup, target: Vec | None, hovers: bo
     for member in setup.roster:
         if member.role is Role.TRACKER:
             continue
-        low, high = member.pitch_min, member.pitch_max
-        if member.id == config.id and member.speed_max > 0.0:
-            high = min(high, asin(min(1.0, envelope.climb_max / member.speed_max)))
-            low = max(low, -asin(min(1.0, envelope.sink_max / member.speed_max)))
+        limits = member.limits.core()
+        if member.id == config.id and member.speed > 0.0:
+            high = asin(min(1.0, envelope.climb_max / member.speed))
+            low = -asin(min(1.0, envelope.sink_max / member.speed))
+            limits = limits._replace(
+                pitch_min=max(limits.pitch_min, low), pitch_max=min(limits.pitch_max, high)
+            )
         side = Side.EVADER if member.role is Role.EVADER else Side.PURSUER
-        limits = Limits(member.speed_min, member.speed_max, low, high)
         height = -member.start[2]
         if config.may_arm and height < 1.0:  # a ground start
             height = config.take_off_height
-        players.append(Player(member.id, side, member.speed_max, limits, height))
+        players.append(Player(member.id, side, member.speed, limits, height))
     return GameSetup(
         roster=tuple(players),
-        R=setup.capture_radius,
-        rho=setup.safety_distance,
-        lambda_=setup.lambda_,
-        beta=setup.beta,
-        separation=setup.separation,
-        planar=setup.planar or setup.field_profile,
-        has_target=target is not None,
-        target=target if target is not None else Vec(0.0, 0.0, 0.0),
-        dt=1.0 / config.control_rate_hz,
-        lookahead=config.lookahead_s,
+        rules=setup.rules.core()._replace(planar=setup.flat),
+        control=Control(1.0 / config.control_rate_hz, config.lookahead_s),
+        target=NO_TARGET if target is None else Target(True, target),
     )

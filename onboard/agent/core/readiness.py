@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from onboard.agent.core.bus_view import BusView
 from onboard.agent.core.vehicle_link import VehicleLink
-from onboard.autopilot.base import NEVER
 from onboard.autopilot.health import Thresholds, read
+from onboard.core.math.constants import NEVER
 from onboard.core.safety.policy import Policy
 from onboard.wire.bus.messages import Role
 

@@ -8,21 +8,21 @@ from __future__ import annotations
 from onboard.agent.config import AgentConfig
 from onboard.agent.core import policy_from_config as limits
 from onboard.agent.core.bus_view import BusView
-from onboard.agent.core.events import NS, Instant
+from onboard.agent.core.events import Instant
 from onboard.agent.core.journal import Journal
 from onboard.agent.core.part import PartState
 from onboard.agent.core.readiness import vehicle_lacks
 from onboard.agent.core.vehicle_link import VehicleLink
 from onboard.autopilot.base import Stage
 from onboard.config.strict import ConfigError
-from onboard.core.math.vectors import Vec
+from onboard.core.math.constants import NS_PER_S
 from onboard.core.route.choice import TrackMemory
 from onboard.core.strategy.knowledge import Decision
 from onboard.game.route_file import Route
 from onboard.pilot.pilot import PilotDecision, Question
 from onboard.pilot.route_pilot import ORDERS, TrackPilot
 from onboard.pilot.setup import Own, Side
-from onboard.wire.bus.messages import Member
+from onboard.wire.bus.messages import LimitsMessage, Member
 from onboard.wire.geodesy import Frame
 
 
@@ -65,11 +65,11 @@ class RoutePlayer:
             engaged=self._placed, near=not self._done, on=begun and not self._done, over=self._done
         )
 
-    def ask(self, now: Instant, own: Own, wind: Vec) -> Question | PilotDecision:
+    def ask(self, now: Instant, own: Own) -> Question | PilotDecision:
         """The route's own rules decide: nobody needs to be asked."""
         leg = self._track.leg if self._track is not None else 1
         time = self.time(now.wall_ns)
-        decision, self._track, finished = self._pilot.step(time, own, wind, self._track)
+        decision, self._track, finished = self._pilot.step(time, own, self._track)
         if self._track.leg != leg:
             late = time - self.route.waypoints[leg].time
             text = f"{leg} passed, {late:+.1f} s off its time"
@@ -92,7 +92,7 @@ class RoutePlayer:
 
     def time(self, wall_ns: int) -> float:
         """Seconds since the route's start."""
-        return (wall_ns - self._begun_ns) / NS if self._begun_ns >= 0 else 0.0
+        return (wall_ns - self._begun_ns) / NS_PER_S if self._begun_ns >= 0 else 0.0
 
     def train(self, wall_ns: int) -> None:
         """A route has nothing to learn."""
@@ -108,8 +108,8 @@ class RoutePlayer:
             return
         e = self.route.limits
         member = Member(
-            id=self.config.id, role=self.config.role, speed_max=e.speed_max, start=(0.0, 0.0, 0.0),
-            speed_min=e.speed_min, pitch_min=e.pitch_min, pitch_max=e.pitch_max,
+            id=self.config.id, role=self.config.role, speed=e.speed_max, start=(0.0, 0.0, 0.0),
+            limits=LimitsMessage(*e),
         )  # fmt: skip
         envelope = limits.envelope_of(self.config, member, hovers)
         self.policy = limits.policy_of(self.config, setup, hovers)._replace(envelope=envelope)

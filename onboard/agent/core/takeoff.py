@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from onboard.agent.core.vehicle_link import VehicleLink
 from onboard.autopilot.base import Stage
+from onboard.core.math.constants import NEVER
 from onboard.wire.mavlink import commands
-from onboard.wire.mavlink.frames import MavMessage
+from onboard.wire.mavlink.commands import CommandLong
 from onboard.wire.mavlink.modes import Kind, custom_mode
 
 AGAIN_S = 2.0
 ON_GROUND = 1  # MAV_LANDED_STATE_ON_GROUND
 REACHED = 0.9  # of the height
-NEVER = -1e9
 
 
 class TakeOff:
@@ -45,7 +45,7 @@ class TakeOff:
                 vehicle.radio.send(message)
         return True
 
-    def _next(self, vehicle: VehicleLink) -> MavMessage | None:
+    def _next(self, vehicle: VehicleLink) -> CommandLong | None:
         t, adapter = vehicle.telemetry, vehicle.adapter
         assert adapter is not None
         if adapter.kind is Kind.ARDUPLANE:

@@ -7,9 +7,10 @@ from collections import Counter
 from onboard.autopilot.parameters import WANTED
 from onboard.autopilot.stream_rates import NEEDS, Asking, Need, capacity_of
 from onboard.autopilot.timesync import TimesyncEstimator
+from onboard.core.math.constants import NEVER, NS_PER_S
 from onboard.wire.mavlink import commands
-from onboard.wire.mavlink.commands import Target
-from onboard.wire.mavlink.frames import MavMessage
+from onboard.wire.mavlink.commands import Outgoing, ParamRead, Target
+from onboard.wire.mavlink.ids import MessageId
 from onboard.wire.mavlink.modes import Kind
 from onboard.wire.mavlink.values import ParamValue
 
@@ -18,7 +19,6 @@ PARAM_AGAIN_S = 0.5
 PARAM_TRIES = 6
 CLOCK_EVERY_S = 2.0
 FAST = ("GLOBAL_POSITION_INT", "ATTITUDE")  # follow the control rate above 20 Hz
-HOME = 242  # HOME_POSITION
 
 
 def needs_of(kind: Kind, control_rate_hz: float) -> tuple[Need, ...]:
@@ -54,7 +54,7 @@ class Requests:
         self._to = to
         self._px4 = kind is Kind.PX4_MULTICOPTER
         self._arrived: Counter[str] = Counter()
-        self._reviewed = self._param_at = self._clock_at = -1e9
+        self._reviewed = self._param_at = self._clock_at = NEVER
         self._missing = list(WANTED.get(kind, ()))
         self._tries = 0
         self._buffer_free = 1.0
@@ -76,28 +76,28 @@ class Requests:
     def again(self) -> None:
         """Ask for everything anew: the autopilot has started again, or another link is used."""
         self._rates.forget()
-        self._reviewed = -1e9
+        self._reviewed = NEVER
 
-    def due(self, now: float, quality: float) -> list[MavMessage]:
+    def due(self, now: float, quality: float) -> list[Outgoing]:
         """What to send at `now` [s, monotonic]; `quality`: share of the autopilot's frames that arrive.
 
         What is lost on the way is no reason to ask for less: rates are judged by what was sent."""
-        messages: list[MavMessage] = []
+        messages: list[Outgoing] = []
         span = now - self._reviewed
         if span >= REVIEW_S:
-            first = span > 1e8
+            first = self._reviewed == NEVER
             share = max(0.1, quality)
             rates = {name: count / span / share for name, count in self._arrived.items()}
             messages += self._rates.step(now, rates, self._buffer_free, share)
             if first:
-                messages.append(commands.request_message(self._to, HOME))
+                messages.append(commands.request_message(self._to, MessageId.HOME_POSITION))
             self._arrived.clear()
             self._reviewed = now
         if self._missing and self._tries < PARAM_TRIES and now - self._param_at >= PARAM_AGAIN_S:
             self._tries += 1
             self._param_at = now
-            messages += [commands.param_read(self._to, name) for name in self._missing]
+            messages += [ParamRead(self._to, name) for name in self._missing]
         if now - self._clock_at >= CLOCK_EVERY_S:
             self._clock_at = now
-            messages.append(self.clock.ask(round(now * 1e9)))
+            messages.append(self.clock.ask(round(now * NS_PER_S)))
         return messages

@@ -11,13 +11,14 @@ from onboard.agent.core.events import Outbox
 from onboard.agent.core.journal import Journal
 from onboard.agent.core.mavlink_radio import Radio
 from onboard.agent.core.telemetry_requests import Requests
-from onboard.autopilot.base import NEVER, Adapter, Envelope, Refusal, Setpoint, Stage, Telemetry
+from onboard.autopilot.base import Adapter, Envelope, Refusal, Setpoint, Stage, Telemetry
 from onboard.autopilot.choose import adapter_for
 from onboard.autopilot.telemetry_state import Observer
+from onboard.core.math.constants import NEVER, NS_PER_S
 from onboard.wire.bus.messages import Severity
-from onboard.wire.mavlink import commands
-from onboard.wire.mavlink.commands import Target
+from onboard.wire.mavlink.commands import OwnHeartbeat, Target
 from onboard.wire.mavlink.frames import Packet
+from onboard.wire.mavlink.ids import AUTOPILOT
 from onboard.wire.mavlink.values import (
     CommandAck,
     GlobalPosition,
@@ -29,7 +30,6 @@ from onboard.wire.mavlink.values import (
     Version,
 )
 
-AUTOPILOT = 1  # MAV_COMP_ID_AUTOPILOT1
 RATE_WINDOW_S = 2.0  # over which rates are measured
 _SEVERITIES = {"info": Severity.INFO, "warning": Severity.WARNING, "error": Severity.ERROR}
 
@@ -126,7 +126,7 @@ class VehicleLink:
             return False
         value = self.observer.take(now, packet)
         if self._asking is not None:
-            self._asking.arrived(packet.message.get_type())
+            self._asking.arrived(packet.name)
         if value is None:
             return False
         if isinstance(value, GlobalPosition):
@@ -139,7 +139,7 @@ class VehicleLink:
         elif isinstance(value, ParamValue) and self._asking is not None:
             self._asking.parameter(value)
         elif isinstance(value, Timesync) and self._asking is not None:
-            answer = self._asking.clock.take(round(now * 1e9), value)
+            answer = self._asking.clock.take(round(now * NS_PER_S), value)
             if answer is not None:
                 self.radio.send(answer)
         elif isinstance(value, RadioStatus) and self._asking is not None:
@@ -219,7 +219,7 @@ class VehicleLink:
 
     def heartbeat(self) -> None:
         """Our own heartbeat, at 1 Hz."""
-        self.radio.send(commands.heartbeat())
+        self.radio.send(OwnHeartbeat())
 
     def _discover(self, heartbeat: Heartbeat) -> None:
         known = self._heartbeat

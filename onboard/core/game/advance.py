@@ -7,34 +7,32 @@ pursuers then see its new heading (2.2).
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import pi
 from typing import NamedTuple
 
-from onboard.core.game.referee import Score, judge, opening
-from onboard.core.geometry.cones import blocked_cones
+from onboard.core.game.referee import Score, Step, judge, opening
+from onboard.core.game.rules import Control, Rules, Target
+from onboard.core.game.views import (
+    EvaderView,
+    Nearest,
+    PursuerView,
+    Sighting,
+    evader_view,
+    nearest_mate,
+    pursuer_view,
+    sighted,
+)
 from onboard.core.math.each import each, each_pair
-from onboard.core.math.states import Limits, Vehicle
-from onboard.core.math.vectors import Vec, along, scale
-from onboard.core.strategy.evasion import EvaderView
+from onboard.core.math.states import Vehicle, VehicleLimits
+from onboard.core.math.vectors import ZERO, Vec, along, scale
 from onboard.core.strategy.knowledge import Decision
-from onboard.core.strategy.pursuit import PursuerView
 
 
-class Params(NamedTuple):
-    """The game's parameters, in the paper's symbols."""
+class Conditions(NamedTuple):
+    """What a simulated game is played under."""
 
-    R: float  # capture radius (6) [m]
-    rho: float  # safety distance ρ (4) [m]
-    lambda_: float  # λ of (21)–(22)
-    beta: float  # β of (22)
-    epsilon: float  # ε_min of (5) [m]
-    dt: float  # time step [s]
-    horizon: float  # [s]
-    separation: float  # between pursuers [m]; 0 = off
-    planar: bool
-    has_target: bool
-    target: Vec  # g [m]
-    lookahead: float = 1.0  # of rule 6's alternative, by constant velocity [s]
+    rules: Rules
+    target: Target
+    control: Control  # its `dt` is the time step of the game
 
 
 class Game(NamedTuple):
@@ -43,8 +41,8 @@ class Game(NamedTuple):
     time: float  # since the start [s]
     evader: Vehicle
     pursuers: tuple[Vehicle, ...]
-    evader_limits: Limits
-    pursuer_limits: tuple[Limits, ...]
+    evader_limits: VehicleLimits
+    pursuer_limits: tuple[VehicleLimits, ...]
     score: Score
 
 
@@ -55,26 +53,24 @@ class Decisions(NamedTuple):
     pursuers: tuple[Decision, ...]
 
 
+EvaderStrategy = Callable[[EvaderView], Decision]
+PursuerStrategy = Callable[[PursuerView], Decision]
+
+
 class Seat(NamedTuple):
     """One pursuer with what belongs to it."""
 
     own: Vehicle
-    limits: Limits
-    has_mate: bool
-    mate: Vec  # place of the nearest team mate [m]
+    limits: VehicleLimits
+    mate: Nearest
 
 
 class Field(NamedTuple):
     """What all pursuers' decisions share."""
 
-    evader: Vehicle  # with its new heading
-    heading: Vec  # ê
-    params: Params
-    decide: Callable[[PursuerView], Decision]
-
-
-EvaderStrategy = Callable[[EvaderView], Decision]
-PursuerStrategy = Callable[[PursuerView], Decision]
+    sighting: Sighting  # of the evader, with its new heading
+    conditions: Conditions
+    decide: PursuerStrategy
 
 
 def position_of(vehicle: Vehicle, _index: int, _shared: float) -> Vec:
@@ -88,7 +84,10 @@ def positions(vehicles: tuple[Vehicle, ...]) -> tuple[Vec, ...]:
 
 
 def begin(
-    evader: Vehicle, pursuers: tuple[Vehicle, ...], evader_limits: Limits, pursuer_limits: tuple[Limits, ...]
+    evader: Vehicle,
+    pursuers: tuple[Vehicle, ...],
+    evader_limits: VehicleLimits,
+    pursuer_limits: tuple[VehicleLimits, ...],
 ) -> Game:
     """A game before its first step."""
     return Game(
@@ -96,75 +95,38 @@ def begin(
     )
 
 
-def evader_view(game: Game, params: Params) -> EvaderView:
-    """The situation as the evader sees it."""
-    return EvaderView(
-        game.evader,
-        game.evader_limits,
-        game.pursuers,
-        blocked_cones(game.evader, game.pursuers, params.rho),
-        params.has_target,
-        params.target,
-        params.R,
-        params.lambda_,
-        params.beta,
-        params.planar,
-    )
-
-
-def alone(own: Vehicle, limits: Limits, _shared: float) -> Seat:
+def alone(own: Vehicle, limits: VehicleLimits, _shared: float) -> Seat:
     """A pursuer that need not look for team mates (for `each_pair`)."""
-    return Seat(own, limits, False, own.position)
+    return Seat(own, limits, Nearest(False, own.position))
 
 
-def beside_mates(seat: Seat, index: int, pursuers: tuple[Vehicle, ...]) -> Seat:
-    """The pursuer with its nearest team mate (for `each`)."""
-    has_mate = False
-    mate = seat.mate
-    nearest = 1e300
-    for other in range(len(pursuers)):
-        if other != index:
-            place = pursuers[other].position
-            x = place.x - seat.own.position.x
-            y = place.y - seat.own.position.y
-            z = place.z - seat.own.position.z
-            square = x * x + y * y + z * z
-            if square < nearest:
-                nearest = square
-                mate = place
-                has_mate = True
-    return Seat(seat.own, seat.limits, has_mate, mate)
+def beside_mates(seat: Seat, index: int, places: tuple[Vec, ...]) -> Seat:
+    """Pursuer `index` with its nearest team mate among the places of all pursuers (for `each`)."""
+    return Seat(seat.own, seat.limits, nearest_mate(seat.own.position, places, index))
 
 
-def seats(game: Game, params: Params) -> tuple[Seat, ...]:
+def seats(game: Game, rules: Rules) -> tuple[Seat, ...]:
     """All pursuers; with their nearest team mates where a separation is kept."""
     plain = each_pair(alone, game.pursuers, game.pursuer_limits, 0.0)
-    if params.separation > 0.0:
-        return each(beside_mates, plain, game.pursuers)
+    if rules.separation > 0.0:
+        return each(beside_mates, plain, positions(game.pursuers))
     return plain
-
-
-def pursuer_view(seat: Seat, evader: Vehicle, heading: Vec, params: Params) -> PursuerView:
-    """The situation as a pursuer sees it; the evader already has its new heading."""
-    return PursuerView(
-        seat.own,
-        seat.limits,
-        evader,
-        heading,
-        seat.has_mate,
-        seat.mate,
-        params.separation,
-        True,
-        along(evader.position, heading, evader.speed * params.lookahead),
-        params.lookahead,
-        params.dt,
-        params.planar,
-    )
 
 
 def decide_one(seat: Seat, _index: int, field: Field) -> Decision:
     """One pursuer's decision (for `each`)."""
-    return field.decide(pursuer_view(seat, field.evader, field.heading, field.params))
+    conditions = field.conditions
+    view = pursuer_view(
+        seat.own, seat.limits, field.sighting, seat.mate, conditions.control, conditions.rules
+    )
+    return field.decide(view)
+
+
+def decide_pursuers(
+    game: Game, sighting: Sighting, conditions: Conditions, decide: PursuerStrategy
+) -> tuple[Decision, ...]:
+    """All pursuers' decisions against the evader as they see it."""
+    return each(decide_one, seats(game, conditions.rules), Field(sighting, conditions, decide))
 
 
 def moved(vehicle: Vehicle, decision: Decision, dt: float) -> Vehicle:
@@ -178,45 +140,43 @@ def move_one(vehicle: Vehicle, decision: Decision, dt: float) -> Vehicle:
     return moved(vehicle, decision, dt)
 
 
+def still_view(game: Game, conditions: Conditions) -> EvaderView:
+    """The situation as the evader sees it in still air."""
+    return evader_view(
+        game.evader, game.evader_limits, game.pursuers, conditions.target, ZERO, conditions.rules
+    )
+
+
 def decide(
-    game: Game, params: Params, decide_evader: EvaderStrategy, decide_pursuer: PursuerStrategy
+    game: Game, conditions: Conditions, decide_evader: EvaderStrategy, decide_pursuer: PursuerStrategy
 ) -> Decisions:
-    """Everybody's decision: the evader first."""
-    own = decide_evader(evader_view(game, params))
+    """Everybody's decision in still air: the evader first."""
+    own = decide_evader(still_view(game, conditions))
     turned = Vehicle(game.evader.position, scale(own.direction, own.speed), game.evader.speed)
-    field = Field(turned, own.direction, params, decide_pursuer)
-    return Decisions(own, each(decide_one, seats(game, params), field))
+    seen = sighted(turned, own.direction, conditions.control.lookahead)
+    return Decisions(own, decide_pursuers(game, seen, conditions, decide_pursuer))
 
 
-def judged(before: Game, evader: Vehicle, pursuers: tuple[Vehicle, ...], params: Params) -> Game:
+def judged(before: Game, evader: Vehicle, pursuers: tuple[Vehicle, ...], conditions: Conditions) -> Game:
     """The game after a step in which everybody moved straight to their new places."""
-    dt = params.dt
-    score = judge(
-        before.score,
+    dt = conditions.control.dt
+    step = Step(
         before.time,
         dt,
         before.evader.position,
         evader.position,
         positions(before.pursuers),
         positions(pursuers),
-        params.R,
-        params.rho,
-        params.has_target,
-        params.target,
-        params.epsilon,
-        params.horizon,
     )
+    score = judge(before.score, step, conditions.rules, conditions.target)
     return Game(before.time + dt, evader, pursuers, before.evader_limits, before.pursuer_limits, score)
 
 
 def advance(
-    game: Game, params: Params, decide_evader: EvaderStrategy, decide_pursuer: PursuerStrategy
+    game: Game, conditions: Conditions, decide_evader: EvaderStrategy, decide_pursuer: PursuerStrategy
 ) -> Game:
-    """One step of `params.dt` seconds: decide, move by (7)–(8), judge."""
-    decisions = decide(game, params, decide_evader, decide_pursuer)
-    evader = moved(game.evader, decisions.evader, params.dt)
-    pursuers = each_pair(move_one, game.pursuers, decisions.pursuers, params.dt)
-    return judged(game, evader, pursuers, params)
-
-
-FREE = Limits(0.0, 1e9, -pi / 2, pi / 2, -pi, pi)
+    """One step of the control's `dt` [s]: decide, move by (7)–(8), judge."""
+    decisions = decide(game, conditions, decide_evader, decide_pursuer)
+    evader = moved(game.evader, decisions.evader, conditions.control.dt)
+    pursuers = each_pair(move_one, game.pursuers, decisions.pursuers, conditions.control.dt)
+    return judged(game, evader, pursuers, conditions)

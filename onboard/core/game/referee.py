@@ -6,10 +6,11 @@ from enum import IntEnum
 from math import sqrt
 from typing import NamedTuple
 
+from onboard.core.game.rules import Rules, Target
 from onboard.core.math.vectors import TINY, Vec, sub
 
 
-class Verdict(IntEnum):
+class GameResult(IntEnum):
     """How a game stands."""
 
     RUNNING = 0
@@ -52,7 +53,7 @@ def passage(a0: Vec, a1: Vec, b0: Vec, b1: Vec, radius: float) -> Passage:
 class Score(NamedTuple):
     """What the referee has seen so far."""
 
-    verdict: Verdict
+    verdict: GameResult
     time: float  # of the verdict, or now [s]
     captor: int  # index of the pursuer that captured, −1 = none
     smallest: float  # smallest distance of any pursuer so far [m]
@@ -66,57 +67,55 @@ def opening(e: Vec, pursuers: tuple[Vec, ...]) -> Score:
         line = sub(p, e)
         d = sqrt(line.x * line.x + line.y * line.y + line.z * line.z)
         smallest = min(smallest, d)
-    return Score(Verdict.RUNNING, 0.0, -1, smallest, 0.0)
+    return Score(GameResult.RUNNING, 0.0, -1, smallest, 0.0)
 
 
-def judge(
-    score: Score,
-    start: float,
-    dt: float,
-    e0: Vec,
-    e1: Vec,
-    before: tuple[Vec, ...],
-    after: tuple[Vec, ...],
-    R: float,
-    rho: float,
-    has_target: bool,
-    target: Vec,
-    epsilon: float,
-    horizon: float,
-) -> Score:
-    """Judge one step from `start` lasting `dt` [s].
+class Step(NamedTuple):
+    """One step of a game, in which everybody flies straight from one place to the next [m; NED]."""
+
+    start: float  # [s since the start of the game]
+    dt: float  # duration [s]
+    e0: Vec  # the evader at the start
+    e1: Vec  # and at the end
+    before: tuple[Vec, ...]  # the pursuers at the start
+    after: tuple[Vec, ...]  # and at the end, in the same order
+
+
+def judge(score: Score, step: Step, rules: Rules, target: Target) -> Score:
+    """The score after one more step.
 
     Whatever comes first within the step decides: capture (6), arrival (5), the horizon. On a
-    tie capture stands. `rho` is the safety distance ρ of (4) [m].
+    tie capture stands. `target` lies on the ground, as the places of the step do [m; NED].
     """
-    if score.verdict != Verdict.RUNNING:
+    if score.verdict != GameResult.RUNNING:
         return score
+    start, dt, e0, e1, before, after = step
     smallest = score.smallest
     near = False
     captor = -1
     capture = 2.0
     for index in range(len(before)):
-        seen = passage(before[index], after[index], e0, e1, R)
+        seen = passage(before[index], after[index], e0, e1, rules.R)
         smallest = min(smallest, seen.smallest)
-        near = near or seen.smallest < rho
+        near = near or seen.smallest < rules.rho
         if seen.enters and seen.entry < capture:
             capture = seen.entry
             captor = index
     unsafe = score.unsafe + dt if near else score.unsafe
-    share = (horizon - start) / dt
+    share = (rules.horizon - start) / dt
     if captor >= 0 and capture <= share:
-        arrival = passage(target, target, e0, e1, epsilon)
-        if not has_target or not arrival.enters or capture <= arrival.entry:
+        arrival = passage(target.position, target.position, e0, e1, rules.epsilon_min)
+        if not target.exists or not arrival.enters or capture <= arrival.entry:
             smallest = min(score.smallest, _nearest(capture, e0, e1, before, after))
-            return Score(Verdict.CAPTURED, start + capture * dt, captor, smallest, unsafe)
-    if has_target:
-        arrival = passage(target, target, e0, e1, epsilon)
+            return Score(GameResult.CAPTURED, start + capture * dt, captor, smallest, unsafe)
+    if target.exists:
+        arrival = passage(target.position, target.position, e0, e1, rules.epsilon_min)
         if arrival.enters and arrival.entry <= share:
             smallest = min(score.smallest, _nearest(arrival.entry, e0, e1, before, after))
-            return Score(Verdict.ARRIVED, start + arrival.entry * dt, -1, smallest, unsafe)
+            return Score(GameResult.ARRIVED, start + arrival.entry * dt, -1, smallest, unsafe)
     if share <= 1.0 + 1e-9:
-        return Score(Verdict.ESCAPED, horizon, -1, smallest, unsafe)
-    return Score(Verdict.RUNNING, start + dt, -1, smallest, unsafe)
+        return Score(GameResult.ESCAPED, rules.horizon, -1, smallest, unsafe)
+    return Score(GameResult.RUNNING, start + dt, -1, smallest, unsafe)
 
 
 def _part(a: Vec, b: Vec, share: float) -> Vec:

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from onboard.core.geometry.apollonius import intercept
 from onboard.core.geometry.cones import Cone, blocked_cones, is_free, perpendicular
+from onboard.core.math.angles import wrap
 from onboard.core.math.states import Vehicle
 from onboard.core.math.vectors import (
     NORTH,
@@ -87,7 +88,7 @@ def gaps(cones: tuple[Cone, ...]) -> tuple[Gap, ...]:
     reach = arcs[0][1]
     for low, high in [*arcs[1:], (arcs[0][0] + 2.0 * pi, 0.0)]:
         if low > reach + 1e-12:
-            found.append(Gap((reach + pi) % (2.0 * pi) - pi, low - reach))
+            found.append(Gap(wrap(reach), low - reach))
         reach = max(reach, high)
     # An arc that passes north again may cover gaps found at the start.
     over = max(high for _, high in arcs) - 2.0 * pi
@@ -99,7 +100,7 @@ def gaps(cones: tuple[Cone, ...]) -> tuple[Gap, ...]:
         end = start + gap.width
         if end > over:
             cut = max(start, over) if start < over else start
-            kept.append(Gap((cut + pi) % (2.0 * pi) - pi, end - cut))
+            kept.append(Gap(wrap(cut), end - cut))
     return tuple(kept)
 
 

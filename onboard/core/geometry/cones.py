@@ -13,7 +13,7 @@ from math import cos, pi, sin, sqrt
 from typing import NamedTuple
 
 from onboard.core.math.each import each
-from onboard.core.math.states import Limits, Vehicle
+from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import DOWN, NORTH, TINY, Vec, dot, unit
 
 EDGE = 1e-9  # a ray within this angle of an edge counts as free [rad]
@@ -221,7 +221,7 @@ def free_ray_plane(preferred: Vec, cones: tuple[Cone, ...]) -> Ray:
     return Ray(best >= -1.5, ray, best)
 
 
-def pitch_cones(limits: Limits) -> tuple[Cone, Cone]:
+def pitch_cones(limits: VehicleLimits) -> tuple[Cone, Cone]:
     """What a pitch band [θ_min, θ_max] blocks: a cone around up and one around down."""
     up = Vec(0.0, 0.0, -1.0)
     return (
@@ -238,7 +238,7 @@ def yaw_cones(low: float, high: float) -> tuple[Cone, Cone]:
     )
 
 
-def free_ray_limited(preferred: Vec, cones: tuple[Cone, ...], limits: Limits, planar: bool) -> Ray:
+def free_ray_limited(preferred: Vec, cones: tuple[Cone, ...], limits: VehicleLimits, planar: bool) -> Ray:
     """The free direction nearest to `preferred` within the limits (2), exact.
 
     In the plane only the heading limits count. A heading wedge wider than π is the union of two
@@ -264,16 +264,16 @@ def free_ray_limited(preferred: Vec, cones: tuple[Cone, ...], limits: Limits, pl
 
 
 def _in_wedge(
-    preferred: Vec, cones: tuple[Cone, ...], limits: Limits, low: float, high: float, planar: bool
+    preferred: Vec, cones: tuple[Cone, ...], limits: VehicleLimits, low: float, high: float, planar: bool
 ) -> Ray:
     if planar:
         return free_ray_plane(preferred, (*cones, *yaw_cones(low, high)))
     return free_ray(preferred, (*cones, *yaw_cones(low, high), *pitch_cones(limits)))
 
 
-def within(preferred: Vec, limits: Limits, planar: bool) -> Vec:
+def within(preferred: Vec, limits: VehicleLimits, planar: bool) -> Vec:
     """The direction nearest to `preferred` that the limits (2)–(3) allow (`preferred` if none is)."""
-    _slow, _fast, pitch_min, pitch_max, yaw_min, yaw_max = limits
+    _slow, _fast, pitch_min, pitch_max, yaw_min, yaw_max, _turn = limits
     if yaw_max - yaw_min >= 2.0 * pi and (planar or (pitch_min <= -pi / 2 and pitch_max >= pi / 2)):
         return preferred
     ray = free_ray_limited(preferred, (NOTHING,), limits, planar)

@@ -1,15 +1,17 @@
-"""Vehicle states and their limits: (1)–(3)."""
+"""States of vehicles and their limits: (1)–(3)."""
 
 from __future__ import annotations
 
 from math import pi
 from typing import NamedTuple
 
-from onboard.core.math.vectors import Vec
+from onboard.core.math.vectors import Vec, along, clamp
+
+CARRIED_MAX = 1.0  # a team mate is carried forward for no longer than this [s]
 
 
-class Limits(NamedTuple):
-    """What a vehicle may do: (2)–(3). Angles in radians, pitch up positive."""
+class VehicleLimits(NamedTuple):
+    """What a vehicle may do: (2)–(3). Angles in radians, pitch up positive, yaw from north to east."""
 
     speed_min: float = 0.0  # [m/s; air]
     speed_max: float = 1e9  # [m/s; air]
@@ -17,6 +19,10 @@ class Limits(NamedTuple):
     pitch_max: float = pi / 2  # θ_max [rad]
     yaw_min: float = -pi  # ψ_min [rad]
     yaw_max: float = pi  # ψ_max [rad]; a width of 2π or more means no limit
+    turn_rate: float = 0.0  # of the course, at most [rad/s]; 0 = not declared
+
+
+FREE = VehicleLimits()  # a vehicle that may do anything
 
 
 class Vehicle(NamedTuple):
@@ -25,3 +31,32 @@ class Vehicle(NamedTuple):
     position: Vec  # [m; NED]
     velocity: Vec  # [m/s; relative to the air, NED]
     speed: float  # [m/s; air] the (maximum) speed the game reckons with
+
+
+class MateState(NamedTuple):
+    """What a team mate said of itself."""
+
+    id: int
+    t: float  # the instant that it is of [s]
+    position: Vec  # [m; NED]
+    velocity: Vec  # [m/s; ground]
+
+
+class Mate(NamedTuple):
+    """A team mate, carried forward to now."""
+
+    id: int
+    position: Vec  # [m; NED]
+    velocity: Vec  # [m/s; ground]
+    age: float  # since it was heard, or since the instant that its state is of [s]
+
+
+def carried(mate: MateState, now: float) -> Mate:
+    """A team mate where it is at `now` [s, the clock of its `t`], on at constant velocity.
+
+    It is carried forward for CARRIED_MAX at most, and never back: an instant in the future (two clocks that
+    differ) counts as now. The strategy and the supervisor are both given this one result.
+    """
+    age = now - mate.t
+    place = along(mate.position, mate.velocity, clamp(age, 0.0, CARRIED_MAX))
+    return Mate(mate.id, place, mate.velocity, age)

@@ -6,7 +6,7 @@ source runs interpreted onboard and compiled in simulations.
 
 from __future__ import annotations
 
-from math import atan2, cos, sin, sqrt
+from math import atan2, cos, isfinite, sin, sqrt
 from typing import NamedTuple
 
 TINY = 1e-12  # lengths [m] and speeds [m/s] below this count as zero
@@ -66,6 +66,11 @@ def distance(a: Vec, b: Vec) -> float:
     y = a.y - b.y
     z = a.z - b.z
     return sqrt(x * x + y * y + z * z)
+
+
+def is_finite(a: Vec) -> bool:
+    """Whether no component of a is NaN or infinite."""
+    return isfinite(a.x) and isfinite(a.y) and isfinite(a.z)
 
 
 def unit(a: Vec, otherwise: Vec) -> Vec:

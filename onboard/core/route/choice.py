@@ -231,20 +231,18 @@ def situation_of(
     return Situation(norm(behind), late, rms, route[leg].time - time, ahead, memory.strategy)
 
 
-def follow(
-    route: tuple[Waypoint, ...],
-    setting: Setting,
-    memory: TrackMemory,
-    time: float,
-    position: Vec,
-    velocity: Vec,
-    wind: Vec,
-) -> Followed:
-    """One control step along a route of two waypoints or more.
+class Fix(NamedTuple):
+    """Where a vehicle is at one instant."""
 
-    `time` [s] counts from the route's start, `velocity` is over ground and `wind` the momentary
-    estimate [m/s; NED].
-    """
+    time: float  # [s since the route's start]
+    position: Vec  # [m; NED]
+    velocity: Vec  # [m/s; ground, NED]
+    wind: Vec  # momentary estimate [m/s; NED, where the air moves to]
+
+
+def follow(route: tuple[Waypoint, ...], setting: Setting, memory: TrackMemory, fix: Fix) -> Followed:
+    """One control step along a route of two waypoints or more."""
+    time, position, velocity, wind = fix
     known = weather(memory, wind, time)
     last = len(route) - 1
     leg = known.leg

@@ -13,7 +13,7 @@ from math import sqrt
 from typing import NamedTuple
 
 from onboard.core.geometry.apollonius import intercept
-from onboard.core.math.states import Limits
+from onboard.core.math.states import VehicleLimits
 from onboard.core.math.vectors import (
     NORTH,
     TINY,
@@ -63,7 +63,7 @@ class PseudoTarget(NamedTuple):
 class Setting(NamedTuple):
     """What a vehicle brings to its route."""
 
-    limits: Limits
+    limits: VehicleLimits
     nominal: float  # [m/s; air] of straight flight
     ahead: float  # [s] Strategy 2 meets the pseudo-target no sooner: longer than the path takes to answer
     ordered: Strategy  # flown throughout; CHOOSE lets the knowledge base choose
@@ -113,7 +113,7 @@ def passed(route: tuple[Waypoint, ...], leg: int, position: Vec, velocity: Vec) 
     return dot(behind, velocity) >= 0.0 and dot(behind, behind) < NEAR * NEAR
 
 
-def air_velocity(ground: Vec, speed: float, wind: Vec, limits: Limits) -> Vec:
+def air_velocity(ground: Vec, speed: float, wind: Vec, limits: VehicleLimits) -> Vec:
     """The velocity through the air that follows the unit vector `ground` at groundspeed `speed`.
 
     Wind triangle; where the airspeed or the pitch it needs is beyond the limits, the course over ground

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from math import atan2, cos, isfinite, pi, sin, sqrt
+from math import atan2, cos, isfinite, sin, sqrt
 from typing import NamedTuple
 
-from onboard.core.math.vectors import TINY, Vec, clamp
+from onboard.core.math.angles import wrap
+from onboard.core.math.vectors import TINY, Vec, clamp, is_finite
 from onboard.core.safety.policy import Cause, Envelope
 
 TOLERANCE = 1e-6  # a clip below this relative size is rounding, not a clip
@@ -16,11 +17,6 @@ class Clipped(NamedTuple):
 
     velocity: Vec  # [m/s]
     cause: Cause
-
-
-def finite(v: Vec) -> bool:
-    """Whether all three components are numbers."""
-    return isfinite(v.x) and isfinite(v.y) and isfinite(v.z)
 
 
 def believable(position: Vec, velocity: Vec) -> bool:
@@ -37,7 +33,7 @@ def bounded(v: Vec, course: Vec, e: Envelope) -> Clipped:
     A plane keeps its speed when its climb is cut: the horizontal part grows.
     """
     square = v.x * v.x + v.y * v.y + v.z * v.z
-    if not isfinite(square) and finite(v):  # too large to square: only the direction counts
+    if not isfinite(square) and is_finite(v):  # too large to square: only the direction counts
         big = max(abs(v.x), abs(v.y), abs(v.z))
         v = Vec(v.x / big * e.speed_max, v.y / big * e.speed_max, v.z / big * e.speed_max)
         square = v.x * v.x + v.y * v.y + v.z * v.z
@@ -111,15 +107,6 @@ def slewed(v: Vec, before: Vec, dt: float, e: Envelope) -> Clipped:
         z = clamp(z, before.z - most, before.z + most)
     level = sqrt(max(0.0, speed * speed - z * z))
     return Clipped(Vec(level * cos(course), level * sin(course), z), cause)
-
-
-def wrap(angle: float) -> float:
-    """The angle in [−π, π] [rad]."""
-    while angle > pi:
-        angle -= 2.0 * pi
-    while angle < -pi:
-        angle += 2.0 * pi
-    return angle
 
 
 def _flat(v: Vec) -> Vec:

@@ -11,9 +11,9 @@ from __future__ import annotations
 from math import atan2, cos, pi, sin, sqrt
 from typing import NamedTuple
 
+from onboard.core.math.angles import wrap
 from onboard.core.math.vectors import TINY, Vec, clamp
-from onboard.core.safety.envelope import wrap
-from onboard.core.safety.policy import Cause, Envelope, Fence
+from onboard.core.safety.policy import Cause, Envelope, Fence, Policy
 
 PASSES = 4  # of projection on the walls, before what is left is scaled down
 LEAD = pi / 3  # a plane's evasive course, ahead of its present one [rad]
@@ -113,10 +113,9 @@ def keep_height(v: Vec, position: Vec, fence: Fence, margin: float, reaction: fl
     return Fenced(Vec(v.x, v.y, -climb), cause)
 
 
-def brake(
-    v: Vec, position: Vec, fences: tuple[Fence, ...], margin: float, reaction: float, e: Envelope
-) -> Fenced:
+def brake(v: Vec, position: Vec, policy: Policy) -> Fenced:
     """A multicopter's velocity, slowed towards every wall it could not stop before; outside, the way back."""
+    fences, margin, reaction, e = policy.fences, policy.fence_margin, policy.reaction, policy.envelope
     walls: list[tuple[float, float, float]] = []  # direction to the wall, and how fast it may be approached
     for fence in fences:
         if not inside(position.x, position.y, fence.polygon):
@@ -150,20 +149,12 @@ def brake(
     return Fenced(Vec(x * k, y * k, v.z), Cause.FENCE_AHEAD if changed else Cause.NONE)
 
 
-def turn(
-    v: Vec,
-    position: Vec,
-    ground: Vec,
-    fences: tuple[Fence, ...],
-    margin: float,
-    reaction: float,
-    wind: float,
-    e: Envelope,
-) -> Fenced:
+def turn(v: Vec, position: Vec, ground: Vec, wind: float, policy: Policy) -> Fenced:
     """A plane's ground velocity, turned away where its demand would leave no circle inside.
 
     `ground` is the present ground velocity; `wind` the wind's speed [m/s], which widens the circle.
     """
+    fences, margin, reaction, e = policy.fences, policy.fence_margin, policy.reaction, policy.envelope
     if len(fences) == 0:
         return Fenced(v, Cause.NONE)
     level = sqrt(v.x * v.x + v.y * v.y)

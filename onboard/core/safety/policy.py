@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from enum import IntEnum
-from math import pi
+from math import inf, pi
 from typing import NamedTuple
 
+from onboard.core.math.states import Mate
 from onboard.core.math.vectors import ZERO, Vec
 
 
@@ -101,15 +102,6 @@ class Policy(NamedTuple):
     settle: float = 1.0  # a cause must be gone for so long before its action ends [s]
 
 
-class Mate(NamedTuple):
-    """A team mate, carried forward to now."""
-
-    id: int
-    position: Vec  # [m; NED]
-    velocity: Vec  # [m/s; ground]
-    age: float  # since it was heard [s]
-
-
 class SupervisorInput(NamedTuple):
     """Everything the supervisor looks at in one step. Ages in seconds, of the local monotonic clock."""
 
@@ -124,7 +116,7 @@ class SupervisorInput(NamedTuple):
     strategy_age: float = 0.0  # since the strategy's last sign of life
     track_sigma: float = 0.0  # [m]; 0 = no track is needed
     ground_age: float = 0.0
-    clock_jump_age: float = 1e9  # since the wall clock last jumped
+    clock_jump_age: float = inf  # since the wall clock last jumped
     battery: float = -1.0  # share left; −1 = unknown
     ekf_ok: bool = True
     gps_fix: int = 3

@@ -5,10 +5,11 @@ from __future__ import annotations
 from math import sqrt
 from typing import NamedTuple
 
+from onboard.core.math.states import Mate
 from onboard.core.math.vectors import TINY, Vec
 from onboard.core.safety.envelope import believable
 from onboard.core.safety.fence import stopping_speed
-from onboard.core.safety.policy import Mate, Policy
+from onboard.core.safety.policy import Policy
 
 
 class Separated(NamedTuple):

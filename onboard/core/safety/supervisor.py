@@ -8,15 +8,14 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from onboard.core.math.vectors import ZERO, Vec, add, along, clamp, norm, sub
-from onboard.core.safety.envelope import believable, bounded, finite, slewed
+from onboard.core.math.constants import NEVER
+from onboard.core.math.vectors import ZERO, Vec, add, along, clamp, is_finite, norm, sub
+from onboard.core.safety.envelope import believable, bounded, slewed
 from onboard.core.safety.fence import brake, keep_height, outside_by, turn
 from onboard.core.safety.field_profile import keep_layer
 from onboard.core.safety.health import HealthAction, health
 from onboard.core.safety.policy import Action, Cause, Policy, SupervisorInput
 from onboard.core.safety.separation import keep_apart
-
-LONG_AGO = -1e9  # [s, monotonic]
 
 PROTECTIVE = (
     Cause.FENCE_AHEAD,
@@ -34,12 +33,12 @@ class SupervisorState(NamedTuple):
     action: Action = Action.PASS  # in force
     cause: Cause = Cause.NONE
     since: float = 0.0  # monotonic [s]
-    urged: float = LONG_AGO  # when the action in force was last demanded [s]
-    named: float = LONG_AGO  # when the cause in force was last demanded [s]
+    urged: float = NEVER  # when the action in force was last demanded [s]
+    named: float = NEVER  # when the cause in force was last demanded [s]
     floor: Action = Action.PASS  # latched: nothing milder until control is handed back
     floor_cause: Cause = Cause.NONE
     demand: Vec = ZERO  # last setpoint, relative to the air [m/s]
-    stamp: float = LONG_AGO  # when that was [s]
+    stamp: float = NEVER  # when that was [s]
 
 
 class SupervisorOutput(NamedTuple):
@@ -61,24 +60,22 @@ class Allowed(NamedTuple):
     cause: Cause
 
 
-def supervise(
-    wanted: Vec, seen: SupervisorInput, policy: Policy, state: SupervisorState
-) -> SupervisorOutput:
+def supervise(wanted: Vec, seen: SupervisorInput, policy: Policy, state: SupervisorState) -> SupervisorOutput:
     """One step: the decision's velocity `wanted` [m/s; relative to the air] through all rules."""
     demand = health(seen, policy, _far_outside(seen, policy))
     allowed = Allowed(ZERO, Cause.NONE)
     wind = ZERO if policy.envelope.hovers or not believable(ZERO, seen.wind) else seen.wind
     if demand.action < Action.HOLD:
-        if finite(wanted):
+        if is_finite(wanted):
             allowed = _allow(wanted, wind, seen, policy, state)
-        if not finite(wanted) or not finite(allowed.air):
+        if not is_finite(wanted) or not is_finite(allowed.air):
             demand = HealthAction(Action.HOLD, Cause.NOT_FINITE, False)
         elif allowed.cause != Cause.NONE:
             demand = HealthAction(Action.CLIP, allowed.cause, False)
     after = advance(state, demand, seen.now, policy.settle)
     changed = after.action != state.action or after.cause != state.cause
     if after.action >= Action.HOLD:
-        after = after._replace(demand=ZERO, stamp=LONG_AGO)
+        after = after._replace(demand=ZERO, stamp=NEVER)
         return SupervisorOutput(after.action, after.cause, False, ZERO, ZERO, after, changed)
     after = after._replace(demand=allowed.air, stamp=seen.now)
     ground = add(allowed.air, wind)
@@ -87,7 +84,7 @@ def supervise(
 
 def handed_back(state: SupervisorState) -> SupervisorState:
     """The state once pilot or ground give control back: nothing is latched, and nothing need settle."""
-    return state._replace(floor=Action.PASS, floor_cause=Cause.NONE, urged=LONG_AGO)
+    return state._replace(floor=Action.PASS, floor_cause=Cause.NONE, urged=NEVER)
 
 
 def advance(state: SupervisorState, demand: HealthAction, now: float, settle: float) -> SupervisorState:
@@ -154,10 +151,9 @@ def _allow(wanted: Vec, wind: Vec, seen: SupervisorInput, policy: Policy, state:
             cause = height.cause
     ground = add(bounded(sub(ground, wind), before, e).velocity, wind)
     if e.hovers:
-        walls = brake(ground, position, policy.fences, policy.fence_margin, policy.reaction, e)
+        walls = brake(ground, position, policy)
     else:
-        walls = turn(ground, position, seen.velocity, policy.fences, policy.fence_margin,
-                     policy.reaction, norm(wind), e)
+        walls = turn(ground, position, seen.velocity, norm(wind), policy)
     if walls.cause != Cause.NONE:
         cause = walls.cause
     return Allowed(bounded(sub(walls.velocity, wind), before, e).velocity, cause)

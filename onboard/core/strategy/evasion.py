@@ -7,32 +7,11 @@ Readings that reproduce Table 1: the preferred ray without a target is the direc
 from __future__ import annotations
 
 from math import sqrt
-from typing import NamedTuple
 
-from onboard.core.geometry.cones import Cone, Ray, free_ray_limited, within
-from onboard.core.math.states import Limits, Vehicle
+from onboard.core.game.views import EvaderView, heading_at
+from onboard.core.geometry.cones import Ray, free_ray_limited, within
 from onboard.core.math.vectors import NORTH, TINY, Vec, along, distance, sub, unit
 from onboard.core.strategy.knowledge import Decision, Module, Rule, RuleId, fold, silent
-
-
-class EvaderView(NamedTuple):
-    """A situation as the evader sees it. Pursuers and target move in the same air mass."""
-
-    own: Vehicle
-    limits: Limits
-    pursuers: tuple[Vehicle, ...]
-    cones: tuple[Cone, ...]  # of the pursuers, from `blocked_cones`
-    has_target: bool
-    target: Vec  # g [m]
-    R: float  # capture radius [m]
-    lambda_: float  # λ of (21)–(22)
-    beta: float  # β of (22)
-    planar: bool
-
-
-def heading_of(own: Vehicle) -> Vec:
-    """Unit vector of the present velocity; north for a vehicle at rest."""
-    return unit(own.velocity, NORTH)
 
 
 def resultant_force(view: EvaderView) -> Vec:
@@ -47,17 +26,17 @@ def resultant_force(view: EvaderView) -> Vec:
         dz = e.z - pursuer.position.z
         d = sqrt(dx * dx + dy * dy + dz * dz)
         if d > TINY:
-            weight = view.lambda_ / max(d - 2.0 * view.R, 1e-3) / d
+            weight = view.rules.lambda_ / max(d - 2.0 * view.rules.R, 1e-3) / d
             x += weight * dx
             y += weight * dy
             z += weight * dz
-    if view.has_target:
-        gx = view.target.x - e.x
-        gy = view.target.y - e.y
-        gz = view.target.z - e.z
+    if view.target.exists:
+        gx = view.target.position.x - e.x
+        gy = view.target.position.y - e.y
+        gz = view.target.position.z - e.z
         d = sqrt(gx * gx + gy * gy + gz * gz)
         if d > TINY:
-            weight = (view.beta + 1.0 / d) / d
+            weight = (view.rules.beta + 1.0 / d) / d
             x += weight * gx
             y += weight * gy
             z += weight * gz
@@ -66,7 +45,7 @@ def resultant_force(view: EvaderView) -> Vec:
 
 def target_direction(view: EvaderView) -> Vec:
     """F_g: unit vector from e to g; the present heading when the evader is at the target."""
-    return unit(sub(view.target, view.own.position), heading_of(view.own))
+    return unit(sub(view.target.position, view.own.position), heading_at(view.own))
 
 
 def _along_ray(view: EvaderView, ray: Ray, rule: RuleId, length: float) -> Decision:
@@ -78,47 +57,47 @@ def _along_ray(view: EvaderView, ray: Ray, rule: RuleId, length: float) -> Decis
 
 def free_ray_to_target(view: EvaderView) -> Decision:
     """Rules 1–2 of 3.4.1: the free ray F_esc closest to F_g."""
-    if not view.has_target:
-        return silent(NORTH, view.target)
+    if not view.target.exists:
+        return silent(NORTH, view.target.position)
     goal = target_direction(view)
-    ray = free_ray_limited(goal, view.cones, view.limits, view.planar)
+    ray = free_ray_limited(goal, view.cones, view.limits, view.rules.planar)
     if not ray.exists:
-        return silent(goal, view.target)
-    length = distance(view.own.position, view.target)
+        return silent(goal, view.target.position)
+    length = distance(view.own.position, view.target.position)
     return _along_ray(view, ray, RuleId.FREE_RAY_TO_TARGET, length)
 
 
 def free_ray_from_pursuers(view: EvaderView) -> Decision:
     """Rules 1–2 without a target: the free ray closest to the direction of F_res (21)."""
-    if view.has_target:
-        return silent(NORTH, view.target)
-    away = unit(resultant_force(view), heading_of(view.own))
-    ray = free_ray_limited(away, view.cones, view.limits, view.planar)
+    if view.target.exists:
+        return silent(NORTH, view.target.position)
+    away = unit(resultant_force(view), heading_at(view.own))
+    ray = free_ray_limited(away, view.cones, view.limits, view.rules.planar)
     if not ray.exists:
-        return silent(away, view.target)
+        return silent(away, view.target.position)
     return _along_ray(view, ray, RuleId.FREE_RAY_FROM_PURSUERS, view.own.speed)
 
 
 def resultant(view: EvaderView) -> Decision:
     """Rule 3 of 3.4.1: no free ray, so along F_res of (21), or (22) with a target."""
-    force = unit(resultant_force(view), heading_of(view.own))
-    ray = Ray(True, within(force, view.limits, view.planar), 1.0)
-    if view.has_target:
+    force = unit(resultant_force(view), heading_at(view.own))
+    ray = Ray(True, within(force, view.limits, view.rules.planar), 1.0)
+    if view.target.exists:
         return _along_ray(view, ray, RuleId.RESULTANT_FORCE_TO_TARGET, view.own.speed)
     return _along_ray(view, ray, RuleId.RESULTANT_FORCE, view.own.speed)
 
 
 def straight_to_target(view: EvaderView) -> Decision:
     """For comparison: straight at the target, whoever is in the way."""
-    if not view.has_target:
-        return silent(heading_of(view.own), view.target)
-    ray = Ray(True, within(target_direction(view), view.limits, view.planar), 1.0)
-    return _along_ray(view, ray, RuleId.STRAIGHT_TO_TARGET, distance(view.own.position, view.target))
+    if not view.target.exists:
+        return silent(heading_at(view.own), view.target.position)
+    ray = Ray(True, within(target_direction(view), view.limits, view.rules.planar), 1.0)
+    return _along_ray(view, ray, RuleId.STRAIGHT_TO_TARGET, distance(view.own.position, view.target.position))
 
 
 def straight_on(view: EvaderView) -> Decision:
     """For comparison: straight on."""
-    ray = Ray(True, within(heading_of(view.own), view.limits, view.planar), 1.0)
+    ray = Ray(True, within(heading_at(view.own), view.limits, view.rules.planar), 1.0)
     return _along_ray(view, ray, RuleId.STRAIGHT_ON, view.own.speed)
 
 

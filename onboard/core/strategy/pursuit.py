@@ -6,32 +6,14 @@ The pursuers know the evader's direction (2.2). "Moving away" is cos φ ≤ 0.
 from __future__ import annotations
 
 from math import sqrt
-from typing import NamedTuple
 
+from onboard.core.game.views import PursuerView
 from onboard.core.geometry.apollonius import closest_approach, intercept
 from onboard.core.geometry.cones import within
-from onboard.core.math.states import Limits, Vehicle
-from onboard.core.math.vectors import NORTH, TINY, Vec, add, along, cross, distance, dot, scale, sub, unit
+from onboard.core.math.vectors import TINY, Vec, add, along, cross, distance, dot, scale, sub, unit
 from onboard.core.strategy.knowledge import Decision, Module, Rule, RuleId, fold, silent
 
 NAVIGATION_GAIN = 3.0  # N of proportional navigation
-
-
-class PursuerView(NamedTuple):
-    """A situation as a pursuer sees it, in the moving air mass."""
-
-    own: Vehicle
-    limits: Limits
-    evader: Vehicle
-    heading: Vec  # ê, unit vector of the evader's velocity
-    has_mate: bool
-    mate: Vec  # place of the nearest team mate [m]
-    separation: float  # to keep from team mates [m]; 0 = off
-    has_prediction: bool
-    prediction: Vec  # place of the evader k steps ahead [m]
-    prediction_time: float  # until then [s]
-    dt: float  # control step [s]
-    planar: bool
 
 
 def _head(view: PursuerView, aim: Vec, rule: RuleId, time: float, miss: float) -> Decision:
@@ -41,22 +23,22 @@ def _head(view: PursuerView, aim: Vec, rule: RuleId, time: float, miss: float) -
     z = aim.z - z
     far = sqrt(x * x + y * y + z * z)
     ahead = view.heading if far <= TINY else Vec(x / far, y / far, z / far)
-    return Decision(True, within(ahead, view.limits, view.planar), speed, rule, aim, time, miss)
+    return Decision(True, within(ahead, view.limits, view.rules.planar), speed, rule, aim, time, miss)
 
 
 def keep_off_mate(view: PursuerView) -> Decision:
     """Figure 8b: a team mate is nearer than the separation: outwards, and past it towards the evader."""
     own = view.own
-    if not view.has_mate:
+    if not view.mate.exists:
         return silent(view.heading, own.position)
-    apart = sub(own.position, view.mate)
-    if dot(apart, apart) >= view.separation * view.separation:
+    apart = sub(own.position, view.mate.position)
+    if dot(apart, apart) >= view.rules.separation * view.rules.separation:
         return silent(view.heading, own.position)
     out = unit(apart, view.heading)
     wanted = unit(sub(view.evader.position, own.position), view.heading)
     past = along(wanted, out, -dot(wanted, out))
-    ahead = within(unit(add(out, past), out), view.limits, view.planar)
-    aim = along(own.position, ahead, view.separation)
+    ahead = within(unit(add(out, past), out), view.limits, view.rules.planar)
+    aim = along(own.position, ahead, view.rules.separation)
     return Decision(True, ahead, own.speed, RuleId.KEEP_OFF_MATE, aim, 0.0, 0.0)
 
 
@@ -83,7 +65,7 @@ def greatest_approach(view: PursuerView) -> Decision:
 def parallel(view: PursuerView) -> Decision:
     """Rule 6 of 3.4.2: the evader moves away, so parallel to it."""
     own = view.own
-    ahead = within(view.heading, view.limits, view.planar)
+    ahead = within(view.heading, view.limits, view.rules.planar)
     aim = along(own.position, ahead, own.speed)
     left = distance(own.position, view.evader.position)
     return Decision(True, ahead, own.speed, RuleId.PARALLEL, aim, 1.0, left)
@@ -93,8 +75,8 @@ def predicted_place(view: PursuerView) -> Decision:
     """Rule 6's alternative: the evader moves away, so to the place predicted k steps ahead."""
     if not view.has_prediction:
         return silent(view.heading, view.evader.position)
-    left = distance(view.prediction, view.own.position) - view.own.speed * view.prediction_time
-    return _head(view, view.prediction, RuleId.PREDICTED_PLACE, view.prediction_time, max(0.0, left))
+    left = distance(view.prediction, view.own.position) - view.own.speed * view.control.lookahead
+    return _head(view, view.prediction, RuleId.PREDICTED_PLACE, view.control.lookahead, max(0.0, left))
 
 
 def straight_at_evader(view: PursuerView) -> Decision:
@@ -125,7 +107,7 @@ def constant_bearing(view: PursuerView) -> Decision:
     else:
         closing = sqrt(max(0.0, square - lateral))
         ahead = unit(along(across, sight, closing), sight)
-    ahead = within(ahead, view.limits, view.planar)
+    ahead = within(ahead, view.limits, view.rules.planar)
     rate = closing - dot(motion, sight)
     far = distance(e.position, own.position)
     time = far / rate if rate > TINY else 0.0
@@ -143,9 +125,9 @@ def proportional_navigation(view: PursuerView) -> Decision:
     ahead = unit(own.velocity, sight)
     if square > TINY * TINY:
         motion = sub(scale(view.heading, e.speed), scale(ahead, own.speed))
-        turn = scale(cross(line, motion), NAVIGATION_GAIN * view.dt / square)
+        turn = scale(cross(line, motion), NAVIGATION_GAIN * view.control.dt / square)
         ahead = unit(add(ahead, cross(turn, ahead)), ahead)
-    ahead = within(ahead, view.limits, view.planar)
+    ahead = within(ahead, view.limits, view.rules.planar)
     aim = along(own.position, ahead, own.speed)
     return Decision(True, ahead, own.speed, RuleId.PROPORTIONAL_NAVIGATION, aim, 1.0, 0.0)
 
@@ -220,8 +202,3 @@ pursuer_earlier = fold(PURSUER_EARLIER)
 pursuer_pure = fold(PURE)
 pursuer_bearing = fold(BEARING)
 pursuer_navigation = fold(NAVIGATION)
-
-
-def heading_at(evader: Vehicle) -> Vec:
-    """ê: unit vector of the evader's velocity; north for an evader at rest."""
-    return unit(evader.velocity, NORTH)

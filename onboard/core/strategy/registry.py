@@ -5,10 +5,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from onboard.core.game.advance import EvaderStrategy, PursuerStrategy
+from onboard.core.game.views import EvaderView, PursuerView
 from onboard.core.strategy import evasion, pursuit
-from onboard.core.strategy.evasion import EvaderView
 from onboard.core.strategy.knowledge import Rule
-from onboard.core.strategy.pursuit import PursuerView
 
 
 class NamedPursuer(NamedTuple):

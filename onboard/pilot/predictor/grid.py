@@ -8,6 +8,7 @@ from math import floor
 
 import numpy as np
 
+from onboard.core.math.constants import NEVER
 from onboard.pilot.predictor.activation import Array
 from onboard.pilot.track_filter import TrackFilter
 
@@ -25,7 +26,7 @@ class Grid:
         self.added = 0  # points ever added
         self._rows: deque[_Row] = deque(maxlen=capacity)  # position [m], velocity [m/s]
         self._last = 0  # the newest point is at instant _last · step
-        self._seen = float("-inf")  # newest sample that was taken in [s]
+        self._seen = NEVER  # newest sample that was taken in [s]
 
     def __len__(self) -> int:
         return len(self._rows)
@@ -38,7 +39,7 @@ class Grid:
     def clear(self) -> None:
         """Forget everything."""
         self._rows.clear()
-        self._seen = float("-inf")
+        self._seen = NEVER
 
     def extend(self, track: TrackFilter) -> None:
         """Add the points up to the newest sample."""

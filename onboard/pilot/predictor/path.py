@@ -11,6 +11,7 @@ from onboard.core.math.vectors import Vec, along, norm
 from onboard.pilot.predictor.activation import Array
 from onboard.pilot.predictor.model import Forecast
 from onboard.pilot.predictor.prediction import Prediction, PredictorKind
+from onboard.pilot.track_filter import Estimate
 
 
 class Knot(NamedTuple):
@@ -37,16 +38,9 @@ class Path(NamedTuple):
         return self.knots[-1].time
 
 
-def path(
-    t: float,
-    position: Vec,
-    velocity: Vec,
-    sigma: float,
-    forecast: Forecast,
-    horizons: tuple[int, ...],
-    step: float,
-) -> Path:
-    """The path of a forecast that starts at instant `t` with position, velocity [m/s] and error."""
+def path(start: Estimate, forecast: Forecast, horizons: tuple[int, ...], step: float) -> Path:
+    """The path of a forecast from a track's estimate; horizons are counted in steps of `step` [s]."""
+    t, position, velocity, sigma, _sigma_velocity = start
     ahead = np.array((0, *horizons))
     moves = np.vstack([np.zeros(3), forecast.velocities * ahead[1:, None]])
     slopes = (_slopes(ahead, moves, np.array(velocity) * step) / step).tolist()

@@ -149,7 +149,7 @@ class TrackPredictor:
             velocity = np.array(here.velocity) * step
             said = flying.forecast(model, places, velocity, self.settings.model, self.trust.shares())
         horizons = self.settings.model.horizons
-        line = path(newest, here.position, here.velocity, here.sigma, said, horizons, step)
+        line = path(here, said, horizons, step)
         moves = np.diff(places, axis=0)
         fastest = float(np.sqrt((moves * moves).sum(axis=1)).max()) / step
         return line if sound(line, max(fastest, norm(here.velocity))) else None

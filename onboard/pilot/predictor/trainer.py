@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Generator, Hashable, Mapping
 from typing import Any
 
+from onboard.core.math.constants import NEVER
 from onboard.pilot.predictor.track import TrackPredictor
 
 Training = Generator[None, None, None]
@@ -61,10 +62,10 @@ class Trainer:
         due = [
             key
             for key, track in tracks.items()
-            if track.trainable and now - self._begun.get(key, float("-inf")) >= self.period
+            if track.trainable and now - self._begun.get(key, NEVER) >= self.period
         ]
         if not due:
             return None
-        chosen = min(due, key=lambda key: self._begun.get(key, float("-inf")))
+        chosen = min(due, key=lambda key: self._begun.get(key, NEVER))
         self._begun[chosen] = now
         return tracks[chosen].train()

@@ -10,11 +10,16 @@ from __future__ import annotations
 
 from collections import Counter
 from enum import Enum
-from typing import Any, Generic, TypeVar
+from typing import Generic, TypeVar
 
 import msgspec
 
-SCHEMA = 1
+from onboard.config.derive import core_from, struct_from
+from onboard.core.game.rules import Rules
+from onboard.core.math.states import VehicleLimits
+from onboard.wire.finite import all_finite
+
+SCHEMA = 2
 
 Triple = tuple[float, float, float]
 
@@ -45,17 +50,30 @@ class Origin(Message, frozen=True):
     altitude_m: float
 
 
-class Member(Message, frozen=True):
-    """One vehicle of the roster with its declared envelope."""
+class RulesMessage(struct_from(Rules, Message)):  # type: ignore[misc]
+    """The core's Rules on the bus, field by field as the core has them."""
 
-    id: int
+    def core(self) -> Rules:
+        """The core's value."""
+        return core_from(self, Rules)
+
+
+class LimitsMessage(struct_from(VehicleLimits, Message)):  # type: ignore[misc]
+    """The core's VehicleLimits on the bus, field by field as the core has them."""
+
+    def core(self) -> VehicleLimits:
+        """The core's value."""
+        return core_from(self, VehicleLimits)
+
+
+class Member(Message, frozen=True):
+    """One vehicle of the roster with what it declares."""
+
+    id: int  # its MAVLink system id
     role: Role
-    speed_max: float  # [m/s; air] declared maximum airspeed
+    speed: float  # maximum airspeed that the game reckons with [m/s]; 0 = not declared
     start: Triple  # [m; NED] staging place
-    speed_min: float = 0.0  # [m/s; air]
-    pitch_min: float = -1.5707963267948966  # [rad]
-    pitch_max: float = 1.5707963267948966  # [rad]
-    turn_rate: float = 0.0  # [rad/s], 0 = not declared
+    limits: LimitsMessage = LimitsMessage()
     strategy: str = ""  # name, "" = the default of the role
 
 
@@ -70,24 +88,22 @@ class Fence(Message, frozen=True):
 class Setup(Message, frozen=True):
     """`game/setup`: everything but the evader's target."""
 
-    game: str
+    game: str  # name of the game, as in the topics
     scenario: str  # name
-    scenario_hash: str
+    scenario_hash: str  # fingerprint of its contents
     master: str  # who published it
     origin: Origin
     roster: tuple[Member, ...]
-    capture_radius: float  # R [m]
-    safety_distance: float  # ρ [m]
-    lambda_: float  # λ of (21)–(22)
-    beta: float  # β of (22)
-    epsilon_min: float  # ε_min [m]
-    horizon: float  # [s] not captured until then = escaped
-    planar: bool = False
+    rules: RulesMessage
     fence: Fence | None = None
-    separation: float = 0.0  # [m] between team mates, 0 = off
-    track_sigma: float = 0.0  # [m] stated position error of the tracks
+    track_sigma: float = 0.0  # stated position error of the tracks, one sigma an axis [m]
     seed: int = 0
     field_profile: bool = False  # altitude layers, capture judged horizontally
+
+    @property
+    def flat(self) -> bool:
+        """Whether heights do not count: a plane game, or the field profile."""
+        return bool(self.rules.planar or self.field_profile)
 
 
 class PhaseChange(Message, frozen=True):
@@ -283,7 +299,7 @@ class Codec(Generic[M]):
         if version != SCHEMA:
             drops["schema"] += 1
             return None
-        if not _finite(msgspec.structs.astuple(message)):
+        if not all_finite(msgspec.structs.astuple(message)):
             drops["not_finite"] += 1
             return None
         return message
@@ -294,21 +310,6 @@ class Codec(Generic[M]):
         except (msgspec.DecodeError, UnicodeDecodeError, RecursionError):
             return False
         return version != SCHEMA
-
-
-def _finite(items: tuple[Any, ...]) -> bool:
-    """msgspec lets NaN and infinity pass: one walk rejects them. Every message passes it, so it is lean."""
-    for item in items:
-        kind = type(item)
-        if kind is float:
-            if item - item != 0.0:  # NaN for both
-                return False
-        elif kind is tuple:
-            if item and not _finite(item):
-                return False
-        elif isinstance(item, Message) and not _finite(msgspec.structs.astuple(item)):
-            return False
-    return True
 
 
 SETUP = Codec(Setup)

@@ -1,27 +1,26 @@
-"""MAVLink frames ↔ messages: the one place onboard that imports pymavlink's dialect (never mavutil).
+"""MAVLink frames ↔ typed values: bytes in, packets out; values in, frames out.
 
-Sans I/O: bytes in, packets out. One `Framer` per peer, so that one peer's torn frame never
-destroys another's good one. What arrives never raises: bad frames are counted by cause.
+Sans I/O. One `Framer` per peer, so that one peer's torn frame never destroys another's good one. What
+arrives never raises: bad frames are counted by cause.
 """
 
 from __future__ import annotations
 
 from collections import Counter
 from struct import Struct
-from typing import Any, NamedTuple, Protocol
+from typing import NamedTuple
 
-from pymavlink.dialects.v20 import ardupilotmega as dialect
-
+from onboard.wire.mavlink.commands import Outgoing
+from onboard.wire.mavlink.dialect import HEADER_1, HEADER_2, SIGNATURE, DialectSender, dialect, layout_of
+from onboard.wire.mavlink.encoding import encode
 from onboard.wire.mavlink.signing import Signing, Verdict
-
-__all__ = ["Framer", "MavMessage", "Packet", "Sender", "dialect", "frame_size", "message_number"]
+from onboard.wire.mavlink.telemetry import READ, decode
+from onboard.wire.mavlink.values import Value
 
 MAGIC_1, MAGIC_2 = dialect.PROTOCOL_MARKER_V1, dialect.PROTOCOL_MARKER_V2  # 0xFE, 0xFD
-HEADER_1, HEADER_2 = Struct("<BBBBBB"), Struct("<BBBBBBBHB")
+FIELDS_1, FIELDS_2 = Struct("<BBBBBB"), Struct("<BBBBBBBHB")
 SIGNED = dialect.MAVLINK_IFLAG_SIGNED
-SIGNATURE = dialect.MAVLINK_SIGNATURE_BLOCK_LEN
 SETUP_SIGNING: int = dialect.MAVLINK_MSG_ID_SETUP_SIGNING
-LONGEST = HEADER_2.size + 255 + 2 + SIGNATURE  # [bytes] a frame
 
 CAUSES = (
     "bad_crc",  # checksum wrong
@@ -34,78 +33,17 @@ CAUSES = (
 )
 
 
-class MavMessage(Protocol):
-    """A message of the dialect, as far as the rest of the program may know it."""
-
-    def get_msgId(self) -> int:
-        """Its number."""
-        ...
-
-    def get_type(self) -> str:
-        """Its name in capitals."""
-        ...
-
-    def __getattr__(self, field: str) -> Any:
-        """Its fields, in the wire's units."""
-        ...
-
-
 class Packet(NamedTuple):
     """One good frame. Whose it is must be checked by the reader: links carry foreign systems too."""
 
-    system: int
-    component: int
-    sequence: int
-    message: MavMessage
+    system: int  # of the sender
+    component: int  # of the sender
+    sequence: int  # 0…255: the sender's running number of its frames
+    number: int  # of the message
+    name: str  # of the message, in capitals
+    value: Value | None  # what the message says; None: nobody reads it, or it is not sound
     raw: bytes  # the whole frame, for logs
     signed: bool = False  # verified, not only marked
-
-
-class _Layout:
-    """How to read one kind of message: precomputed, so that a frame costs few steps."""
-
-    __slots__ = ("crc_extra", "kind", "order", "size", "spans", "unpack")
-
-    def __init__(self, kind: Any) -> None:
-        self.kind = kind
-        self.crc_extra = bytes([kind.crc_extra])
-        self.size: int = kind.unpacker.size
-        self.unpack = kind.unpacker.unpack
-        plain = all(length == 1 for length in kind.lengths)
-        self.order: tuple[int, ...] = tuple(kind.orders) if plain else ()
-        starts = [sum(kind.lengths[:i]) for i in range(len(kind.lengths))]
-        # (first value, number of values) of each field, in the order of the constructor
-        self.spans = tuple((starts[i], kind.lengths[i]) for i in kind.orders)
-
-    def build(self, payload: bytes) -> Any:
-        values = self.unpack(payload)
-        if self.order:
-            return self.kind(*[values[i] for i in self.order])
-        return self.kind(*[values[i] if n == 1 else list(values[i : i + n]) for i, n in self.spans])
-
-
-_LAYOUTS: dict[int, _Layout] = {}
-
-
-def _layout(number: int) -> _Layout | None:
-    found = _LAYOUTS.get(number)
-    if found is None and number in dialect.mavlink_map:
-        found = _LAYOUTS[number] = _Layout(dialect.mavlink_map[number])
-    return found
-
-
-def message_number(name: str) -> int:
-    """The number of a message by its name in capitals; KeyError for none of the dialect."""
-    return _NUMBERS[name]
-
-
-def frame_size(name: str, signed: bool = False) -> int:
-    """The most bytes that a frame of this message takes on the wire (trailing zeros may save some)."""
-    size: int = dialect.mavlink_map[_NUMBERS[name]].unpacker.size
-    return HEADER_2.size + size + 2 + (SIGNATURE if signed else 0)
-
-
-_NUMBERS: dict[str, int] = {kind.msgname: number for number, kind in dialect.mavlink_map.items()}
 
 
 class Framer:
@@ -180,13 +118,13 @@ class Framer:
     def size_at(data: bytes, at: int) -> int:
         """Length of the frame whose header starts at `at`; 0 where that is no header, or not all of one."""
         left = len(data) - at
-        if left >= HEADER_2.size and data[at] == MAGIC_2:
+        if left >= HEADER_2 and data[at] == MAGIC_2:
             flags = data[at + 2]
-            if flags & ~SIGNED or _layout(data[at + 7] | data[at + 8] << 8 | data[at + 9] << 16) is None:
+            if flags & ~SIGNED or layout_of(data[at + 7] | data[at + 8] << 8 | data[at + 9] << 16) is None:
                 return 0
-            return HEADER_2.size + data[at + 1] + 2 + (SIGNATURE if flags else 0)
-        if left >= HEADER_1.size and data[at] == MAGIC_1 and _layout(data[at + 5]) is not None:
-            return HEADER_1.size + data[at + 1] + 2
+            return HEADER_2 + data[at + 1] + 2 + (SIGNATURE if flags else 0)
+        if left >= HEADER_1 and data[at] == MAGIC_1 and layout_of(data[at + 5]) is not None:
+            return HEADER_1 + data[at + 1] + 2
         return 0
 
     @staticmethod
@@ -196,18 +134,18 @@ class Framer:
         if data[at] == MAGIC_2:
             if left >= 3 and data[at + 2] & ~SIGNED:
                 return "incompatible"
-            return "unknown_id" if left >= HEADER_2.size else ""
-        return "unknown_id" if left >= HEADER_1.size else ""
+            return "unknown_id" if left >= HEADER_2 else ""
+        return "unknown_id" if left >= HEADER_1 else ""
 
     def _open(self, raw: bytes, wall_ns: int) -> tuple[Packet | None, str]:
         """The packet of one whole frame of a known kind, or the cause against it."""
         if raw[0] == MAGIC_2:
-            _, length, flags, _, sequence, system, component, low, high = HEADER_2.unpack_from(raw)
-            number, start = low | high << 16, HEADER_2.size
+            _, length, flags, _, sequence, system, component, low, high = FIELDS_2.unpack_from(raw)
+            number, start = low | high << 16, HEADER_2
         else:
-            _, length, sequence, system, component, number = HEADER_1.unpack_from(raw)
-            flags, start = 0, HEADER_1.size
-        layout = _layout(number)
+            _, length, sequence, system, component, number = FIELDS_1.unpack_from(raw)
+            flags, start = 0, HEADER_1
+        layout = layout_of(number)
         if layout is None:
             return None, "unknown_id"
         end = start + length
@@ -219,16 +157,9 @@ class Framer:
             verdict = self._signing.verify(raw, bool(flags & SIGNED), system, component, wall_ns)
             if verdict is not Verdict.GOOD:
                 return None, f"signature_{verdict.value}"
-        payload = raw[start:end]
-        if length < layout.size:
-            payload += bytes(layout.size - length)
-        elif length > layout.size:
-            payload = payload[: layout.size]  # extension fields newer than our dialect
-        message = layout.build(payload)
-        header = message._header
-        header.seq, header.srcSystem, header.srcComponent = sequence, system, component
-        message._payload = payload
-        return Packet(system, component, sequence, message, raw, self._signing is not None), ""
+        value = decode(layout.message(raw[start:end])) if number in READ else None
+        signed = self._signing is not None
+        return Packet(system, component, sequence, number, layout.name, value, raw, signed), ""
 
 
 _WHOLE = frozenset(cause for cause in CAUSES if cause.startswith("signature_") or cause == "setup_signing")
@@ -236,12 +167,12 @@ _WHOLE = frozenset(cause for cause in CAUSES if cause.startswith("signature_") o
 
 def _declared(data: bytes, at: int) -> int:
     """The length that a misfit's header claims, as far as it can be read."""
-    header = HEADER_2.size if data[at] == MAGIC_2 else HEADER_1.size
+    header = HEADER_2 if data[at] == MAGIC_2 else HEADER_1
     return header + 2 + data[at + 1] if len(data) > at + 1 else header
 
 
 class Sender:
-    """One MAVLink component of ours: messages → frames, with the running sequence number.
+    """One MAVLink component of ours: values → frames, with the running sequence number.
 
     With `signing` every frame is signed for `link_id`, stamped by max(last + 1, clock).
     """
@@ -249,19 +180,8 @@ class Sender:
     def __init__(
         self, system: int, component: int, *, signing: Signing | None = None, link_id: int = 0
     ) -> None:
-        self.system = system
-        self.component = component
-        self._signing = signing
-        self._mav = dialect.MAVLink(None, srcSystem=system, srcComponent=component)
-        if signing is not None:
-            self._mav.signing.secret_key = signing.key
-            self._mav.signing.link_id = link_id
-            self._mav.signing.sign_outgoing = True
+        self._frames = DialectSender(system, component, signing=signing, link_id=link_id)
 
-    def pack(self, message: MavMessage, wall_ns: int = 0) -> bytes:
-        """The frame of a message; `wall_ns` is asked for by signing alone."""
-        if self._signing is not None:
-            self._mav.signing.timestamp = self._signing.next_stamp(wall_ns)
-        frame: bytes = message.pack(self._mav)
-        self._mav.seq = (self._mav.seq + 1) & 0xFF
-        return frame
+    def pack(self, message: Outgoing, wall_ns: int = 0) -> bytes:
+        """Return the frame of a message; `wall_ns` [ns since the epoch] counts for signing alone."""
+        return self._frames.pack(encode(message), wall_ns)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from enum import Enum
 
-from onboard.wire.mavlink.frames import dialect
+from onboard.wire.mavlink.dialect import dialect
 
 
 class Kind(Enum):

@@ -12,7 +12,8 @@ from struct import Struct, error
 from typing import Any
 
 from onboard.core.math.vectors import Vec
-from onboard.wire.mavlink.frames import MavMessage, dialect
+from onboard.wire.finite import all_finite
+from onboard.wire.mavlink.dialect import MavMessage, dialect
 from onboard.wire.mavlink.modes import kind_of, mode_name
 from onboard.wire.mavlink.values import (
     UNKNOWN,
@@ -45,10 +46,6 @@ def decode(message: MavMessage) -> Value | None:
     return reader(message) if reader is not None else None
 
 
-def _finite(*numbers: float) -> bool:
-    return all(map(isfinite, numbers))
-
-
 def _on_earth(latitude_e7: int, longitude_e7: int) -> bool:
     return -900_000_000 <= latitude_e7 <= 900_000_000 and -1_800_000_000 <= longitude_e7 <= 1_800_000_000
 
@@ -71,13 +68,13 @@ def _global_position(m: Any) -> GlobalPosition | None:
 
 
 def _local_position(m: Any) -> LocalPosition | None:
-    if not _finite(m.x, m.y, m.z, m.vx, m.vy, m.vz):
+    if not all_finite((m.x, m.y, m.z, m.vx, m.vy, m.vz)):
         return None
     return LocalPosition(m.time_boot_ms * 1e-3, Vec(m.x, m.y, m.z), Vec(m.vx, m.vy, m.vz))
 
 
 def _attitude(m: Any) -> Attitude | None:
-    if not _finite(m.roll, m.pitch, m.yaw, m.rollspeed, m.pitchspeed, m.yawspeed):
+    if not all_finite((m.roll, m.pitch, m.yaw, m.rollspeed, m.pitchspeed, m.yawspeed)):
         return None
     if abs(m.roll) > 2 * pi or abs(m.pitch) > 2 * pi or abs(m.yaw) > 4 * pi:
         return None
@@ -86,14 +83,14 @@ def _attitude(m: Any) -> Attitude | None:
 
 
 def _air_data(m: Any) -> AirData | None:
-    if not _finite(m.airspeed, m.groundspeed, m.climb, m.alt):
+    if not all_finite((m.airspeed, m.groundspeed, m.climb, m.alt)):
         return None
     return AirData(m.airspeed, m.groundspeed, m.climb, m.throttle * 0.01, m.alt)
 
 
 def _wind(m: Any) -> Wind | None:
     """ArduPilot: `direction` is where it comes from [deg], `speed` is in the ground plane, `speed_z` down."""
-    if not _finite(m.direction, m.speed, m.speed_z):
+    if not all_finite((m.direction, m.speed, m.speed_z)):
         return None
     origin = radians(m.direction)
     return Wind(Vec(-m.speed * cos(origin), -m.speed * sin(origin), m.speed_z))
@@ -101,7 +98,7 @@ def _wind(m: Any) -> Wind | None:
 
 def _wind_cov(m: Any) -> Wind | None:
     """PX4: the vector itself; it does not know the vertical part (NaN)."""
-    if not _finite(m.wind_x, m.wind_y):
+    if not all_finite((m.wind_x, m.wind_y)):
         return None
     return Wind(Vec(m.wind_x, m.wind_y, m.wind_z if isfinite(m.wind_z) else 0.0))
 

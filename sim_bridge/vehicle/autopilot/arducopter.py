@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import cos, isfinite, sin
 
-from onboard.core.math.vectors import ZERO, Vec
-from onboard.wire.mavlink.frames import Packet, dialect
+from onboard.core.math.vectors import ZERO, Vec, is_finite
+from onboard.wire.mavlink.dialect import DialectPacket, dialect
 from onboard.wire.mavlink.modes import ARDUCOPTER_MODES
 from sim_bridge.vehicle.autopilot import default_parameters as tables
 from sim_bridge.vehicle.autopilot import telemetry
@@ -61,7 +61,7 @@ class ArduCopter(Multicopter, ArduPilot):
         own = {"SYSID_THISMAV": self.system, "SCHED_LOOP_RATE": 400}
         return Parameters(tables.ARDUCOPTER, own | dict(self.setup.parameters), bytewise=False)
 
-    def _message_handlers(self) -> dict[int, Callable[[int, Packet], None]]:
+    def _message_handlers(self) -> dict[int, Callable[[int, DialectPacket], None]]:
         return super()._message_handlers() | {
             dialect.MAVLINK_MSG_ID_SET_POSITION_TARGET_LOCAL_NED: self._on_local_target,
             dialect.MAVLINK_MSG_ID_SET_POSITION_TARGET_GLOBAL_INT: self._on_global_target,
@@ -166,7 +166,7 @@ class ArduCopter(Multicopter, ArduPilot):
 
     # ------------------------------------------------------------------ setpoints
 
-    def _on_local_target(self, now_ns: int, packet: Packet) -> None:
+    def _on_local_target(self, now_ns: int, packet: DialectPacket) -> None:
         m = packet.message
         if not self.is_mode("GUIDED"):
             self.counters["target_outside_guided"] += 1
@@ -179,13 +179,13 @@ class ArduCopter(Multicopter, ArduPilot):
             position, velocity = self._turned(position), self._turned(velocity)
         here = self.motion.position
         if m.coordinate_frame == LOCAL:
-            if not m.type_mask & NO_POSITION and _finite(position):
+            if not m.type_mask & NO_POSITION and is_finite(position):
                 position = self.game_from_local(position)
         else:
             position = Vec(here.x + position.x, here.y + position.y, here.z + position.z)
         self._follow(now_ns, m.type_mask, position, velocity)
 
-    def _on_global_target(self, now_ns: int, packet: Packet) -> None:
+    def _on_global_target(self, now_ns: int, packet: DialectPacket) -> None:
         m = packet.message
         if not self.is_mode("GUIDED"):
             self.counters["target_outside_guided"] += 1
@@ -206,7 +206,7 @@ class ArduCopter(Multicopter, ArduPilot):
         with_position = not mask & NO_POSITION
         with_velocity = not mask & NO_VELOCITY
         values = (position if with_position else ZERO, velocity if with_velocity else ZERO)
-        if forced or not (with_position or with_velocity) or not all(_finite(v) for v in values):
+        if forced or not (with_position or with_velocity) or not all(is_finite(v) for v in values):
             self._stop(now_ns)
         elif self.landed:
             self.counters["target_on_ground"] += 1
@@ -258,7 +258,3 @@ class ArduCopter(Multicopter, ArduPilot):
             return FAILED
         self.parameters.put("WPNAV_SPEED", command.p2 / CM)
         return ACCEPTED
-
-
-def _finite(v: Vec) -> bool:
-    return isfinite(v.x) and isfinite(v.y) and isfinite(v.z)

@@ -8,7 +8,7 @@ from math import isfinite
 from typing import NamedTuple
 
 from onboard.core.math.vectors import Vec
-from onboard.wire.mavlink.frames import Packet, dialect
+from onboard.wire.mavlink.dialect import DialectPacket, dialect
 from sim_bridge.vehicle.autopilot.autopilot import Autopilot
 from sim_bridge.vehicle.autopilot.command import ACCEPTED, DENIED, FAILED, Command
 
@@ -62,7 +62,7 @@ class ArduPilot(Autopilot):
             dialect.MAV_CMD_NAV_RETURN_TO_LAUNCH: lambda now, c: self._by_command(now, "RTL"),
         }
 
-    def watched_ground_station(self, packet: Packet) -> bool:
+    def watched_ground_station(self, packet: DialectPacket) -> bool:
         """ArduPilot watches one system id, whatever its component: an agent's only if told to."""
         return packet.system == int(self.parameters["SYSID_MYGCS"])
 

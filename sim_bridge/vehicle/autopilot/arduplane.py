@@ -8,8 +8,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import asin, atan, atan2, ceil, degrees, floor, hypot, isfinite, pi, radians, sin
 
+from onboard.core.math.constants import STANDARD_GRAVITY
 from onboard.core.math.vectors import ZERO, clamp
-from onboard.wire.mavlink.frames import Packet, dialect
+from onboard.wire.mavlink.dialect import DialectPacket, dialect
 from onboard.wire.mavlink.modes import ARDUPLANE_MODES
 from sim_bridge.vehicle.autopilot import default_parameters as tables
 from sim_bridge.vehicle.autopilot import telemetry
@@ -17,7 +18,6 @@ from sim_bridge.vehicle.autopilot.ardupilot import ABOVE_HOME, ABSOLUTE, ArduPil
 from sim_bridge.vehicle.autopilot.command import ACCEPTED, DENIED, FAILED, Command
 from sim_bridge.vehicle.autopilot.parameters import Parameters
 from sim_bridge.vehicle.autopilot.setup import Setup
-from sim_bridge.vehicle.flight.kinematic import G
 from sim_bridge.vehicle.motion import Demand, Lateral
 
 M = ARDUPLANE_MODES
@@ -62,7 +62,7 @@ class ArduPlane(ArduPilot):
     def _new_parameters(self) -> Parameters:
         s = self.setup
         bank = min(85.0, s.bank_max_deg)
-        radius = 1.5 * s.speed_cruise * s.speed_cruise / (G * max(0.1, _tan_deg(bank)))
+        radius = 1.5 * s.speed_cruise * s.speed_cruise / (STANDARD_GRAVITY * max(0.1, _tan_deg(bank)))
         own = {
             "SYSID_THISMAV": float(self.system),
             "AIRSPEED_MIN": float(floor(s.speed_min)),
@@ -77,7 +77,7 @@ class ArduPlane(ArduPilot):
         }
         return Parameters(tables.ARDUPLANE, own | dict(s.parameters), bytewise=False)
 
-    def _message_handlers(self) -> dict[int, Callable[[int, Packet], None]]:
+    def _message_handlers(self) -> dict[int, Callable[[int, DialectPacket], None]]:
         return super()._message_handlers() | {
             dialect.MAVLINK_MSG_ID_SET_ATTITUDE_TARGET: self._on_attitude_target,
             dialect.MAVLINK_MSG_ID_SET_POSITION_TARGET_LOCAL_NED: self._on_local_target,
@@ -246,7 +246,7 @@ class ArduPlane(ArduPilot):
 
     # ------------------------------------------------------------------ setpoints
 
-    def _on_attitude_target(self, now_ns: int, packet: Packet) -> None:
+    def _on_attitude_target(self, now_ns: int, packet: DialectPacket) -> None:
         m = packet.message
         if not self.is_mode("GUIDED"):
             self.counters["target_outside_guided"] += 1
@@ -266,11 +266,11 @@ class ArduPlane(ArduPilot):
             self._throttle = clamp(m.thrust, 0.0, 1.0)
             self._throttle_ns = now_ns
 
-    def _on_local_target(self, now_ns: int, packet: Packet) -> None:
+    def _on_local_target(self, now_ns: int, packet: DialectPacket) -> None:
         """ArduPlane has no velocity targets."""
         self.counters["target_not_supported"] += 1
 
-    def _on_global_target(self, now_ns: int, packet: Packet) -> None:
+    def _on_global_target(self, now_ns: int, packet: DialectPacket) -> None:
         """Only the altitude is heeded, whatever else the mask says: a velocity mask is read as altitude 0."""
         m = packet.message
         if not self.is_mode("GUIDED"):

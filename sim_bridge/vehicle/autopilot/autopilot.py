@@ -12,9 +12,11 @@ from collections.abc import Callable, Hashable, Mapping
 from functools import partial
 from typing import ClassVar
 
+from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import ZERO, Vec
 from onboard.wire.geodesy import Frame, Geodetic
-from onboard.wire.mavlink.frames import Framer, MavMessage, Packet, Sender, dialect
+from onboard.wire.mavlink.dialect import DialectPacket, DialectSender, MavMessage, dialect, dialect_packet
+from onboard.wire.mavlink.frames import Framer
 from sim_bridge.vehicle.autopilot import telemetry
 from sim_bridge.vehicle.autopilot.command import ACCEPTED, UNSUPPORTED, Command, from_int, from_long
 from sim_bridge.vehicle.autopilot.commands import INQUIRIES
@@ -26,8 +28,7 @@ from sim_bridge.vehicle.autopilot.streams import Streams
 from sim_bridge.vehicle.motion import CALM, Air, Demand, Motion
 
 COMPONENT = 1  # MAV_COMP_ID_AUTOPILOT1
-SECOND = 1_000_000_000
-HEARTBEAT_NS = SECOND
+HEARTBEAT_NS = NS_PER_S
 PEERS_MAX = 16  # framing states kept, least recently heard forgotten first
 PARAMETERS_A_STEP = 5
 FORCE = 21196  # param2 of 400: arm or disarm whatever the checks say
@@ -63,7 +64,7 @@ class Autopilot(ABC):
         self.mode = self.first_mode
         self._boot_ns = now_ns
         self._last_step_ns = now_ns
-        self._handlers: dict[int, Callable[[int, Packet], None]] = self._message_handlers()
+        self._handlers: dict[int, Callable[[int, DialectPacket], None]] = self._message_handlers()
         self._commands: dict[int, Callable[[int, Command], int]] = self._command_handlers()
         self._framers: OrderedDict[Hashable, Framer] = OrderedDict()
         self._out: list[bytes] = []
@@ -84,7 +85,7 @@ class Autopilot(ABC):
             framer = self._framers[peer] = Framer(signing=self.setup.signing, causes=self.counters)
         self._framers.move_to_end(peer)
         for packet in framer.feed(data, self.setup.epoch_ns + now_ns):
-            self._take(now_ns, packet)
+            self._take(now_ns, dialect_packet(packet.raw))
 
     def step(self, now_ns: int, motion: Motion, air: Air) -> Demand:
         """Sense, keep time, send what is due, and say what the airframe shall do until the next step."""
@@ -181,7 +182,7 @@ class Autopilot(ABC):
         """DO_SET_MODE."""
 
     @abstractmethod
-    def watched_ground_station(self, packet: Packet) -> bool:
+    def watched_ground_station(self, packet: DialectPacket) -> bool:
         """Whether a heartbeat is that of the ground station whose silence counts."""
 
     @abstractmethod
@@ -192,8 +193,8 @@ class Autopilot(ABC):
     def on_armed(self, now_ns: int) -> None:
         """What else happens at arming."""
 
-    def _message_handlers(self) -> dict[int, Callable[[int, Packet], None]]:
-        handlers: dict[int, Callable[[int, Packet], None]] = {
+    def _message_handlers(self) -> dict[int, Callable[[int, DialectPacket], None]]:
+        handlers: dict[int, Callable[[int, DialectPacket], None]] = {
             number: partial(service, self) for number, service in SERVICES.items()
         }
         handlers[dialect.MAVLINK_MSG_ID_HEARTBEAT] = self._on_heartbeat
@@ -314,7 +315,7 @@ class Autopilot(ABC):
     # ------------------------------------------------------------------ inside
 
     def _start_wire(self, now_ns: int) -> None:
-        self._sender = Sender(self.system, COMPONENT, signing=self.setup.signing)
+        self._sender = DialectSender(self.system, COMPONENT, signing=self.setup.signing)
         self.streams = Streams(self.default_rates, now_ns)
         self._heartbeat_ns = now_ns
 
@@ -337,7 +338,7 @@ class Autopilot(ABC):
         for message in self.parameters.due(PARAMETERS_A_STEP):
             self.emit(message)
 
-    def _take(self, now_ns: int, packet: Packet) -> None:
+    def _take(self, now_ns: int, packet: DialectPacket) -> None:
         message = packet.message
         if packet.system == self.system and packet.component == COMPONENT:
             self.counters["own_echo"] += 1
@@ -353,14 +354,14 @@ class Autopilot(ABC):
             return
         handler(now_ns, packet)
 
-    def _on_heartbeat(self, now_ns: int, packet: Packet) -> None:
+    def _on_heartbeat(self, now_ns: int, packet: DialectPacket) -> None:
         if self.watched_ground_station(packet):
             self._ground_station_ns = now_ns
 
-    def _on_command_long(self, now_ns: int, packet: Packet) -> None:
+    def _on_command_long(self, now_ns: int, packet: DialectPacket) -> None:
         self._obey(now_ns, from_long(packet))
 
-    def _on_command_int(self, now_ns: int, packet: Packet) -> None:
+    def _on_command_int(self, now_ns: int, packet: DialectPacket) -> None:
         self._obey(now_ns, from_int(packet))
 
     def _obey(self, now_ns: int, command: Command) -> None:
@@ -372,7 +373,7 @@ class Autopilot(ABC):
             )
         )
 
-    def _on_set_mode(self, now_ns: int, packet: Packet) -> None:
+    def _on_set_mode(self, now_ns: int, packet: DialectPacket) -> None:
         m = packet.message
         main, sub = m.custom_mode >> 16 & 0xFF, m.custom_mode >> 24
         px4 = self.autopilot_type == dialect.MAV_AUTOPILOT_PX4

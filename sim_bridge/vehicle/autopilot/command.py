@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from onboard.wire.mavlink.frames import Packet, dialect
+from onboard.wire.mavlink.dialect import DialectPacket, dialect
 
 ACCEPTED: int = dialect.MAV_RESULT_ACCEPTED
 LATER: int = dialect.MAV_RESULT_TEMPORARILY_REJECTED
@@ -29,7 +29,7 @@ class Command(NamedTuple):
     component: int
 
 
-def from_long(packet: Packet) -> Command:
+def from_long(packet: DialectPacket) -> Command:
     """Of a COMMAND_LONG."""
     m = packet.message
     return Command(
@@ -47,7 +47,7 @@ def from_long(packet: Packet) -> Command:
     )
 
 
-def from_int(packet: Packet) -> Command:
+def from_int(packet: DialectPacket) -> Command:
     """Of a COMMAND_INT."""
     m = packet.message
     return Command(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from enum import Enum
 
-from onboard.wire.mavlink.frames import dialect
+from onboard.wire.mavlink.dialect import dialect
 
 CELLS = 3
 CELL_FULL, CELL_EMPTY = 4.2, 3.4  # [V]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from math import atan, degrees
 
+from onboard.core.math.constants import STANDARD_GRAVITY
 from onboard.core.math.vectors import Vec
 from onboard.game.scenario import Kind, VehicleSpec
 from onboard.wire.geodesy import Frame
@@ -14,7 +15,7 @@ from sim_bridge.vehicle.autopilot.arduplane import ArduPlane
 from sim_bridge.vehicle.autopilot.autopilot import Autopilot
 from sim_bridge.vehicle.autopilot.px4 import Px4Multicopter
 from sim_bridge.vehicle.autopilot.setup import Setup
-from sim_bridge.vehicle.flight.kinematic import G, ability_of
+from sim_bridge.vehicle.flight.kinematic import ability_of
 from sim_bridge.vehicle.motion import Motion
 
 PERSONALITIES: Mapping[Kind, type[Autopilot]] = {
@@ -53,7 +54,7 @@ def autopilot_for(
     ability = ability_of(spec, kind)
     bank = bank_max_deg
     if bank is None:
-        bank = degrees(atan(ability.turn_rate * max(spec.speed, 1.0) / G))
+        bank = degrees(atan(ability.turn_rate * max(spec.speed, 1.0) / STANDARD_GRAVITY))
     setup = Setup(
         kind=kind,
         system=system,

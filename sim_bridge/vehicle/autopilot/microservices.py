@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from onboard.wire.mavlink.frames import Packet, dialect
+from onboard.wire.mavlink.dialect import DialectPacket, dialect
 from sim_bridge.vehicle.autopilot import telemetry
 from sim_bridge.vehicle.autopilot.files import refusal
 
@@ -16,39 +16,39 @@ if TYPE_CHECKING:
     from sim_bridge.vehicle.autopilot.autopilot import Autopilot
 
 
-def param_list(ap: Autopilot, now_ns: int, packet: Packet) -> None:
+def param_list(ap: Autopilot, now_ns: int, packet: DialectPacket) -> None:
     ap.parameters.list_all()
     for line in ap.banner:
         ap.say(dialect.MAV_SEVERITY_INFO, line)
 
 
-def param_read(ap: Autopilot, now_ns: int, packet: Packet) -> None:
+def param_read(ap: Autopilot, now_ns: int, packet: DialectPacket) -> None:
     ap.emit(ap.parameters.read(packet.message.param_id, packet.message.param_index))
 
 
-def param_set(ap: Autopilot, now_ns: int, packet: Packet) -> None:
+def param_set(ap: Autopilot, now_ns: int, packet: DialectPacket) -> None:
     ap.emit(ap.parameters.write(packet.message.param_id, packet.message.param_value))
 
 
-def mission_list(ap: Autopilot, now_ns: int, packet: Packet) -> None:
+def mission_list(ap: Autopilot, now_ns: int, packet: DialectPacket) -> None:
     ap.emit(
         dialect.MAVLink_mission_count_message(packet.system, packet.component, 0, packet.message.mission_type)
     )
 
 
-def mission_request(ap: Autopilot, now_ns: int, packet: Packet) -> None:
+def mission_request(ap: Autopilot, now_ns: int, packet: DialectPacket) -> None:
     _mission_ack(ap, packet, dialect.MAV_MISSION_INVALID_SEQUENCE)
 
 
-def mission_upload(ap: Autopilot, now_ns: int, packet: Packet) -> None:
+def mission_upload(ap: Autopilot, now_ns: int, packet: DialectPacket) -> None:
     _mission_ack(ap, packet, dialect.MAV_MISSION_NO_SPACE)
 
 
-def mission_clear(ap: Autopilot, now_ns: int, packet: Packet) -> None:
+def mission_clear(ap: Autopilot, now_ns: int, packet: DialectPacket) -> None:
     _mission_ack(ap, packet, dialect.MAV_MISSION_ACCEPTED)
 
 
-def _mission_ack(ap: Autopilot, packet: Packet, result: int) -> None:
+def _mission_ack(ap: Autopilot, packet: DialectPacket, result: int) -> None:
     ap.emit(
         dialect.MAVLink_mission_ack_message(
             packet.system, packet.component, result, packet.message.mission_type
@@ -56,23 +56,23 @@ def _mission_ack(ap: Autopilot, packet: Packet, result: int) -> None:
     )
 
 
-def file_transfer(ap: Autopilot, now_ns: int, packet: Packet) -> None:
+def file_transfer(ap: Autopilot, now_ns: int, packet: DialectPacket) -> None:
     payload = refusal(bytes(packet.message.payload))
     ap.emit(dialect.MAVLink_file_transfer_protocol_message(0, packet.system, packet.component, payload))
 
 
-def timesync(ap: Autopilot, now_ns: int, packet: Packet) -> None:
+def timesync(ap: Autopilot, now_ns: int, packet: DialectPacket) -> None:
     if packet.message.tc1 == 0:
         ap.emit(dialect.MAVLink_timesync_message(ap.boot_elapsed_ns(now_ns), packet.message.ts1))
 
 
-def ping(ap: Autopilot, now_ns: int, packet: Packet) -> None:
+def ping(ap: Autopilot, now_ns: int, packet: DialectPacket) -> None:
     m = packet.message
     if m.target_system == 0 and m.target_component == 0:
         ap.emit(dialect.MAVLink_ping_message(m.time_usec, m.seq, packet.system, packet.component))
 
 
-def data_stream(ap: Autopilot, now_ns: int, packet: Packet) -> None:
+def data_stream(ap: Autopilot, now_ns: int, packet: DialectPacket) -> None:
     m = packet.message
     for number in telemetry.DATA_STREAMS.get(m.req_stream_id, ()):
         if telemetry.can_build(ap, number):
@@ -80,7 +80,7 @@ def data_stream(ap: Autopilot, now_ns: int, packet: Packet) -> None:
             ap.streams.set(number, 1e6 / hz if hz else -1, now_ns)
 
 
-Service = Callable[["Autopilot", int, Packet], None]
+Service = Callable[["Autopilot", int, DialectPacket], None]
 
 SERVICES: dict[int, Service] = {
     dialect.MAVLINK_MSG_ID_PARAM_REQUEST_LIST: param_list,

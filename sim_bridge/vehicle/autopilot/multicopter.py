@@ -11,7 +11,7 @@ from math import sqrt
 from typing import ClassVar, NamedTuple
 
 from onboard.core.math.vectors import ZERO, Vec, norm, sub
-from onboard.wire.mavlink.frames import dialect
+from onboard.wire.mavlink.dialect import dialect
 from sim_bridge.vehicle.autopilot.autopilot import Autopilot
 from sim_bridge.vehicle.autopilot.setup import Setup
 from sim_bridge.vehicle.motion import Demand, Lateral

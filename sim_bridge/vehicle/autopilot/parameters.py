@@ -10,7 +10,7 @@ from math import isfinite
 from struct import pack, unpack
 from typing import NamedTuple
 
-from onboard.wire.mavlink.frames import MavMessage, dialect
+from onboard.wire.mavlink.dialect import MavMessage, dialect
 
 INT8: int = dialect.MAV_PARAM_TYPE_INT8
 INT16: int = dialect.MAV_PARAM_TYPE_INT16

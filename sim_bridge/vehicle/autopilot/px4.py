@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import cos, isfinite, nan, sin
 
-from onboard.core.math.vectors import ZERO, Vec
+from onboard.core.math.vectors import ZERO, Vec, is_finite
 from onboard.wire.geodesy import Geodetic
-from onboard.wire.mavlink.frames import Packet, dialect
+from onboard.wire.mavlink.dialect import DialectPacket, dialect
 from onboard.wire.mavlink.modes import PX4_MODES
 from sim_bridge.vehicle.autopilot import ardupilot, telemetry
 from sim_bridge.vehicle.autopilot import default_parameters as tables
@@ -63,7 +63,7 @@ class Px4Multicopter(Multicopter):
         }
         return Parameters(tables.PX4, own | dict(self.setup.parameters), bytewise=True)
 
-    def _message_handlers(self) -> dict[int, Callable[[int, Packet], None]]:
+    def _message_handlers(self) -> dict[int, Callable[[int, DialectPacket], None]]:
         return super()._message_handlers() | {
             dialect.MAVLINK_MSG_ID_SET_POSITION_TARGET_LOCAL_NED: self._on_local_target,
             dialect.MAVLINK_MSG_ID_SET_POSITION_TARGET_GLOBAL_INT: self._on_global_target,
@@ -79,7 +79,7 @@ class Px4Multicopter(Multicopter):
             dialect.MAV_CMD_DO_CHANGE_SPEED: self._do_change_speed,
         }
 
-    def watched_ground_station(self, packet: Packet) -> bool:
+    def watched_ground_station(self, packet: DialectPacket) -> bool:
         """PX4 takes any ground station for the data link."""
         return bool(packet.message.type == dialect.MAV_TYPE_GCS)
 
@@ -229,7 +229,7 @@ class Px4Multicopter(Multicopter):
     def _setpoints_fresh(self, now_ns: int) -> bool:
         return (now_ns - self._setpoint_ns) * 1e-9 <= self.parameters["COM_OF_LOSS_T"]
 
-    def _on_local_target(self, now_ns: int, packet: Packet) -> None:
+    def _on_local_target(self, now_ns: int, packet: DialectPacket) -> None:
         m = packet.message
         velocity = Vec(m.vx, m.vy, m.vz)
         position = Vec(m.x, m.y, m.z)
@@ -240,11 +240,11 @@ class Px4Multicopter(Multicopter):
         elif m.coordinate_frame != LOCAL:
             self.counters["target_refused"] += 1
             return
-        elif not m.type_mask & NO_POSITION and _finite(position):
+        elif not m.type_mask & NO_POSITION and is_finite(position):
             position = self.game_from_local(position)
         self._take_setpoint(now_ns, m.type_mask, position, velocity)
 
-    def _on_global_target(self, now_ns: int, packet: Packet) -> None:
+    def _on_global_target(self, now_ns: int, packet: DialectPacket) -> None:
         m = packet.message
         altitude = m.alt + (self.home.altitude_m if m.coordinate_frame in ardupilot.ABOVE_HOME else 0.0)
         known = m.coordinate_frame in ardupilot.ABOVE_HOME + ardupilot.ABSOLUTE
@@ -256,8 +256,8 @@ class Px4Multicopter(Multicopter):
         self._take_setpoint(now_ns, m.type_mask, position, Vec(m.vx, m.vy, m.vz))
 
     def _take_setpoint(self, now_ns: int, mask: int, position: Vec, velocity: Vec) -> None:
-        with_position = not mask & NO_POSITION and _finite(position)
-        with_velocity = not mask & NO_VELOCITY and _finite(velocity)
+        with_position = not mask & NO_POSITION and is_finite(position)
+        with_velocity = not mask & NO_VELOCITY and is_finite(velocity)
         if with_position:
             self._setpoint = (Leg.GOTO, position, velocity if with_velocity else ZERO)
         elif with_velocity:
@@ -323,7 +323,3 @@ class Px4Multicopter(Multicopter):
 
 
 UNSUPPORTED_FRAME = 8  # MAV_RESULT_COMMAND_UNSUPPORTED_MAV_FRAME: newer than the dialect
-
-
-def _finite(v: Vec) -> bool:
-    return isfinite(v.x) and isfinite(v.y) and isfinite(v.z)

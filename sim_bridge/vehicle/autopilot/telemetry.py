@@ -7,7 +7,7 @@ from math import atan2, cos, degrees, nan, sin, sqrt
 from typing import TYPE_CHECKING
 
 from onboard.core.math.vectors import Vec, clamp
-from onboard.wire.mavlink.frames import MavMessage, dialect
+from onboard.wire.mavlink.dialect import MavMessage, dialect
 from sim_bridge.vehicle.autopilot import health
 
 if TYPE_CHECKING:

@@ -15,7 +15,8 @@ import numpy as np
 
 from onboard.config import strict as config
 from onboard.config.strict import ConfigError
-from onboard.core.math.states import Limits
+from onboard.core.math.constants import STANDARD_GRAVITY
+from onboard.core.math.states import VehicleLimits
 from onboard.runtime.resources import configs
 from sim_bridge.vehicle.flight.axis import AxisLaw
 from sim_bridge.vehicle.flight.loop_analysis import closed_loop
@@ -72,7 +73,7 @@ class SpeedSpec(Part, frozen=True, kw_only=True):
     acceleration_max: float  # [m/s²]
     engine_lag: float  # [s]
     drag: float  # a_x of (33) [1/s]
-    gravity: float = 9.80665  # a_θ of (33)
+    gravity: float = STANDARD_GRAVITY  # a_θ of (33)
 
 
 class FollowSpec(Part, frozen=True, kw_only=True):
@@ -216,7 +217,7 @@ def build(spec: Spec, name: str) -> Aircraft:
     return Aircraft(spec, pitch, yaw, model)
 
 
-def within(model: PlaneModel, limits: Limits) -> PlaneModel:
+def within(model: PlaneModel, limits: VehicleLimits) -> PlaneModel:
     """The same aircraft under a vehicle's own limits (2)–(3): the narrower of both."""
     high = model.speed_max if isinf(limits.speed_max) else min(model.speed_max, limits.speed_max)
     return model._replace(

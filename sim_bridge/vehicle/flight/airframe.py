@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from math import asin, cos, sin, tan
 
-from onboard.core.math.states import Limits
+from onboard.core.math.angles import wrap
+from onboard.core.math.constants import STANDARD_GRAVITY
+from onboard.core.math.states import VehicleLimits
 from onboard.core.math.vectors import ZERO, Vec, clamp, norm, yaw_of
 from sim_bridge.vehicle.flight.aircraft import named, within
 from sim_bridge.vehicle.flight.plane import (
-    GRAVITY,
     SLOW,
     Command,
     PathModel,
@@ -21,7 +22,6 @@ from sim_bridge.vehicle.flight.plane import (
     step_plane,
     trimmed,
     true_airspeed,
-    wrap,
 )
 from sim_bridge.vehicle.motion import Air, Demand, Lateral, Motion
 
@@ -103,7 +103,7 @@ class Plane:
             position = Vec(position.x + left * v.x, position.y + left * v.y, position.z + left * v.z)
         turning = state.yaw.rate
         if model.path == PathModel.COORDINATED:
-            turning += GRAVITY * tan(state.bank) / max(state.speed, SLOW)
+            turning += STANDARD_GRAVITY * tan(state.bank) / max(state.speed, SLOW)
         return Motion(
             position,
             state.velocity,
@@ -116,7 +116,7 @@ class Plane:
 
 
 def fixed_wing(
-    name: str, limits: Limits, position: Vec, heading: float, speed: float, wind: Vec = ZERO
+    name: str, limits: VehicleLimits, position: Vec, heading: float, speed: float, wind: Vec = ZERO
 ) -> Plane:
     """The configured aircraft `name` (nose, slip, coordinated) under a vehicle's own limits.
 

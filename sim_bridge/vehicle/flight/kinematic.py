@@ -9,14 +9,15 @@ Deterministic: the same demands give the same motion to the last bit.
 
 from __future__ import annotations
 
-from math import asin, atan, cos, pi, radians, sin, sqrt, tan
+from math import asin, atan, cos, radians, sin, sqrt, tan
 from typing import NamedTuple
 
+from onboard.core.math.angles import wrap
+from onboard.core.math.constants import STANDARD_GRAVITY
 from onboard.core.math.vectors import ZERO, Vec, clamp, norm, scale, sub, yaw_of
 from onboard.game.scenario import Kind, VehicleSpec
 from sim_bridge.vehicle.motion import CALM, Air, Airframe, Demand, Lateral, Motion
 
-G = 9.80665  # [m/s²]
 ROLL_RATE = radians(180.0)  # [rad/s] how fast a plane banks
 HEADING_GAIN = 2.0  # [1/s] turn rate per heading error, below the limit
 MOVING = 0.3  # [m/s] a multicopter turns its nose along its course above this
@@ -33,11 +34,6 @@ class Ability(NamedTuple):
     pitch_max: float  # [rad]
     turn_rate: float  # [rad/s]
     acceleration: float  # [m/s²]
-
-
-def wrap(angle: float) -> float:
-    """The same angle in [−π, π)."""
-    return (angle + pi) % (2.0 * pi) - pi
 
 
 def toward(value: float, target: float, most: float) -> float:
@@ -89,8 +85,8 @@ class KinematicMulticopter:
             yaw = wrap(old.yaw + clamp(error, -a.turn_rate * dt, a.turn_rate * dt))
         c, s = cos(yaw), sin(yaw)
         ax, ay = (velocity.x - old.velocity.x) / dt, (velocity.y - old.velocity.y) / dt
-        roll = atan((c * ay - s * ax) / G)  # thrust leans into the acceleration
-        pitch = -atan((c * ax + s * ay) / G)
+        roll = atan((c * ay - s * ax) / STANDARD_GRAVITY)  # thrust leans into the acceleration
+        pitch = -atan((c * ax + s * ay) / STANDARD_GRAVITY)
         rates = Vec((roll - old.roll) / dt, (pitch - old.pitch) / dt, wrap(yaw - old.yaw) / dt)
         airspeed = norm(sub(velocity, air.wind))
         self._motion = Motion(position, velocity, airspeed, roll, pitch, yaw, rates)
@@ -126,9 +122,9 @@ class KinematicPlane:
         most = a.acceleration * dt
         speed = toward(self._speed, clamp(demand.airspeed, a.speed_min, a.speed_max), most)
         flying = max(speed, 1.0)
-        bank_max = atan(a.turn_rate * flying / G)
+        bank_max = atan(a.turn_rate * flying / STANDARD_GRAVITY)
         roll = toward(self._roll, clamp(self._bank(demand, air, flying), -bank_max, bank_max), ROLL_RATE * dt)
-        turn = clamp(G * tan(roll) / flying, -a.turn_rate, a.turn_rate)
+        turn = clamp(STANDARD_GRAVITY * tan(roll) / flying, -a.turn_rate, a.turn_rate)
         middle = self._heading + 0.5 * turn * dt
         heading = wrap(self._heading + turn * dt)
         low, high = flying * sin(a.pitch_min), flying * sin(a.pitch_max)
@@ -167,7 +163,7 @@ class KinematicPlane:
         rate = clamp(
             HEADING_GAIN * wrap(heading - self._heading), -self._ability.turn_rate, self._ability.turn_rate
         )
-        return atan(rate * speed / G)
+        return atan(rate * speed / STANDARD_GRAVITY)
 
 
 def crab(course: float, airspeed: float, wind: Vec) -> float:

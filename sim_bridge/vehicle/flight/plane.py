@@ -13,13 +13,14 @@ of (33)–(35): a_x along, k_β across, b_y vertically. Mean wind and shear carr
 from __future__ import annotations
 
 from enum import IntEnum
-from math import asin, atan, cos, floor, pi, sin, sqrt, tan
+from math import asin, atan, cos, sin, sqrt, tan
 from typing import NamedTuple
 
+from onboard.core.math.angles import wrap
+from onboard.core.math.constants import STANDARD_GRAVITY
 from onboard.core.math.vectors import ZERO, Vec, clamp
 from sim_bridge.vehicle.flight.axis import AxisLaw, AxisModel, AxisState, rate_asked, step_axis
 
-GRAVITY = 9.80665  # [m/s²]
 SLOW = 1.0  # [m/s] below it a turn is reckoned at this speed
 
 
@@ -112,11 +113,6 @@ class Command(NamedTuple):
     speed: float  # [m/s; air]
 
 
-def wrap(angle: float) -> float:
-    """`angle` in [−π, π) [rad]."""
-    return angle - 2.0 * pi * floor((angle + pi) / (2.0 * pi))
-
-
 def start_state(position: Vec, heading: float, speed: float, wind: Vec) -> PlaneState:
     """Level, trimmed flight through air that moves with `wind`."""
     velocity = Vec(speed * cos(heading) + wind.x, speed * sin(heading) + wind.y, wind.z)
@@ -187,17 +183,18 @@ def step_turn(
             wanted = command.angle
         else:
             error = wrap(command.angle - state.course)
-            wanted = atan(speed * follow.turn_gain * error / GRAVITY)
+            wanted = atan(speed * follow.turn_gain * error / STANDARD_GRAVITY)
         wanted = clamp(wanted, -follow.bank_limit, follow.bank_limit)
         step = clamp(follow.bank * (wanted - state.bank), -follow.bank_step, follow.bank_step)
         bank = state.bank + step
         yaw = step_axis(
             state.yaw, model.yaw, model.yaw_law, rate_asked(model.yaw_law, -state.yaw.angle), across, 0.0
         )
-        return yaw, state.course + model.dt * GRAVITY * tan(bank) / speed, bank, step / model.dt
+        return yaw, state.course + model.dt * STANDARD_GRAVITY * tan(bank) / speed, bank, step / model.dt
     if command.steer == Steer.ROLL:  # the turn a bank would give, within what the rudder holds
         bank = clamp(command.angle, -follow.bank_limit, follow.bank_limit)
-        rate = clamp(GRAVITY * tan(bank) / speed, -model.yaw_law.rate_limit, model.yaw_law.rate_limit)
+        limit = model.yaw_law.rate_limit
+        rate = clamp(STANDARD_GRAVITY * tan(bank) / speed, -limit, limit)
     elif (
         model.path == PathModel.SLIP and command.steer == Steer.COURSE
     ):  # lead with the nose: sideslip turns the path

@@ -15,8 +15,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from onboard.core.game.advance import FREE, Params, begin, evader_view, moved, pursuer_view, seats
-from onboard.core.math.states import Vehicle
+from onboard.core.game.advance import Conditions, begin, decide_pursuers, moved, still_view
+from onboard.core.game.rules import Control, Rules, Target
+from onboard.core.game.views import sighted
+from onboard.core.math.states import FREE, Vehicle
 from onboard.core.math.vectors import NORTH, ZERO, Vec, along, angle_between, distance, dot, scale, unit
 from onboard.pilot.predictor import TrackPredictor, Trainer
 from onboard.runtime.plugins import evader_strategy, pursuer_strategy
@@ -78,7 +80,8 @@ def play(seed: int, carry: Carry, weaving: bool) -> Played:
     bearings, ranges = rng.uniform(-pi, pi, 6), rng.uniform(400.0, 900.0, 5)
     places = [Vec(r * cos(b), r * sin(b), 0.0) for r, b in zip(ranges, bearings[:5], strict=True)]
     target = Vec(3500.0 * cos(bearings[5]), 3500.0 * sin(bearings[5]), 0.0)
-    params = Params(0.01, SAFE, 100.0, 1.0, 0.01, DT, SECONDS, 0.0, True, True, target)
+    rules = Rules(0.01, SAFE, epsilon_min=0.01, horizon=SECONDS, planar=True)
+    conditions = Conditions(rules, Target(True, target), Control(DT))
     evader = Vehicle(ZERO, scale(unit(target, NORTH), 50.0), 50.0)
     game = begin(evader, tuple(Vehicle(p, ZERO, 40.0) for p in places), FREE, (FREE,) * 5)
     flee, chase = evader_strategy(""), pursuer_strategy("")
@@ -96,7 +99,7 @@ def play(seed: int, carry: Carry, weaving: bool) -> Played:
             track.add(seen.t, seen.place, None, NOISE)
         if carry is by_predictor:
             trainer.advance(now, {1: track}, 1)
-        wanted = flee(evader_view(game, params)).direction
+        wanted = flee(still_view(game, conditions)).direction
         if weaving:
             swing = 0.7 * sin(2.0 * pi * now / 8.0)
             c, s = cos(swing), sin(swing)
@@ -109,8 +112,9 @@ def play(seed: int, carry: Carry, weaving: bool) -> Played:
             place, velocity = place._replace(z=0.0), velocity._replace(z=0.0)  # a plane game
             heading = unit(velocity, NORTH)
             believed = Vehicle(place, scale(heading, 50.0), 50.0)
-            views = [pursuer_view(seat, believed, heading, params) for seat in seats(game, params)]
-            pursuers = tuple(moved(p, chase(v), DT) for p, v in zip(game.pursuers, views, strict=True))
+            sighting = sighted(believed, heading, conditions.control.lookahead)
+            wanted_of = decide_pursuers(game, sighting, conditions, chase)
+            pursuers = tuple(moved(p, d, DT) for p, d in zip(game.pursuers, wanted_of, strict=True))
             if now > 10.0:
                 errors.append(distance(place, game.evader.position))
         game = game._replace(

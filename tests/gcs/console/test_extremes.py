@@ -39,7 +39,7 @@ said = st.one_of(
     }).map(lambda d: decision(2, **d)),
     st.fixed_dictionaries({"position": triple, "velocity": triple}).map(lambda d: track(1, **d)),
     st.fixed_dictionaries({
-        "capture_radius": number, "safety_distance": number, "separation": number, "fence": st.none() | fence,
+        "R": number, "rho": number, "separation": number, "fence": st.none() | fence,
         "planar": st.booleans(), "pursuer_speed": number,
     }).map(lambda d: setup(3, **d)),
     st.builds(swarm.Outcome, words, number, whole, number, whole),

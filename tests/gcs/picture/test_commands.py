@@ -11,12 +11,13 @@ import pytest
 from gcs.picture.commands import EXPIRY_NS, RETRY_NS, CommandBook
 from gcs.picture.values import CommandView
 from gcs.station import Station
+from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.bus_memory import MemoryBroker
 from onboard.runtime.impairment import Impairment
 from onboard.runtime.loop import virtual_clock
 from onboard.wire.bus.messages import Command, CommandKind, CommandReply
 from tests.support.crews import Crew
-from tests.support.radio import GAME, NS, START_NS
+from tests.support.radio import GAME, START_NS
 from tests.support.virtual import virtual
 
 
@@ -45,9 +46,9 @@ def test_a_command_is_repeated_every_80_ms_until_each_has_confirmed():
     assert legs(book) == {2: "pending", 3: "confirmed"}
     assert [due.id for due in book.due(START_NS + 2 * RETRY_NS)] == [2]
     book.reply(reply("confirmed"), START_NS + 3 * RETRY_NS)
-    assert book.due(START_NS + 10 * NS) == []
-    assert not book.busy(START_NS + 10 * NS)
-    view = book.view("c1", START_NS + 10 * NS)
+    assert book.due(START_NS + 10 * NS_PER_S) == []
+    assert not book.busy(START_NS + 10 * NS_PER_S)
+    view = book.view("c1", START_NS + 10 * NS_PER_S)
     assert view is not None
     assert view.confirmed
     assert [leg.took_s for leg in view.legs] == [pytest.approx(0.24), pytest.approx(0.08)]
@@ -56,9 +57,9 @@ def test_a_command_is_repeated_every_80_ms_until_each_has_confirmed():
 def test_the_pace_falls_when_nobody_answers_but_an_abort_never_gives_up():
     book = CommandBook()
     book.issue(order(), (2,), START_NS)
-    sent = sum(len(book.due(START_NS + n * NS // 100)) for n in range(60 * 100))
+    sent = sum(len(book.due(START_NS + n * NS_PER_S // 100)) for n in range(60 * 100))
     assert 3 / 0.08 < sent < 3 / 0.08 + 62
-    assert len(book.due(START_NS + 3600 * NS)) == 1
+    assert len(book.due(START_NS + 3600 * NS_PER_S)) == 1
 
 
 @pytest.mark.parametrize("kind", [CommandKind.START, CommandKind.RESUME])
@@ -73,16 +74,16 @@ def test_what_sets_a_vehicle_off_expires(kind):
 def test_a_newer_command_supersedes_what_is_open_to_the_same_vehicles_alone():
     book = CommandBook()
     book.issue(order(CommandKind.HOLD), (2, 3), START_NS)
-    book.issue(order(CommandKind.RETURN, "c2"), (3,), START_NS + NS)
+    book.issue(order(CommandKind.RETURN, "c2"), (3,), START_NS + NS_PER_S)
     assert legs(book) == {2: "sent", 3: "superseded"}
-    assert {(d.id, d.command.command_id) for d in book.due(START_NS + NS)} == {(2, "c1"), (3, "c2")}
+    assert {(d.id, d.command.command_id) for d in book.due(START_NS + NS_PER_S)} == {(2, "c1"), (3, "c2")}
 
 
 def test_nothing_sets_a_vehicle_off_while_an_abort_is_not_confirmed():
     book = CommandBook()
     book.issue(order(), (2, 3), START_NS)
     book.reply(reply("confirmed", 3), START_NS)
-    book.issue(order(CommandKind.RESUME, "c2"), (2, 3), START_NS + NS)
+    book.issue(order(CommandKind.RESUME, "c2"), (2, 3), START_NS + NS_PER_S)
     assert legs(book) == {2: "sent", 3: "confirmed"}
     assert legs(book, "c2") == {2: "refused", 3: "sent"}
 

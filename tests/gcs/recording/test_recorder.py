@@ -16,8 +16,9 @@ from hypothesis import strategies as st
 from mcap.reader import make_reader
 
 from gcs.recording.reader import Recording
-from gcs.recording.recorder import NS, Recorder, Status, remark_of
+from gcs.recording.recorder import Recorder, Status, remark_of
 from onboard.config.strict import ConfigError
+from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus.messages import Severity
 from tests.support.chase import EPOCH_NS, Item, chase
 from tests.support.recordings import CHILD, kill_while_recording, read
@@ -156,14 +157,14 @@ def test_without_close_the_file_is_whole_but_for_the_last_second(tmp_path: Path)
     entries = list(recording.entries())
     assert recording.remarks == []
     assert [tuple(e) for e in entries] == [tuple(item) for item in flown[: len(entries)]]
-    assert flown[-1].stamp_ns - entries[-1].stamp_ns < NS
+    assert flown[-1].stamp_ns - entries[-1].stamp_ns < NS_PER_S
     with (tmp_path / "flight.mcap").open("rb") as file:
         assert len(list(make_reader(file).iter_messages())) == recording.messages
 
 
 def test_silence_on_the_bus_still_puts_what_came_on_the_disk(tmp_path: Path) -> None:
     recorder = recorded(tmp_path / "flight.mcap", [Item("x", b"1", EPOCH_NS)])
-    recorder.tick(EPOCH_NS + NS)
+    recorder.tick(EPOCH_NS + NS_PER_S)
     assert len(list(Recording(tmp_path / "flight.mcap").entries())) == 1
 
 

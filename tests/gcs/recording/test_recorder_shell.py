@@ -15,29 +15,28 @@ from gcs.recording.shell import Keeper
 from gcs.recording.tlog import TlogRecorder
 from gcs.station import Station
 from onboard.config.strict import ConfigError
+from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.bus_memory import MemoryBroker
 from onboard.runtime.links import memory_pair
 from onboard.runtime.loop import virtual_clock
 from onboard.runtime.run_folder import new_run
 from onboard.wire.bus import topics
 from onboard.wire.bus.topics import Delivery
-from onboard.wire.mavlink.frames import Sender, dialect
+from onboard.wire.mavlink.dialect import DialectSender, dialect
 from onboard.wire.mavlink.tlog import read_tlog
 from tests.support.chase import EPOCH_NS, chase
 from tests.support.virtual import virtual
 
-NS = 1_000_000_000
 
-
-def heartbeat(sender: Sender) -> bytes:
+def heartbeat(sender: DialectSender) -> bytes:
     return sender.pack(dialect.MAVLink_heartbeat_message(2, 3, 81, 4, 4, 3))
 
 
 def test_each_vehicles_frames_land_in_its_own_log_and_pymavlink_reads_it(tmp_path: Path) -> None:
     logs = TlogRecorder(tmp_path)
-    one, two = Sender(1, 1), Sender(2, 1)
+    one, two = DialectSender(1, 1), DialectSender(2, 1)
     for second in range(10):
-        at_ns = EPOCH_NS + second * NS
+        at_ns = EPOCH_NS + second * NS_PER_S
         logs.datagram(heartbeat(one), "a", at_ns)
         logs.datagram(heartbeat(two) + heartbeat(two), "b", at_ns + 1000)
         logs.datagram(b"noise", "c", at_ns)
@@ -49,14 +48,14 @@ def test_each_vehicles_frames_land_in_its_own_log_and_pymavlink_reads_it(tmp_pat
         assert (message.get_type(), message.get_srcSystem()) == ("HEARTBEAT", 2)
         stamps.append(message._timestamp)
     assert len(stamps) == 20
-    assert stamps[0] == pytest.approx(EPOCH_NS / NS, abs=1e-3)
+    assert stamps[0] == pytest.approx(EPOCH_NS / NS_PER_S, abs=1e-3)
     assert logs.causes["garbage_bytes"] == 50
 
 
 def test_a_log_that_exists_is_left_alone(tmp_path: Path) -> None:
     (tmp_path / "vehicle-1.tlog").write_bytes(b"mine")
     logs = TlogRecorder(tmp_path)
-    logs.datagram(heartbeat(Sender(1, 1)), "a", EPOCH_NS)
+    logs.datagram(heartbeat(DialectSender(1, 1)), "a", EPOCH_NS)
     logs.close()
     assert (tmp_path / "vehicle-1.tlog").read_bytes() == b"mine"
     assert len(list(read_tlog((tmp_path / "vehicle-1-2.tlog").read_bytes()))) == 1
@@ -74,13 +73,13 @@ def test_a_full_disk_stops_a_log_and_room_continues_it_without_a_gap(tmp_path: P
         return len(fits)
 
     logs = TlogRecorder(tmp_path, write=write)
-    sender = Sender(1, 1)
+    sender = DialectSender(1, 1)
     for second in range(10):
-        logs.datagram(heartbeat(sender), "a", EPOCH_NS + second * NS)
+        logs.datagram(heartbeat(sender), "a", EPOCH_NS + second * NS_PER_S)
     assert logs.trouble == "no space left on device"
     assert len(taken) == 100
     room = 10_000
-    logs.tick(EPOCH_NS + 20 * NS)
+    logs.tick(EPOCH_NS + 20 * NS_PER_S)
     assert logs.trouble == ""
     causes: Counter[str] = Counter()
     assert len(list(read_tlog(bytes(taken), causes))) == 10
@@ -100,7 +99,7 @@ async def test_a_station_with_a_keeper_records_bus_journal_and_links(tmp_path: P
     async with asyncio.TaskGroup() as tasks:
         running = [tasks.create_task(station.run()), tasks.create_task(keeper.run())]
         await asyncio.sleep(0.1)
-        sender = Sender(2, 1)
+        sender = DialectSender(2, 1)
         for item in chase(2.0, story=False):
             if item.key.split("/")[2] != "gcs":
                 agent.publish(item.key, item.payload, topics.topic_of(item.key).delivery)  # type: ignore[union-attr]

@@ -14,15 +14,14 @@ from gcs.recording.recorder import Recorder
 from gcs.replay.player import Player
 from gcs.replay.source import ReplaySource, open_run
 from onboard.config.strict import ConfigError
+from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus.messages import CommandKind
 from tests.support.chase import EPOCH_NS, Item, chase
-
-NS = 1_000_000_000
 
 
 def flight_with_trouble() -> list[Item]:
     """40 s in which vehicle 2 falls silent for 5 s: lost, then back."""
-    silent = range(EPOCH_NS + 8 * NS, EPOCH_NS + 13 * NS)
+    silent = range(EPOCH_NS + 8 * NS_PER_S, EPOCH_NS + 13 * NS_PER_S)
     flown = chase(40.0)
     return [i for i in flown if not ("/vehicles/2/" in i.key and i.stamp_ns in silent)]
 
@@ -66,19 +65,19 @@ def test_a_replay_gives_the_live_picture_alert_for_alert(run: Path) -> None:
 
 def test_time_passes_at_the_chosen_speed_and_stops_at_the_end(run: Path) -> None:
     player = Player(open_run(run))
-    player.advance(NS)
-    assert player.at_ns - player.start_ns == NS
+    player.advance(NS_PER_S)
+    assert player.at_ns - player.start_ns == NS_PER_S
     assert player.faster() == 2.0
-    player.advance(NS)
-    assert player.at_ns - player.start_ns == 3 * NS
+    player.advance(NS_PER_S)
+    assert player.at_ns - player.start_ns == 3 * NS_PER_S
     assert player.faster(-3) == 0.25
-    player.advance(4 * NS)
-    assert player.at_ns - player.start_ns == 4 * NS
+    player.advance(4 * NS_PER_S)
+    assert player.at_ns - player.start_ns == 4 * NS_PER_S
     player.pause()
-    player.advance(NS)
-    assert player.at_ns - player.start_ns == 4 * NS
+    player.advance(NS_PER_S)
+    assert player.at_ns - player.start_ns == 4 * NS_PER_S
     player.pause(False)
-    player.advance(1000 * NS)
+    player.advance(1000 * NS_PER_S)
     assert player.ended
     assert player.paused
     player.pause(False)
@@ -96,11 +95,11 @@ def test_wherever_one_jumps_the_picture_is_that_of_the_instant(run: Path, jumps:
 
 def test_steps_walk_the_grid_both_ways(run: Path) -> None:
     player = Player(open_run(run))
-    player.seek(player.start_ns + 20 * NS + 12345)
+    player.seek(player.start_ns + 20 * NS_PER_S + 12345)
     player.step()
     forward = player.at_ns
     player.step()
-    assert player.at_ns - forward == NS // 10
+    assert player.at_ns - forward == NS_PER_S // 10
     player.step(-1)
     assert player.at_ns == forward
     assert player.paused
@@ -110,8 +109,8 @@ def test_steps_walk_the_grid_both_ways(run: Path) -> None:
 def test_a_long_way_back_uses_checkpoints(run: Path) -> None:
     player = Player(open_run(run))
     player.seek(player.end_ns)
-    assert [round((at - player.start_ns) / NS) for at, _ in player._checkpoints] == [30]
-    player.seek(player.start_ns + 35 * NS)
+    assert [round((at - player.start_ns) / NS_PER_S) for at, _ in player._checkpoints] == [30]
+    player.seek(player.start_ns + 35 * NS_PER_S)
     assert player.picture() == live(player.at_ns)
 
 
@@ -120,8 +119,8 @@ def test_the_consoles_keys_steer_it(run: Path) -> None:
     source = ReplaySource(Player(open_run(run)), "chase", lambda: now)
     assert source.title == "replay of chase"
     assert {key.action for key in source.keys} >= {"pause", "on", "step", "faster", "start"}
-    now = 2 * NS
-    assert source.picture().now_ns == source.player.start_ns + 2 * NS
+    now = 2 * NS_PER_S
+    assert source.picture().now_ns == source.player.start_ns + 2 * NS_PER_S
     assert source.status() == "replay ×1  0:02.0 of 0:40.0"
     source.act("on")
     assert source.status().startswith("replay ×1  0:12.0")

@@ -10,14 +10,13 @@ from gcs.recording.shell import Keeper
 from gcs.replay.player import Player
 from gcs.replay.source import open_run
 from gcs.station import Station
+from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.bus_memory import MemoryBroker
 from onboard.runtime.loop import virtual_clock
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import CommandKind
 from tests.support.chase import EPOCH_NS, chase
 from tests.support.virtual import virtual
-
-NS = 1_000_000_000
 
 
 @virtual
@@ -40,13 +39,13 @@ async def test_a_replay_shows_what_the_live_station_showed(tmp_path: Path) -> No
         for item in chase(20.0):
             topic = topics.topic_of(item.key)
             flown_ns = item.stamp_ns - EPOCH_NS
-            if topic is None or ("/vehicles/2/" in item.key and 8 * NS < flown_ns < 11 * NS):
+            if topic is None or ("/vehicles/2/" in item.key and 8 * NS_PER_S < flown_ns < 11 * NS_PER_S):
                 continue
             ahead = began_ns + flown_ns - clock.wall_ns()
             if ahead > 0:
-                await asyncio.sleep(ahead / NS)
+                await asyncio.sleep(ahead / NS_PER_S)
             agents.publish(item.key, item.payload, topic.delivery)
-            if flown_ns > 9.2 * NS and not station.picture().commands:
+            if flown_ns > 9.2 * NS_PER_S and not station.picture().commands:
                 station.command(CommandKind.HOLD, (1, 2, 3))
                 station.acknowledge("")
         await asyncio.sleep(1.0)

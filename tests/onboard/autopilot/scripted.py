@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import atan2, cos, pi, sin, tan
+from math import cos, pi, sin, tan
 from typing import Any
 
 from onboard.autopilot.base import Adapter, Note, Setpoint, Telemetry
 from onboard.core.math.vectors import Vec
-from onboard.wire.mavlink.frames import MavMessage
+from onboard.wire.mavlink.commands import CommandInt, CommandLong, Outgoing, RollTarget
 from onboard.wire.mavlink.modes import MODES, Kind, mode_name
 from onboard.wire.mavlink.values import CommandAck
 
@@ -25,7 +25,7 @@ class Scripted:
         self.now = 100.0
         self.result = 0  # to every mode and arming command
         self.deaf = False  # hears nothing
-        self.sent: list[tuple[float, MavMessage]] = []
+        self.sent: list[tuple[float, Outgoing]] = []
         self.notes: list[Note] = []
         self.beat(mode)
 
@@ -37,7 +37,7 @@ class Scripted:
 
     def fly(
         self, seconds: float, setpoint: Setpoint | Callable[[float], Setpoint] | None
-    ) -> list[MavMessage]:
+    ) -> list[Outgoing]:
         """Let time pass; what was sent meanwhile."""
         first = len(self.sent)
         for _ in range(round(seconds / DT)):
@@ -54,21 +54,21 @@ class Scripted:
                     self.hear(message)
         return [message for _, message in self.sent[first:]]
 
-    def hear(self, message: MavMessage) -> None:
+    def hear(self, message: Outgoing) -> None:
         """Answer a command."""
-        if message.get_type() == "COMMAND_LONG" and message.command == 176:
-            number = int(message.param2)
+        if isinstance(message, CommandLong) and message.command == 176:
+            number = int(message.params[1])
             if self.kind is Kind.PX4_MULTICOPTER:
-                number = number << 16 | int(message.param3) << 24
+                number = number << 16 | int(message.params[2]) << 24
             assert number in MODES[self.kind].values()
             self.answer(176)
             if self.result == 0:
                 self.beat(mode_name(self.kind, number))
-        elif message.get_type() == "COMMAND_LONG" and message.command == 400:
+        elif isinstance(message, CommandLong) and message.command == 400:
             self.answer(400)
             if self.result == 0:
                 self.beat(armed=True)
-        elif message.get_type() == "COMMAND_INT":
+        elif isinstance(message, CommandInt):
             self.answer(message.command)
 
     def answer(self, command: int) -> None:
@@ -92,15 +92,15 @@ class Plane(Scripted):
         self.climb = 0.0
         self.step_at = self.now
 
-    def hear(self, message: MavMessage) -> None:
+    def hear(self, message: Outgoing) -> None:
         """Targets too."""
         super().hear(message)
-        if message.get_type() == "SET_ATTITUDE_TARGET":
-            self.roll_wanted = 2.0 * atan2(message.q[1], message.q[0])
-        elif message.get_type() == "COMMAND_INT" and message.command == 43001:
+        if isinstance(message, RollTarget):
+            self.roll_wanted = message.roll
+        elif isinstance(message, CommandInt) and message.command == 43001:
             self.altitude_wanted = message.z
-        elif message.get_type() == "COMMAND_INT" and message.command == 43000:
-            self.speed_wanted = message.param2
+        elif isinstance(message, CommandInt) and message.command == 43000:
+            self.speed_wanted = message.params[1]
 
     def move(self) -> None:
         """One step of the aircraft (Euler, 50 ms)."""

@@ -10,7 +10,7 @@ from onboard.autopilot.base import Envelope, Refusal
 from onboard.autopilot.choose import adapter_for
 from onboard.autopilot.parameters import envelope_from, findings, gcs_failsafe
 from onboard.wire.mavlink.commands import Target
-from onboard.wire.mavlink.frames import dialect
+from onboard.wire.mavlink.dialect import dialect
 from onboard.wire.mavlink.modes import Kind
 from onboard.wire.mavlink.telemetry import decode
 from onboard.wire.mavlink.values import Heartbeat

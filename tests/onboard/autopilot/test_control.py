@@ -12,7 +12,7 @@ from onboard.autopilot.arduplane import ArduPlaneAdapter
 from onboard.autopilot.base import Adapter, Envelope, ReleaseMode, Setpoint, Stage, Telemetry
 from onboard.autopilot.velocity import VelocityAdapter
 from onboard.core.math.vectors import Vec
-from onboard.wire.mavlink.commands import Target
+from onboard.wire.mavlink.commands import CommandLong, Target, VelocityTarget
 from onboard.wire.mavlink.modes import MODES, Kind
 from onboard.wire.mavlink.values import CommandAck
 
@@ -70,18 +70,17 @@ def test_setpoints_leave_only_where_they_count_and_nothing_is_armed(
             now = round(now + 0.02, 3)
             before = adapter.stage
             for message in adapter.step(now, telemetry, Setpoint(Vec(15.0, 1.0, 0.0))).messages:
-                name = message.get_type()
-                if name == "COMMAND_LONG":
+                if isinstance(message, CommandLong):
                     assert adapter.stage in (Stage.ENTERING, Stage.LEAVING)
                     if message.command == 176:
                         asked.append(now)
                     else:  # the heartbeat that proves it
-                        assert (message.command, message.param1) == (512, 0)
+                        assert (message.command, message.params[0]) == (512, 0)
                 else:
                     early = kind is Kind.PX4_MULTICOPTER and adapter.stage in (Stage.IDLE, Stage.ENTERING)
                     assert adapter.stage is Stage.ACTIVE or early
                     assert early or telemetry.mode == adapter.guided_mode
-                    assert (name == "SET_POSITION_TARGET_LOCAL_NED") == (kind is not Kind.ARDUPLANE)
+                    assert isinstance(message, VelocityTarget) == (kind is not Kind.ARDUPLANE)
             if before in (Stage.TAKEN, Stage.LEFT) and adapter.stage is Stage.ACTIVE:
                 assert telemetry.mode == adapter.guided_mode
 

@@ -13,9 +13,10 @@ from onboard.autopilot.telemetry_state import Observer
 from onboard.autopilot.timesync import TimesyncEstimator
 from onboard.wire.mavlink import commands
 from onboard.wire.mavlink.commands import Target
-from onboard.wire.mavlink.frames import Framer, MavMessage, Packet, Sender, dialect, frame_size
+from onboard.wire.mavlink.dialect import DialectSender, dialect
+from onboard.wire.mavlink.frames import Framer, Packet
+from onboard.wire.mavlink.ids import frame_size
 from onboard.wire.mavlink.modes import Kind
-from onboard.wire.mavlink.telemetry import decode
 from onboard.wire.mavlink.values import Timesync
 
 PLANE = NEEDS[Kind.ARDUPLANE]
@@ -51,11 +52,11 @@ class Radio:
         self.capacity = capacity
         self.asked: dict[str, float] = {}
 
-    def hear(self, messages: list[MavMessage]) -> None:
+    def hear(self, messages: list[commands.CommandLong]) -> None:
         names = {number: kind.msgname for number, kind in dialect.mavlink_map.items()}
         for message in messages:
-            interval = message.param2
-            self.asked[names[int(message.param1)]] = 1e6 / interval if interval > 0 else 0.0
+            interval = message.params[1]
+            self.asked[names[int(message.params[0])]] = 1e6 / interval if interval > 0 else 0.0
 
     def arrived(self) -> dict[str, float]:
         share = min(1.0, self.capacity / max(load(self.asked), 1.0))
@@ -85,7 +86,7 @@ def test_a_lost_request_is_asked_again_without_slowing_the_rest() -> None:
     assert len(first) == len(PLANE)
     arrived = {need.message: need.rate for need in PLANE if need.message != "WIND"}
     again = asking.step(4.0, arrived)
-    assert [message.param1 for message in again] == [dialect.MAVLINK_MSG_ID_WIND]
+    assert [message.params[0] for message in again] == [dialect.MAVLINK_MSG_ID_WIND]
     assert asking.rates["ATTITUDE"] == 20.0
     asking.forget()
     assert len(asking.step(5.0, arrived)) == len(PLANE)
@@ -106,15 +107,16 @@ def test_what_is_lost_on_the_way_by_chance_is_no_reason_to_ask_for_less(quality:
     assert min(asking.rates.values()) >= 0.5
 
 
-def attitude(sender: Sender, boot_ms: int) -> Packet:
+def attitude(sender: DialectSender, boot_ms: int) -> Packet:
     raw = sender.pack(dialect.MAVLink_attitude_message(boot_ms, 0, 0, boot_ms * 1e-4, 0, 0, 0))
     return Framer().feed(raw)[0]
 
 
 def test_another_link_takes_over_before_telemetry_counts_as_lost_and_gives_back() -> None:
     """Two ports of one autopilot at 20 Hz; the first is cut from 5 s to 9 s."""
-    ports, redundant, observer = (Sender(1, 1), Sender(1, 1)), Redundant(2), Observer(1)
-    ports[1]._mav.seq = 77
+    ports, redundant, observer = (DialectSender(1, 1), DialectSender(1, 1)), Redundant(2), Observer(1)
+    for _ in range(77):
+        attitude(ports[1], 0)
     used: list[tuple[float, int]] = []
     worst = 0.0
     for k in range(1, 400):
@@ -137,7 +139,7 @@ def test_another_link_takes_over_before_telemetry_counts_as_lost_and_gives_back(
 
 
 def test_the_same_frame_by_two_ways_counts_once_and_an_answer_from_either() -> None:
-    redundant, sender = Redundant(2), Sender(1, 1)
+    redundant, sender = Redundant(2), DialectSender(1, 1)
     frame = attitude(sender, 1000)
     assert redundant.take(1.0, 0, frame).use
     assert not redundant.take(1.01, 1, frame).use
@@ -156,10 +158,8 @@ class Peer:
     def __init__(self, offset_ns: int) -> None:
         self.offset_ns = offset_ns
 
-    def answer(self, question: MavMessage, arrives_ns: int) -> Timesync:
-        value = decode(commands.timesync(question.ts1, arrives_ns + self.offset_ns))
-        assert isinstance(value, Timesync)
-        return value
+    def answer(self, question: Timesync, arrives_ns: int) -> Timesync:
+        return Timesync(arrives_ns + self.offset_ns, question.asked_ns)
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -195,6 +195,6 @@ def test_questions_of_others_are_answered_and_their_answers_ignored() -> None:
     estimator = TimesyncEstimator()
     reply = estimator.take(500, Timesync(0, 123))
     assert reply is not None
-    assert (reply.tc1, reply.ts1) == (500, 123)
+    assert reply == Timesync(answered_ns=500, asked_ns=123)
     estimator.take(600, Timesync(999, 42))  # an answer to a question that was not ours
     assert not estimator.offset().known

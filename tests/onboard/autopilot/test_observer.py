@@ -5,13 +5,15 @@ from __future__ import annotations
 import pytest
 
 from onboard.autopilot import health
-from onboard.autopilot.base import NEVER, Refusal, Telemetry
+from onboard.autopilot.base import Refusal, Telemetry
 from onboard.autopilot.choose import adapter_for
 from onboard.autopilot.telemetry_state import Observer
+from onboard.core.math.constants import NEVER
 from onboard.core.math.vectors import norm
 from onboard.wire.geodesy import Frame
 from onboard.wire.mavlink.commands import Target
-from onboard.wire.mavlink.frames import Framer, MavMessage, Packet, Sender, dialect
+from onboard.wire.mavlink.dialect import DialectSender, MavMessage, dialect
+from onboard.wire.mavlink.frames import Framer, Packet
 from onboard.wire.mavlink.modes import Kind
 from onboard.wire.mavlink.tlog import read_tlog
 from onboard.wire.mavlink.values import Heartbeat
@@ -19,7 +21,7 @@ from tests.support.paths import RECORDINGS
 
 
 def packet(message: MavMessage, sequence: int = 0, system: int = 1, component: int = 1) -> Packet:
-    sender = Sender(system, component)
+    sender = DialectSender(system, component)
     sender._mav.seq = sequence
     (found,) = Framer().feed(sender.pack(message))
     return found

@@ -10,20 +10,21 @@ import numpy as np
 import pytest
 
 from onboard.autopilot import health
-from onboard.autopilot.arduplane import wrapped
 from onboard.autopilot.base import Envelope, Note, Refusal, ReleaseMode, Setpoint, Stage
 from onboard.autopilot.choose import adapter_for
 from onboard.autopilot.stream_rates import Asking
 from onboard.autopilot.telemetry_state import Observer
 from onboard.autopilot.timesync import TimesyncEstimator
+from onboard.core.math.angles import wrap
+from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import ZERO, Vec
 from onboard.game.scenario import Kind
 from onboard.wire.mavlink import commands
-from onboard.wire.mavlink.commands import Target
-from onboard.wire.mavlink.frames import Framer, MavMessage, Sender
+from onboard.wire.mavlink.commands import Outgoing, SetpointMessage, Target
+from onboard.wire.mavlink.frames import Framer, Sender
 from onboard.wire.mavlink.modes import Kind as Autopilot
 from onboard.wire.mavlink.values import CommandAck, Heartbeat, Timesync
-from tests.support.flown import ORIGIN, SECOND, Flown
+from tests.support.flown import ORIGIN, Flown
 
 KINDS = pytest.mark.parametrize("kind", list(Kind), ids=lambda kind: kind.value)
 HOLD = {Kind.PX4: "HOLD", Kind.ARDUCOPTER: "LOITER", Kind.ARDUPLANE: "LOITER"}
@@ -77,7 +78,7 @@ class Flight:
 
     @property
     def now(self) -> float:
-        return self.flown.now_ns / SECOND
+        return self.flown.now_ns / NS_PER_S
 
     def fly(self, seconds: float, wanted: Vec | Callable[[float], Vec] | None) -> None:
         """Let time pass in steps of 50 ms; `wanted` is relative to the air."""
@@ -101,14 +102,14 @@ class Flight:
         self._asked_at, self._counts = self.now, {}
         for message in self.asking.step(self.now, rates):
             self._send(message)
-        self._send(commands.heartbeat())
+        self._send(commands.OwnHeartbeat())
         self._send(self.timesync.ask(self.flown.now_ns))
 
-    def _send(self, message: MavMessage) -> None:
+    def _send(self, message: Outgoing) -> None:
         frame = self.sender.pack(message)
         if self.rng.random() >= self.loss:
             self.flown.autopilot.receive(self.flown.now_ns, frame, "agent")
-            if message.get_type().startswith("SET_"):
+            if isinstance(message, SetpointMessage):
                 self.setpoints.append(self.now)
 
     def _hear(self) -> None:
@@ -119,7 +120,7 @@ class Flight:
             for packet in self.framer.feed(frame):
                 value = self.observer.take(self.now, packet)
                 if value is not None and hasattr(self, "adapter"):
-                    name = packet.message.get_type()
+                    name = packet.name
                     self._counts[name] = self._counts.get(name, 0) + 1
                     if isinstance(value, CommandAck):
                         self.adapter.acknowledge(self.now, value)
@@ -143,7 +144,7 @@ def test_it_enters_follows_and_leaves(kind: Kind, loss: float) -> None:
     assert flight.adapter.stage is Stage.ACTIVE
     assert flight.flown.mode == GUIDED[kind]
     flight.fly(15.0, level(kind))
-    assert degrees(abs(wrapped(pi / 2 - atan2(flight.flown.velocity.y, flight.flown.velocity.x)))) < 5.0
+    assert degrees(abs(wrap(pi / 2 - atan2(flight.flown.velocity.y, flight.flown.velocity.x)))) < 5.0
     flight.adapter.leave(flight.now, ReleaseMode.HOLD)
     last = flight.now
     flight.fly(4.0, level(kind))
@@ -197,7 +198,7 @@ def test_a_plane_follows_a_swinging_course_in_wind_as_a_real_one_was_measured_to
     flight.path.clear()
     flight.fly(100.0, wanted)
     course = [
-        wrapped(atan2(air.y + wind.y, air.x + wind.x) - atan2(ground.y, ground.x))
+        wrap(atan2(air.y + wind.y, air.x + wind.x) - atan2(ground.y, ground.x))
         for air, ground in flight.path
     ]
     climb = [air.z - ground.z for air, ground in flight.path]
@@ -226,7 +227,7 @@ def test_the_autopilots_clock_is_known_beside_ours(kind: Kind) -> None:
     flight.fly(20.0, None)
     offset = flight.timesync.offset()
     assert offset.known
-    assert offset.round_trip_ns <= 0.1 * SECOND
+    assert offset.round_trip_ns <= 0.1 * NS_PER_S
 
 
 def test_wind_of_both_reports_reaches_the_snapshot_as_where_the_air_moves() -> None:

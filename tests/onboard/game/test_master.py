@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec
 from onboard.game.master import GameMaster, Publication, Standing, Timing
 from onboard.wire.bus import messages as swarm
@@ -21,12 +22,12 @@ from onboard.wire.bus.messages import (
     Phase,
     PhaseChange,
     Role,
+    RulesMessage,
     Setup,
 )
 from onboard.wire.bus.topics import EVADER_BRIEF, SETUP
 
-NS = 1_000_000_000
-WALL0 = 1_767_225_600 * NS
+WALL0 = 1_767_225_600 * NS_PER_S
 STEP = 10_000_000
 
 
@@ -39,8 +40,7 @@ def setup(**changes: object) -> Setup:
     )
     fields: dict[str, object] = dict(
         game="g", scenario="story", scenario_hash="0" * 16, master="bridge", origin=Origin(47.0, 8.0, 400.0),
-        roster=members, capture_radius=5.0, safety_distance=10.0, lambda_=100.0, beta=1.0, epsilon_min=1.0,
-        horizon=30.0,
+        roster=members, rules=RulesMessage(5.0, 10.0, horizon=30.0),
     )  # fmt: skip
     return Setup(**(fields | changes))  # type: ignore[arg-type]
 
@@ -67,13 +67,13 @@ class Range:
         self.news: list[str] = []
 
     def fly(self, seconds: float) -> None:
-        for _ in range(round(seconds * NS / STEP)):
+        for _ in range(round(seconds * NS_PER_S / STEP)):
             self.now += STEP
-            if self.now % (NS // 2) == 0:
+            if self.now % (NS_PER_S // 2) == 0:
                 for agent in self.agents.values():
                     self.master.heard_health(agent, self.now)
             for id, v in self.speeds.items():
-                p, dt = self.places[id], STEP / NS
+                p, dt = self.places[id], STEP / NS_PER_S
                 self.places[id] = Vec(p.x + v.x * dt, p.y + v.y * dt, p.z + v.z * dt)
             self.master.tick(WALL0 + self.now, self.now)
             self.master.observe(WALL0 + self.now, self.now, self.places)
@@ -116,7 +116,7 @@ def test_it_listens_then_stages_then_waits_for_everybody() -> None:
     field.fly(1.0)
     ready = field.phases()[-1]
     assert ready.phase is Phase.READY
-    assert ready.t0_ns == ready.stamp_ns + 2 * NS
+    assert ready.t0_ns == ready.stamp_ns + 2 * NS_PER_S
     field.fly(2.5)
     running = field.phases()[-1]
     assert running.phase is Phase.RUNNING
@@ -129,7 +129,7 @@ def test_the_lease_is_renewed_twice_a_second() -> None:
     field.fly(11.2)
     leases = [m for _, m in field.said if isinstance(m, Master)]
     assert len(leases) == 20  # the first 1.2 s it listened
-    assert {b.stamp_ns - a.stamp_ns for a, b in pairwise(leases)} == {NS // 2}
+    assert {b.stamp_ns - a.stamp_ns for a, b in pairwise(leases)} == {NS_PER_S // 2}
     assert {(m.name, m.nonce, m.lease_s) for m in leases} == {("bridge", 50, 2.0)}
 
 
@@ -137,7 +137,7 @@ def test_a_capture_is_judged_at_its_instant_between_two_steps() -> None:
     field = Range()
     field.begin()
     t0 = field.phases()[-1].t0_ns
-    elapsed = (WALL0 + field.now - t0) / NS
+    elapsed = (WALL0 + field.now - t0) / NS_PER_S
     field.places[2] = Vec(100.0, 0, -50)
     field.speeds[2] = Vec(-30.0, 0, 0)
     field.fly(8.0)
@@ -177,9 +177,12 @@ def test_an_evader_that_nobody_catches_has_escaped_at_the_horizon() -> None:
     assert field.outcome().time == 30.0
 
 
-@pytest.mark.parametrize(("changes", "verdict"), [({}, "escaped"), ({"planar": True}, "captured"),
+PLANE = RulesMessage(5.0, 10.0, horizon=30.0, planar=True)
+
+
+@pytest.mark.parametrize(("changes", "verdict"), [({}, "escaped"), ({"rules": PLANE}, "captured"),
                                                   ({"field_profile": True}, "captured")])  # fmt: skip
-def test_plane_games_and_altitude_layers_are_judged_level(changes: dict[str, bool], verdict: str) -> None:
+def test_plane_games_and_altitude_layers_are_judged_level(changes: dict[str, Any], verdict: str) -> None:
     field = Range(**changes)
     field.begin()
     field.places[3] = Vec(1.0, 1.0, -90.0)  # 40 m above the evader

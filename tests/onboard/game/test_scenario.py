@@ -60,7 +60,7 @@ def test_the_folder_of_scenarios_is_not_empty() -> None:
 def test_a_plain_file_becomes_values_with_defaults(tmp_path: Path) -> None:
     scenario = load(written(tmp_path, PLAIN))
     assert scenario.ids == (1, 2, 3)
-    assert scenario.rho == 4.0  # 2R
+    assert scenario.rules.rho == 4.0  # 2R
     assert scenario.pursuers[0].start() == Vec(30.0, 40.0, -25.0)  # height 25 m is 25 m up
     assert scenario.pursuers[0].limits().pitch_min == pytest.approx(radians(-20.0))
     assert scenario.pursuers[0].limits().speed_max == 4.0

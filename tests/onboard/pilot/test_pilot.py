@@ -8,14 +8,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from onboard.core.game.advance import FREE
-from onboard.core.geometry.cones import blocked_cones
-from onboard.core.math.states import Limits, Vehicle
+from onboard.core.game.rules import Rules, Target
+from onboard.core.game.views import evader_view
+from onboard.core.math.states import FREE, MateState, Vehicle, VehicleLimits, carried
 from onboard.core.math.vectors import ZERO, Vec, add, along, distance, norm, scale, sub
-from onboard.core.strategy.evasion import EvaderView, evader
+from onboard.core.strategy.evasion import evader
 from onboard.pilot.memory import Memory
 from onboard.pilot.pilot import Pilot, PilotDecision, drawing
-from onboard.pilot.setup import GameSetup, MateState, Own, Player, Side, TrackSample
+from onboard.pilot.setup import GameSetup, Own, Player, Side, TrackSample
 
 EXACT = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 SETUP = GameSetup(
@@ -24,7 +24,8 @@ SETUP = GameSetup(
         Player(2, Side.PURSUER, 4.0, FREE),
         Player(3, Side.PURSUER, 4.0, FREE),
     ),
-    R=2.0, rho=4.0, has_target=True, target=Vec(200.0, 0.0, -50.0),
+    rules=Rules(R=2.0, rho=4.0),
+    target=Target(True, Vec(200.0, 0.0, -50.0)),
 )
 
 
@@ -32,12 +33,16 @@ def seen(id: int, t: float, position: Vec, velocity: Vec) -> TrackSample:
     return TrackSample(id, t, position, velocity, EXACT)
 
 
+def remembered(*samples: TrackSample) -> Memory:
+    memory = Memory()
+    memory.take(samples)
+    return memory
+
+
 def test_a_pursuer_heads_for_the_point_where_it_meets_the_evader() -> None:
     pilot = Pilot(2, Side.PURSUER)
     track = seen(1, 10.0, Vec(0.0, 0.0, -50.0), Vec(5.0, 0.0, 0.0))
-    thought, _ = pilot.step(
-        10.0, Own(Vec(50.0, 20.0, -50.0), ZERO), (track,), (), SETUP, ZERO, Memory()
-    )
+    thought = pilot.step(10.0, Own(Vec(50.0, 20.0, -50.0), ZERO), (), SETUP, remembered(track))
     assert (thought.rule, thought.level, thought.module) == ("intercept", "tactical", "geometric")
     assert distance(along(Vec(50.0, 20.0, -50.0), thought.velocity, thought.time), thought.aim) < 1e-6
     assert distance(along(Vec(0.0, 0.0, -50.0), Vec(5.0, 0.0, 0.0), thought.time), thought.aim) < 1e-6
@@ -47,33 +52,31 @@ def test_an_evaders_pilot_decides_as_its_strategy_does() -> None:
     pilot = Pilot(1, Side.EVADER)
     ahead, aside = Vec(60.0, 0.0, -50.0), Vec(0.0, 70.0, -50.0)
     tracks = (seen(2, 0.0, ahead, ZERO), seen(3, 0.0, aside, ZERO))
-    thought, _ = pilot.step(0.0, Own(Vec(0.0, 0.0, -50.0), ZERO), tracks, (), SETUP, ZERO, Memory())
+    thought = pilot.step(0.0, Own(Vec(0.0, 0.0, -50.0), ZERO), (), SETUP, remembered(*tracks))
     own = Vehicle(Vec(0.0, 0.0, -50.0), ZERO, 5.0)
     pursuers = (Vehicle(ahead, ZERO, 4.0), Vehicle(aside, ZERO, 4.0))
-    view = EvaderView(own, FREE, pursuers, blocked_cones(own, pursuers, 4.0), True, SETUP.target, 2.0, 100.0,
-                      1.0, False)
-    expected = evader(view)
+    expected = evader(evader_view(own, FREE, pursuers, SETUP.target, ZERO, SETUP.rules))
     assert thought.velocity == scale(expected.direction, expected.speed)
     cones, circles = drawing(thought, Side.EVADER)
     assert len(cones) == len(circles) == 2
 
 
 def test_a_late_track_is_carried_forward_to_now() -> None:
-    pilot, memory = Pilot(2, Side.PURSUER, "pure-pursuit"), Memory()
+    pilot = Pilot(2, Side.PURSUER, "pure-pursuit")
     samples = tuple(seen(1, 0.1 * n, Vec(0.0, 0.5 * n, -50.0), Vec(0.0, 5.0, 0.0)) for n in range(20))
-    thought, _ = pilot.step(2.4, Own(Vec(-100.0, 12.0, -50.0), ZERO), samples, (), SETUP, ZERO, memory)
+    thought = pilot.step(2.4, Own(Vec(-100.0, 12.0, -50.0), ZERO), (), SETUP, remembered(*samples))
     assert thought.aim.y == pytest.approx(12.0, abs=0.3)
     assert 0.0 < thought.sigma < 5.0
     assert thought.predictor == "constant_velocity"
 
 
 def test_with_no_track_it_decides_nothing_and_names_what_it_lacks() -> None:
-    thought, _ = Pilot(2, Side.PURSUER).step(0.0, Own(ZERO, ZERO), (), (), SETUP, ZERO, Memory())
+    thought = Pilot(2, Side.PURSUER).step(0.0, Own(ZERO, ZERO), (), SETUP, Memory())
     assert (thought.decides, thought.lacks, thought.sigma) == (False, ("track of evader 1",), inf)
 
 
 def test_out_of_the_roster_it_decides_nothing() -> None:
-    thought, _ = Pilot(9, Side.PURSUER).step(0.0, Own(ZERO, ZERO), (), (), SETUP, ZERO, Memory())
+    thought = Pilot(9, Side.PURSUER).step(0.0, Own(ZERO, ZERO), (), SETUP, Memory())
     assert thought.lacks == ("a place in the roster",)
 
 
@@ -86,21 +89,21 @@ def test_an_undeclared_speed_is_the_upper_envelope_of_what_was_seen() -> None:
 
 def test_in_a_plane_game_heights_do_not_count_and_its_own_is_kept() -> None:
     roster = (Player(1, Side.EVADER, 5.0), Player(2, Side.PURSUER, 4.0, height=50.0))
-    setup = SETUP._replace(roster=roster, planar=True)
+    setup = SETUP._replace(roster=roster, rules=SETUP.rules._replace(planar=True))
     track = seen(1, 0.0, Vec(30.0, 0.0, -90.0), Vec(-5.0, 0.0, 3.0))
     low = Own(Vec(0.0, 0.0, -40.0), ZERO)
-    thought, _ = Pilot(2, Side.PURSUER).step(0.0, low, (track,), (), setup, ZERO, Memory())
+    thought = Pilot(2, Side.PURSUER).step(0.0, low, (), setup, remembered(track))
     assert norm(Vec(thought.velocity.x, thought.velocity.y, 0.0)) == pytest.approx(4.0)
     assert thought.velocity.z < 0.0
     assert thought.aim.z == -40.0
 
 
 def test_a_pursuer_keeps_off_a_team_mate() -> None:
-    setup = SETUP._replace(separation=10.0)
+    setup = SETUP._replace(rules=SETUP.rules._replace(separation=10.0))
     mate = MateState(3, 0.0, Vec(5.0, 0.0, -50.0), ZERO)
     track = seen(1, 0.0, Vec(100.0, 0.0, -50.0), Vec(5.0, 0.0, 0.0))
     own = Own(Vec(0.0, 0.0, -50.0), ZERO)
-    thought, _ = Pilot(2, Side.PURSUER).step(0.0, own, (track,), (mate,), setup, ZERO, Memory())
+    thought = Pilot(2, Side.PURSUER).step(0.0, own, (carried(mate, 0.0),), setup, remembered(track))
     assert thought.rule == "keep_off_mate"
 
 
@@ -118,8 +121,8 @@ def test_a_pursuer_in_steady_wind_decides_as_in_still_air(
 
     def think(w: Vec) -> PilotDecision:
         track = seen(1, 5.0, evader_at, add(evader_v, w))
-        own = Own(Vec(0.0, 0.0, -50.0), add(Vec(3.0, 1.0, 0.0), w))
-        return Pilot(2, Side.PURSUER).step(5.0, own, (track,), (), SETUP, w, Memory())[0]
+        own = Own(Vec(0.0, 0.0, -50.0), add(Vec(3.0, 1.0, 0.0), w), w)
+        return Pilot(2, Side.PURSUER).step(5.0, own, (), SETUP, remembered(track))
 
     still, windy = think(ZERO), think(air)
     assert distance(still.velocity, windy.velocity) < 1e-6
@@ -127,17 +130,18 @@ def test_a_pursuer_in_steady_wind_decides_as_in_still_air(
 
 
 def test_an_evader_in_wind_steers_into_it_so_that_its_track_leads_to_the_target() -> None:
-    setup = SETUP._replace(target=Vec(1000.0, 0.0, -50.0))
+    setup = SETUP._replace(target=Target(True, Vec(1000.0, 0.0, -50.0)))
     wind, at, memory = Vec(0.0, 3.0, 0.0), Vec(0.0, 0.0, -50.0), Memory()
     far = Vec(-5000.0, 0.0, -50.0)
     for n in range(10000):
         t = n * 0.05
-        tracks = (seen(2, t, far, ZERO), seen(3, t, far, ZERO)) if n % 10 == 0 else ()
-        thought, memory = Pilot(1, Side.EVADER).step(t, Own(at, ZERO), tracks, (), setup, wind, memory)
+        if n % 10 == 0:
+            memory.take((seen(2, t, far, ZERO), seen(3, t, far, ZERO)))
+        thought = Pilot(1, Side.EVADER).step(t, Own(at, ZERO, wind), (), setup, memory)
         assert thought.velocity.y < -2.5
         assert abs(at.y) < 1.0
         at = along(at, add(thought.velocity, wind), 0.05)
-        if distance(at, setup.target) < 1.0:
+        if distance(at, setup.target.position) < 1.0:
             break
     assert t == pytest.approx(1000.0 / 4.0, rel=0.01)
 
@@ -157,9 +161,11 @@ vecs = st.builds(Vec, anything, anything, anything)
 def test_whatever_a_sensor_says_nothing_raises(samples: tuple[TrackSample, ...], side: Side) -> None:
     good = seen(1, 1.0, Vec(50.0, 0.0, -50.0), Vec(5.0, 0.0, 0.0))
     pilot = Pilot(1 if side is Side.EVADER else 2, side)
-    thought, memory = pilot.step(1.0, Own(ZERO, ZERO), (*samples, good), (), SETUP, ZERO, Memory())
+    memory = remembered(*samples, good)
+    thought = pilot.step(1.0, Own(ZERO, ZERO), (), SETUP, memory)
     assert all(map(isfinite, thought.velocity))
-    thought, _ = pilot.step(1.05, Own(ZERO, Vec(nan, 0.0, 0.0)), samples, (), SETUP, ZERO, memory)
+    memory.take(samples)
+    thought = pilot.step(1.05, Own(ZERO, Vec(nan, 0.0, 0.0)), (), SETUP, memory)
     assert thought.level == "tactical"
 
 
@@ -167,9 +173,9 @@ def test_five_pilots_catch_an_encircled_evader_with_late_tracks() -> None:
     ring = [Vec(40.0, 0.0, 0.0), Vec(12.0, 38.0, 0.0), Vec(-32.0, 23.0, 0.0), Vec(-32.0, -23.0, 0.0),
             Vec(12.0, -38.0, 0.0)]
     roster = (
-        Player(1, Side.EVADER, 3.0, Limits()), *(Player(2 + n, Side.PURSUER, 4.0) for n in range(5))
+        Player(1, Side.EVADER, 3.0, VehicleLimits()), *(Player(2 + n, Side.PURSUER, 4.0) for n in range(5))
     )
-    setup = GameSetup(roster=roster, R=2.0, rho=4.0, planar=True)
+    setup = GameSetup(roster, Rules(R=2.0, rho=4.0, planar=True))
     pilots = [Pilot(1, Side.EVADER), *(Pilot(2 + n, Side.PURSUER) for n in range(5))]
     memories = [Memory() for _ in pilots]
     places, speeds = [ZERO, *ring], [ZERO] * 6
@@ -180,12 +186,12 @@ def test_five_pilots_catch_an_encircled_evader_with_late_tracks() -> None:
         history.append(tuple(seen(i + 1, t, places[i], speeds[i]) for i in range(6)))
         late = history[n - 4] if n >= 4 else ()
         for i, pilot in enumerate(pilots):
-            own = Own(places[i], speeds[i])
-            thought, memories[i] = pilot.step(t, own, late, (), setup, ZERO, memories[i])
+            memories[i].take(late)
+            thought = pilot.step(t, Own(places[i], speeds[i]), (), setup, memories[i])
             speeds[i] = thought.velocity
         places = [along(p, v, 0.05) for p, v in zip(places, speeds, strict=True)]
         nearest = min(distance(places[0], p) for p in places[1:])
-        if nearest <= setup.R:
+        if nearest <= setup.rules.R:
             break
-    assert nearest <= setup.R
+    assert nearest <= setup.rules.R
     assert norm(sub(places[0], ZERO)) < 60.0

@@ -7,9 +7,10 @@ import asyncio
 import numpy as np
 import pytest
 
+from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.bus_memory import MemoryBroker
 from onboard.runtime.impairment import CLEAR, CUT, Impairment
-from onboard.runtime.loop import NS, virtual_clock
+from onboard.runtime.loop import virtual_clock
 from onboard.runtime.protocols import Sample
 from onboard.wire.bus.topics import Delivery
 from tests.support.buses import Heard
@@ -88,7 +89,7 @@ async def test_a_request_on_a_slow_connection_ends_at_its_deadline() -> None:
     vehicle.serve(COMMAND, lambda payload: b"accepted")
     clock = virtual_clock()
     assert await station.request(COMMAND, b"hold", 1.0) == []
-    assert clock.monotonic_ns() == NS
+    assert clock.monotonic_ns() == NS_PER_S
     assert await station.request(COMMAND, b"hold", 2.0) == [b"accepted"]
     assert clock.monotonic_ns() == 2_600_000_000
     assert station.counters()["request_timeout"] == 1

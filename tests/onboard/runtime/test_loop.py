@@ -10,8 +10,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.clock import VirtualClock
-from onboard.runtime.loop import EPOCH_NS, NS, VirtualLoop, VirtualTimeError, run_virtual, virtual_clock
+from onboard.runtime.loop import EPOCH_NS, VirtualLoop, VirtualTimeError, run_virtual, virtual_clock
 from tests.support.virtual import virtual
 
 
@@ -20,8 +21,8 @@ async def test_an_hour_at_20_hz_ends_on_the_nanosecond() -> None:
     clock = virtual_clock()
     for _ in range(20 * 3600):
         await asyncio.sleep(0.05)
-    assert clock.monotonic_ns() == 3600 * NS
-    assert clock.wall_ns() == EPOCH_NS + 3600 * NS
+    assert clock.monotonic_ns() == 3600 * NS_PER_S
+    assert clock.wall_ns() == EPOCH_NS + 3600 * NS_PER_S
 
 
 def test_wall_time_starts_at_the_epoch_asked_for() -> None:
@@ -50,7 +51,7 @@ def test_timers_run_by_deadline_and_then_in_the_order_they_were_set(delays_ns: l
             ran.append((clock.monotonic_ns(), index))
 
         for index, delay_ns in enumerate(delays_ns):
-            loop.call_later(delay_ns / NS, note, index)
+            loop.call_later(delay_ns / NS_PER_S, note, index)
         await asyncio.sleep(3.0)
         return ran
 

@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onboard.core.math.vectors import Vec
 from onboard.wire.mavlink import commands
 from onboard.wire.mavlink.commands import Target
-from onboard.wire.mavlink.frames import CAUSES, Framer, Sender, dialect
+from onboard.wire.mavlink.dialect import DialectSender, dialect, dialect_packet
+from onboard.wire.mavlink.frames import CAUSES, Framer, Packet, Sender
+from onboard.wire.mavlink.telemetry import READ
+from onboard.wire.mavlink.values import Battery, RadioStatus, StatusText
 
 AUTOPILOT = Target(1)
 
 
 def frames(count: int) -> list[bytes]:
     sender = Sender(1, 191)
-    targets = [commands.velocity_target(AUTOPILOT, k * 0.05, Vec(1.0 + k, -2.0, 0.5)) for k in range(count)]
+    targets = [commands.VelocityTarget(AUTOPILOT, k * 0.05, Vec(1.0 + k, -2.0, 0.5)) for k in range(count)]
     return [sender.pack(target) for target in targets]
 
 
@@ -43,7 +48,7 @@ def test_each_bad_frame_counts_once_by_its_cause() -> None:
     flipped = good[:15] + bytes([good[15] ^ 4]) + good[16:]
     unknown = good[:7] + b"\xff\xff\x7f" + good[10:]
     incompatible = good[:2] + b"\x02" + good[3:]
-    key = Sender(1, 191).pack(dialect.MAVLink_setup_signing_message(1, 1, [7] * 32, 99))
+    key = DialectSender(1, 191).pack(dialect.MAVLink_setup_signing_message(1, 1, [7] * 32, 99))
     framer = Framer()
     for bad in (flipped, unknown, incompatible, key, b"noise", good[:-1]):
         assert framer.feed(bad) == []
@@ -59,7 +64,7 @@ def test_each_bad_frame_counts_once_by_its_cause() -> None:
 
 
 def test_a_key_sent_over_the_network_is_never_taken() -> None:
-    key = Sender(255, 190).pack(dialect.MAVLink_setup_signing_message(1, 1, [7] * 32, 99))
+    key = DialectSender(255, 190).pack(dialect.MAVLink_setup_signing_message(1, 1, [7] * 32, 99))
     for stream in (False, True):
         framer = Framer(stream=stream)
         assert framer.feed(key) == []
@@ -70,25 +75,28 @@ def test_mavlink_1_is_read_too() -> None:
     mav = dialect.MAVLink(None, srcSystem=51, srcComponent=68)
     raw = dialect.MAVLink_radio_status_message(180, 170, 88, 40, 41, 3, 0).pack(mav, force_mavlink1=True)
     (packet,) = Framer().feed(raw)
-    assert (packet.system, packet.component, packet.message.txbuf) == (51, 68, 88)
+    assert (packet.system, packet.component, packet.name) == (51, 68, "RADIO_STATUS")
+    assert packet.value == RadioStatus(0.88, 180, 170, 3)
 
 
 def test_sender_counts_its_frames_and_wraps() -> None:
     sender, framer = Sender(3, 191), Framer()
-    packets = [framer.feed(sender.pack(commands.heartbeat()))[0] for _ in range(300)]
+    packets = [framer.feed(sender.pack(commands.OwnHeartbeat()))[0] for _ in range(300)]
     assert [packet.sequence for packet in packets] == [k % 256 for k in range(300)]
     assert {(packet.system, packet.component) for packet in packets} == {(3, 191)}
     assert {packet.raw[0] for packet in packets} == {0xFD}
 
 
 def test_messages_with_arrays_and_texts_come_back_as_they_went() -> None:
-    sender, framer = Sender(1, 1), Framer()
+    sender, framer = DialectSender(1, 1), Framer()
     battery = dialect.MAVLink_battery_status_message(1, 2, 3, 400, [4000 + k for k in range(10)], 7, 8, 9, 55)
     (packet,) = framer.feed(sender.pack(battery))
-    assert packet.message.voltages == [4000 + k for k in range(10)]
-    assert packet.message.battery_remaining == 55
-    (packet,) = framer.feed(sender.pack(commands.status_text(4, "x" * 80)))
-    assert packet.message.text == "x" * 50
+    assert isinstance(packet.value, Battery)
+    assert packet.value.voltage == pytest.approx(sum(range(4000, 4010)) * 1e-3)
+    assert packet.value.remaining == 0.55
+    assert dialect_packet(packet.raw).message.voltages == [4000 + k for k in range(10)]
+    (packet,) = framer.feed(sender.pack(dialect.MAVLink_statustext_message(4, b"x" * 50)))
+    assert packet.value == StatusText(4, "x" * 50, 0, 0)
 
 
 @settings(max_examples=300, deadline=None)
@@ -115,3 +123,36 @@ def test_good_frames_survive_any_junk_between_them_in_a_stream(junk: list[bytes]
         if at >= len(data):
             break
     assert Counter(got) == Counter(good)
+
+
+def parts_of(value: object) -> Iterator[object]:
+    """The value and everything that it holds, however deep."""
+    yield value
+    for part in value if isinstance(value, tuple | list) else ():
+        yield from parts_of(part)
+
+
+@pytest.mark.parametrize("number", sorted(dialect.mavlink_map))
+def test_no_object_of_the_dialect_leaves_the_framer(number: int) -> None:
+    kind = dialect.mavlink_map[number]
+    payload = bytes(kind.unpacker.size)
+    body = bytes([len(payload), 0, 0, 5, 1, 1, number & 255, number >> 8 & 255, number >> 16]) + payload
+    crc = dialect.x25crc(body + bytes([kind.crc_extra])).crc
+    packets = Framer().feed(b"\xfd" + body + crc.to_bytes(2, "little"))
+    assert (packets == []) == (number == dialect.MAVLINK_MSG_ID_SETUP_SIGNING)
+    for packet in packets:
+        assert (packet.number, packet.name) == (number, kind.msgname)
+        assert number in READ or packet.value is None
+        for part in parts_of(packet):
+            assert not type(part).__module__.startswith("pymavlink"), part
+
+
+def test_what_is_read_has_a_value_and_the_rest_has_none() -> None:
+    heartbeat = dialect.MAVLink_heartbeat_message(2, 3, 0, 4, 4, 3)
+    ping = dialect.MAVLink_ping_message(1, 2, 0, 0)
+    sender, framer = DialectSender(1, 1), Framer()
+    (packet,) = framer.feed(sender.pack(heartbeat))
+    assert packet == Packet(1, 1, 0, 0, "HEARTBEAT", packet.value, packet.raw)
+    assert packet.value is not None
+    (packet,) = framer.feed(sender.pack(ping))
+    assert (packet.name, packet.value) == ("PING", None)

@@ -9,7 +9,6 @@ from pymavlink import mavutil
 
 from onboard.wire.mavlink.frames import Framer
 from onboard.wire.mavlink.modes import Kind
-from onboard.wire.mavlink.telemetry import decode
 from onboard.wire.mavlink.tlog import Entry, read_tlog
 from onboard.wire.mavlink.values import CommandAck, GlobalPosition, Heartbeat, StatusText, SysStatus, Version
 from tests.support.paths import RECORDINGS
@@ -38,14 +37,14 @@ def test_every_message_decodes_and_the_counts_are_pymavlinks(name: str, count: i
         theirs[message.get_type()] += 1
         stamps.append(message._timestamp)
     assert len(ours) == count == theirs.total()
-    assert Counter(entry.packet.message.get_type() for entry in ours) == theirs
+    assert Counter(entry.packet.name for entry in ours) == theirs
     assert [entry.stamp_ns / 1e9 for entry in ours] == pytest.approx(stamps, abs=1e-6)
 
 
 @pytest.mark.parametrize(("name", "count", "kind"), STORIES)
 def test_the_story_is_read_as_it_was_flown(name: str, count: int, kind: Kind) -> None:
     autopilot = [e.packet for e in entries(name) if (e.packet.system, e.packet.component) == (1, 1)]
-    values = [value for packet in autopilot if (value := decode(packet.message)) is not None]
+    values = [value for packet in autopilot if (value := packet.value) is not None]
 
     hearts = [value for value in values if isinstance(value, Heartbeat)]
     assert {heart.kind for heart in hearts} == {kind}

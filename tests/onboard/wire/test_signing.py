@@ -11,7 +11,9 @@ from onboard.core.math.vectors import Vec
 from onboard.runtime.signing_keys import StampFile, read_key
 from onboard.wire.mavlink import commands
 from onboard.wire.mavlink.commands import Target
-from onboard.wire.mavlink.frames import Framer, Sender, dialect
+from onboard.wire.mavlink.dialect import dialect
+from onboard.wire.mavlink.encoding import encode
+from onboard.wire.mavlink.frames import Framer, Sender
 from onboard.wire.mavlink.signing import EPOCH_NS, SECOND, MemoryStore, Signing, ticks
 
 KEY = bytes(range(32))
@@ -30,15 +32,15 @@ def receiver(store: MemoryStore | None = None) -> Framer:
 def test_a_signed_stream_passes_and_an_unsigned_one_does_not() -> None:
     tx, rx = sender(), receiver()
     for k in range(50):
-        (packet,) = rx.feed(tx.pack(commands.heartbeat(), NOW + k * S), NOW + k * S)
+        (packet,) = rx.feed(tx.pack(commands.OwnHeartbeat(), NOW + k * S), NOW + k * S)
         assert packet.signed
-    assert rx.feed(Sender(1, 191).pack(commands.heartbeat()), NOW + 60 * S) == []
+    assert rx.feed(Sender(1, 191).pack(commands.OwnHeartbeat()), NOW + 60 * S) == []
     assert rx.causes == {"signature_unsigned": 1}
 
 
 def test_a_replayed_frame_is_heard_once() -> None:
     tx, rx = sender(), receiver()
-    old = [tx.pack(commands.heartbeat(), NOW + k) for k in range(20)]
+    old = [tx.pack(commands.OwnHeartbeat(), NOW + k) for k in range(20)]
     assert len([packet for frame in old for packet in rx.feed(frame, NOW)]) == 20
     assert [packet for frame in old for packet in rx.feed(frame, NOW)] == []
     assert rx.causes == {"signature_replayed": 20}
@@ -46,18 +48,18 @@ def test_a_replayed_frame_is_heard_once() -> None:
 
 def test_a_forged_frame_from_the_far_future_does_not_lock_the_sender_out() -> None:
     tx, rx = sender(), receiver()
-    assert rx.feed(tx.pack(commands.heartbeat(), NOW), NOW)
-    future = bytearray(tx.pack(commands.heartbeat(), NOW))
+    assert rx.feed(tx.pack(commands.OwnHeartbeat(), NOW), NOW)
+    future = bytearray(tx.pack(commands.OwnHeartbeat(), NOW))
     future[-12:-6] = b"\xff" * 6
     assert rx.feed(bytes(future), NOW) == []
-    rightly_signed_but_years_ahead = sender().pack(commands.heartbeat(), NOW + 10**9 * S)
+    rightly_signed_but_years_ahead = sender().pack(commands.OwnHeartbeat(), NOW + 10**9 * S)
     assert rx.feed(rightly_signed_but_years_ahead, NOW) == []
     assert rx.causes == {"signature_wrong": 1, "signature_future": 1}
-    assert rx.feed(tx.pack(commands.heartbeat(), NOW + S), NOW + S)
+    assert rx.feed(tx.pack(commands.OwnHeartbeat(), NOW + S), NOW + S)
 
 
 def test_an_old_recording_opens_no_new_stream() -> None:
-    old = sender(link_id=9).pack(commands.heartbeat(), NOW - 61 * S)
+    old = sender(link_id=9).pack(commands.OwnHeartbeat(), NOW - 61 * S)
     rx = receiver()
     assert rx.feed(old, NOW) == []
     assert rx.causes == {"signature_stale": 1}
@@ -66,13 +68,13 @@ def test_an_old_recording_opens_no_new_stream() -> None:
 def test_each_stream_has_its_own_clock() -> None:
     rx = receiver()
     ahead, behind, other = sender(link_id=1), sender(link_id=2), sender(link_id=1, system=2)
-    assert rx.feed(ahead.pack(commands.heartbeat(), NOW + 30 * S), NOW)
-    assert rx.feed(behind.pack(commands.heartbeat(), NOW - 30 * S), NOW)
-    assert rx.feed(other.pack(commands.heartbeat(), NOW), NOW)
+    assert rx.feed(ahead.pack(commands.OwnHeartbeat(), NOW + 30 * S), NOW)
+    assert rx.feed(behind.pack(commands.OwnHeartbeat(), NOW - 30 * S), NOW)
+    assert rx.feed(other.pack(commands.OwnHeartbeat(), NOW), NOW)
 
 
 def test_every_bit_of_a_signed_frame_matters() -> None:
-    frame = sender().pack(commands.velocity_target(Target(1), 1.0, Vec(1, 2, 3)), NOW)
+    frame = sender().pack(commands.VelocityTarget(Target(1), 1.0, Vec(1, 2, 3)), NOW)
     for at in range(len(frame) * 8):
         torn = bytearray(frame)
         torn[at // 8] ^= 1 << at % 8
@@ -83,13 +85,13 @@ def test_every_bit_of_a_signed_frame_matters() -> None:
 def test_after_a_crash_nothing_heard_before_is_heard_again_and_the_sender_soon_is() -> None:
     store, tx = MemoryStore(), sender()
     rx = receiver(store)
-    heard = [tx.pack(commands.heartbeat(), NOW + k * S // 10) for k in range(100)]
+    heard = [tx.pack(commands.OwnHeartbeat(), NOW + k * S // 10) for k in range(100)]
     for frame in heard:
         assert rx.feed(frame, NOW + 10 * S)
     assert store.saves <= 12  # about once a second, not once a frame
     again = receiver(store)
     assert [packet for frame in heard for packet in again.feed(frame, NOW + 10 * S)] == []
-    assert again.feed(tx.pack(commands.heartbeat(), NOW + 12 * S), NOW + 12 * S)
+    assert again.feed(tx.pack(commands.OwnHeartbeat(), NOW + 12 * S), NOW + 12 * S)
 
 
 def test_after_a_crash_with_a_clock_set_back_our_own_stamps_still_rise() -> None:
@@ -107,15 +109,15 @@ def test_pymavlink_hears_us_and_we_hear_pymavlink() -> None:
     theirs.signing.link_id, theirs.signing.timestamp = 4, ticks(NOW)
     tx, rx = sender(), receiver()
     for k in range(20):
-        message = theirs.decode(bytearray(tx.pack(commands.heartbeat(), NOW + k)))
+        message = theirs.decode(bytearray(tx.pack(commands.OwnHeartbeat(), NOW + k)))
         assert message.get_signed()
-        frame = commands.heartbeat().pack(theirs)
+        frame = encode(commands.OwnHeartbeat()).pack(theirs)
         (packet,) = rx.feed(frame, NOW)
         assert packet.signed
     with pytest.raises(dialect.MAVError):
-        theirs.decode(bytearray(sender(bytes(32)).pack(commands.heartbeat(), NOW + S)))
+        theirs.decode(bytearray(sender(bytes(32)).pack(commands.OwnHeartbeat(), NOW + S)))
     theirs.signing.secret_key = bytes(32)
-    assert rx.feed(commands.heartbeat().pack(theirs), NOW) == []
+    assert rx.feed(encode(commands.OwnHeartbeat()).pack(theirs), NOW) == []
     assert rx.causes == {"signature_wrong": 1}
 
 
@@ -142,7 +144,7 @@ def test_stamps_outlive_the_process_in_a_file(tmp_path: Path) -> None:
     path = tmp_path / "stamps.json"
     tx = sender()
     rx = Framer(signing=Signing(KEY, StampFile(path)))
-    frame = tx.pack(commands.heartbeat(), NOW)
+    frame = tx.pack(commands.OwnHeartbeat(), NOW)
     assert rx.feed(frame, NOW)
     assert path.stat().st_mode & 0o077 == 0
     again = Framer(signing=Signing(KEY, StampFile(path)))
@@ -151,5 +153,5 @@ def test_stamps_outlive_the_process_in_a_file(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match="damaged"):
         Signing(KEY, StampFile(path))
     lost = StampFile(tmp_path / "nowhere" / "stamps.json")
-    assert Framer(signing=Signing(KEY, lost)).feed(tx.pack(commands.heartbeat(), NOW + S), NOW + S)
+    assert Framer(signing=Signing(KEY, lost)).feed(tx.pack(commands.OwnHeartbeat(), NOW + S), NOW + S)
     assert lost.failures == 1

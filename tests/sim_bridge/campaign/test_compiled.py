@@ -9,17 +9,18 @@ from math import asin, cos, radians, sin
 import numpy as np
 import pytest
 
-from onboard.core.game.advance import FREE, Game, Params, begin, evader_view
-from onboard.core.game.referee import Verdict
+from onboard.core.game.advance import Conditions, Game, begin, still_view
+from onboard.core.game.referee import GameResult
+from onboard.core.game.rules import Control, Rules, Target
+from onboard.core.game.views import heading_at
 from onboard.core.geometry import cones as cone_room
-from onboard.core.math.states import Limits, Vehicle
+from onboard.core.math.states import FREE, Vehicle, VehicleLimits
 from onboard.core.math.vectors import NORTH, ZERO, Vec, angle_between, dot, scale, sub, unit
-from onboard.core.strategy.pursuit import heading_at
 from onboard.core.strategy.registry import EVADERS, PURSUERS
 from onboard.game.scenario import load
 from sim_bridge.campaign.compiled import Ends, Starts, campaign, starts_of
 from sim_bridge.plane_game.program import play, table1
-from sim_bridge.plane_game.setup import game_of, params_of
+from sim_bridge.plane_game.setup import conditions_of, game_of
 
 # Compiling takes a while, and so do ten games of 2000 steps interpreted.
 pytestmark = pytest.mark.timeout(480)
@@ -40,13 +41,13 @@ def interpreted() -> Play:
     return campaign(EVADERS["paper"].decide, PURSUERS["paper"].decide, TEAM, compiled=False)
 
 
-def table() -> tuple[list[Game], list[Vec], list[Params]]:
+def table() -> tuple[list[Game], list[Vec], list[Conditions]]:
     scenarios = [load(path) for path in table1()]
-    params = [params_of(scenario) for scenario in scenarios]
-    return [game_of(s) for s in scenarios], [p.target for p in params], params
+    conditions = [conditions_of(scenario) for scenario in scenarios]
+    return [game_of(s) for s in scenarios], [p.target.position for p in conditions], conditions
 
 
-def random_game(rng: np.random.Generator, planar: bool, limits: Limits = FREE) -> Game:
+def random_game(rng: np.random.Generator, planar: bool, limits: VehicleLimits = FREE) -> Game:
     def place(far: float) -> Vec:
         yaw, z = rng.uniform(-np.pi, np.pi), 0.0 if planar else rng.uniform(-1.0, 1.0)
         r = np.sqrt(1.0 - z * z)
@@ -56,9 +57,9 @@ def random_game(rng: np.random.Generator, planar: bool, limits: Limits = FREE) -
     return begin(Vehicle(ZERO, scale(NORTH, 5.0), 5.0), team, limits, (limits,) * TEAM)
 
 
-def params_for(planar: bool, **changes: object) -> Params:
-    plain = Params(2.0, 4.0, 100.0, 1.0, 1.0, 0.05, 40.0, 0.0, planar, True, ZERO)
-    return plain._replace(**changes)  # type: ignore[arg-type]
+def conditions_for(planar: bool, **changes: object) -> Conditions:
+    rules = Rules(2.0, 4.0, horizon=40.0, planar=planar)._replace(**changes)  # type: ignore[arg-type]
+    return Conditions(rules, Target(True, ZERO), Control())
 
 
 def differing(mine: Ends, theirs: Ends) -> list[int]:
@@ -80,14 +81,14 @@ def differing(mine: Ends, theirs: Ends) -> list[int]:
     return found
 
 
-def margin(game: Game, params: Params) -> float:
+def margin(game: Game, conditions: Conditions) -> float:
     """How far the decisions of this instant are from turning out otherwise.
 
     For the evader: from the preferred ray to the nearest cone's edge, and between the best two free
     points on the edges. For the pursuers: |φ − asin γ| and |cos φ|.
     """
-    view = evader_view(game, params)
-    goal = unit(sub(params.target, game.evader.position), NORTH)
+    view = still_view(game, conditions)
+    goal = unit(sub(conditions.target.position, game.evader.position), NORTH)
     found = [abs(dot(goal, c.axis) - c.cos) for c in view.cones]
     ranked = []
     for index, cone in enumerate(view.cones):
@@ -106,26 +107,28 @@ def margin(game: Game, params: Params) -> float:
     return min(found)
 
 
-def smallest_margin(starts: Starts, game: Game, ends: Ends, number: int, params: Params) -> float:
+def smallest_margin(starts: Starts, game: Game, ends: Ends, number: int, conditions: Conditions) -> float:
     """The smallest margin along a game's trace."""
     smallest = 1e9
-    mine = params._replace(target=Vec(*starts.targets[number]))
+    mine = conditions._replace(target=Target(True, Vec(*starts.targets[number])))
     for step in range(1, int(ends.steps[number])):
         before, now = ends.trace[number, step - 1], ends.trace[number, step]
-        velocity = Vec(*((now[0] - before[0]) / params.dt))
+        velocity = Vec(*((now[0] - before[0]) / conditions.control.dt))
         team = tuple(v._replace(position=Vec(*now[k + 1])) for k, v in enumerate(game.pursuers))
         there = game._replace(evader=Vehicle(Vec(*now[0]), velocity, game.evader.speed), pursuers=team)
         smallest = min(smallest, margin(there, mine))
     return smallest
 
 
-def demand_agreement(games: list[Game], targets: list[Vec], params: Params, both: tuple[Play, Play]) -> Ends:
+def demand_agreement(
+    games: list[Game], targets: list[Vec], conditions: Conditions, both: tuple[Play, Play]
+) -> Ends:
     """All games agree whose margins stay above 1e-6; the others are few."""
     starts = starts_of(games, targets)
-    mine, theirs = (play(starts, params, keep=KEEP) for play in both)
+    mine, theirs = (play(starts, conditions, keep=KEEP) for play in both)
     close = [
         k for k in differing(mine, theirs)
-        if smallest_margin(starts, games[k], mine, k, params) < MARGIN
+        if smallest_margin(starts, games[k], mine, k, conditions) < MARGIN
     ]  # fmt: skip
     assert differing(mine, theirs) == close
     assert len(close) <= len(games) // 10
@@ -133,17 +136,17 @@ def demand_agreement(games: list[Game], targets: list[Vec], params: Params, both
 
 
 def test_table_1_agrees_in_every_step(compiled: Play, interpreted: Play) -> None:
-    games, targets, params = table()
+    games, targets, conditions = table()
     verdicts = []
     for has_target in (True, False):
-        rows = [k for k, p in enumerate(params) if p.has_target == has_target]
+        rows = [k for k, p in enumerate(conditions) if p.target.exists == has_target]
         starts = starts_of([games[k] for k in rows], [targets[k] for k in rows])
-        mine, theirs = (play(starts, params[rows[0]], keep=KEEP) for play in (interpreted, compiled))
+        mine, theirs = (play(starts, conditions[rows[0]], keep=KEEP) for play in (interpreted, compiled))
         assert differing(mine, theirs) == []
         verdicts += list(mine.verdicts)
         # Not only close: the same to the last bit.
         np.testing.assert_array_equal(mine.trace, theirs.trace)
-    assert sorted(set(verdicts)) == [Verdict.CAPTURED, Verdict.ARRIVED, Verdict.ESCAPED]
+    assert sorted(set(verdicts)) == [GameResult.CAPTURED, GameResult.ARRIVED, GameResult.ESCAPED]
 
 
 @pytest.mark.parametrize("planar", [True, False])
@@ -151,16 +154,16 @@ def test_random_games_agree_in_every_step(planar: bool, compiled: Play, interpre
     rng = np.random.default_rng(4 + planar)
     games = [random_game(rng, planar) for _ in range(24)]
     targets = [Vec(float(x), float(y), 0.0) for x, y in rng.uniform(-150.0, 150.0, (24, 2))]
-    mine = demand_agreement(games, targets, params_for(planar), (interpreted, compiled))
+    mine = demand_agreement(games, targets, conditions_for(planar), (interpreted, compiled))
     assert (mine.trace[:, :5, :, 2] != 0.0).any() != planar
 
 
 def test_games_within_a_pitch_band_agree_and_keep_it(compiled: Play, interpreted: Play) -> None:
-    band = Limits(pitch_min=radians(-20.0), pitch_max=radians(20.0))
+    band = VehicleLimits(pitch_min=radians(-20.0), pitch_max=radians(20.0))
     rng = np.random.default_rng(6)
     games = [random_game(rng, False, band) for _ in range(10)]
     targets = [Vec(100.0, float(y), -60.0) for y in rng.uniform(-80.0, 80.0, 10)]
-    ends = demand_agreement(games, targets, params_for(False, horizon=20.0), (interpreted, compiled))
+    ends = demand_agreement(games, targets, conditions_for(False, horizon=20.0), (interpreted, compiled))
     moves = np.diff(ends.trace, axis=1)
     rise = moves[..., 2] / np.linalg.norm(moves, axis=-1)
     assert np.nanmax(abs(rise)) <= sin(radians(20.0)) + 1e-8
@@ -170,17 +173,18 @@ def test_games_within_a_pitch_band_agree_and_keep_it(compiled: Play, interpreted
 def test_games_with_a_separation_between_pursuers_agree(compiled: Play, interpreted: Play) -> None:
     rng = np.random.default_rng(7)
     games = [random_game(rng, True) for _ in range(8)]
-    params = params_for(True, separation=40.0, horizon=20.0)
+    conditions = conditions_for(True, separation=40.0, horizon=20.0)
     targets = [Vec(100.0, 0.0, 0.0)] * 8
-    kept = demand_agreement(games, targets, params, (interpreted, compiled))
-    free = compiled(starts_of(games, targets), params._replace(separation=0.0), keep=KEEP)
+    kept = demand_agreement(games, targets, conditions, (interpreted, compiled))
+    apart = conditions._replace(rules=conditions.rules._replace(separation=0.0))
+    free = compiled(starts_of(games, targets), apart, keep=KEEP)
     assert (np.nan_to_num(kept.trace) != np.nan_to_num(free.trace)).any()
 
 
 def test_a_compiled_game_is_the_plane_game_of_the_command(compiled: Play) -> None:
     """The campaign's arrays carry everything over: verdict and time as `sim-bridge planar` has them."""
-    games, targets, params = table()
-    ends = compiled(starts_of(games[:1], targets[:1]), params[0])
+    games, targets, conditions = table()
+    ends = compiled(starts_of(games[:1], targets[:1]), conditions[0])
     command = play(load(table1()[0]), "paper", keep=False)
     assert ends.verdicts[0] == command.verdict
     assert ends.times[0] == command.final.score.time
@@ -191,7 +195,7 @@ def test_two_threads_play_what_one_plays(compiled: Play) -> None:
     rng = np.random.default_rng(8)
     games = [random_game(rng, False) for _ in range(40)]
     starts = starts_of(games, [Vec(100.0, 20.0, 5.0)] * 40)
-    one, two = (compiled(starts, params_for(False), workers=n, keep=10) for n in (1, 2))
+    one, two = (compiled(starts, conditions_for(False), workers=n, keep=10) for n in (1, 2))
     for a, b in zip(one, two, strict=True):
         np.testing.assert_array_equal(a, b)
 
@@ -200,4 +204,4 @@ def test_arrays_of_the_wrong_shape_are_refused(interpreted: Play) -> None:
     rng = np.random.default_rng(9)
     starts = starts_of([random_game(rng, True)], [ZERO])
     with pytest.raises(ValueError, match=r"speeds: shape \(1, 5\), expected \(1, 6\)"):
-        interpreted(starts._replace(speeds=starts.speeds[:, 1:]), params_for(True))
+        interpreted(starts._replace(speeds=starts.speeds[:, 1:]), conditions_for(True))

@@ -80,7 +80,7 @@ def test_an_agent_killed_in_flight_is_started_again_and_the_game_goes_on(tmp_pat
     assert "released: LOITER confirmed" in again
     for id in (1, 2):
         log = read_tlog((folder / f"vehicle-{id}.tlog").read_bytes())
-        kinds = {entry.packet.message.get_type() for entry in log}
+        kinds = {entry.packet.name for entry in log}
         assert {"GLOBAL_POSITION_INT", "SET_POSITION_TARGET_LOCAL_NED"} <= kinds
     assert (folder / "recording.mcap").stat().st_size > 20_000
 

@@ -18,7 +18,7 @@ from onboard.runtime.clock import RealClock
 from onboard.runtime.links import open_udp
 from onboard.wire.bus.topics import SETUP, TRACK, key
 from onboard.wire.mavlink.commands import set_message_interval
-from onboard.wire.mavlink.frames import dialect
+from onboard.wire.mavlink.dialect import dialect
 from sim_bridge.programs.serve import Options, serve, serve_scenario
 from sim_bridge.world.radio import CALLERS_MAX, Radio, agent_ports
 from tests.support.buses import Heard, free_port

@@ -7,11 +7,12 @@ from collections import Counter
 
 import pytest
 
+from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec
 from onboard.game.scenario import Flight, Kind, Parameters, Scenario, SensorSpec, VehicleSpec
 from onboard.game.staging import setup_of
 from onboard.runtime.bus_memory import MemoryBroker
-from onboard.runtime.loop import NS, run_virtual, virtual_clock
+from onboard.runtime.loop import run_virtual, virtual_clock
 from onboard.runtime.protocols import Bus
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus.messages import Outcome, Phase, Role
@@ -101,7 +102,7 @@ async def test_the_setup_says_everything_but_the_target() -> None:
     setup = swarm.SETUP.decode(setups.payloads[0], Counter())
     assert setup == setup_of(scenario(), GAME, "sim-bridge")
     assert setup is not None
-    assert [(m.id, m.role, m.speed_max) for m in setup.roster] == [
+    assert [(m.id, m.role, m.speed) for m in setup.roster] == [
         (1, Role.EVADER, 4.0), (2, Role.PURSUER, 5.0), (3, Role.PURSUER, 5.0),
     ]  # fmt: skip
     assert setup.roster[1].start == (30.0, 0.0, -50.0)  # a plane game is flown at its height
@@ -136,7 +137,7 @@ async def test_a_second_bridge_yields_and_its_world_goes_on() -> None:
     assert "another master is at work: sim-bridge; this one yields and publishes no game" in stage.news
     masters = [swarm.MASTER.decode(payload, Counter()) for payload in stage.payloads(key(GAME, MASTER))]
     assert {m.nonce for m in masters if m} == {5}
-    assert second.world.elapsed_ns >= 3 * NS
+    assert second.world.elapsed_ns >= 3 * NS_PER_S
 
 
 @virtual

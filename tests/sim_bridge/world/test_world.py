@@ -8,14 +8,15 @@ from math import hypot
 import pytest
 
 from onboard.config.strict import ConfigError
+from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import ZERO, Vec, distance, norm
 from onboard.game.scenario import AirframeKind, Flight, Kind, Scenario, VehicleSpec
 from onboard.runtime.clock import VirtualClock
 from onboard.runtime.links import MemoryLink, memory_pair
-from onboard.runtime.loop import EPOCH_NS, NS, run_virtual, virtual_clock
+from onboard.runtime.loop import EPOCH_NS, run_virtual, virtual_clock
 from onboard.runtime.tasks import Pace, periodic
-from onboard.wire.mavlink.commands import set_message_interval, set_mode, velocity_target
-from onboard.wire.mavlink.frames import dialect
+from onboard.wire.mavlink.commands import VelocityTarget, set_message_interval, set_mode
+from onboard.wire.mavlink.dialect import dialect
 from onboard.wire.mavlink.modes import ARDUCOPTER_MODES
 from sim_bridge.vehicle.motion import Air, Motion
 from sim_bridge.world.world import BEHIND_MAX, World
@@ -62,7 +63,7 @@ def test_everybody_is_heard_on_the_own_link_alone(kind: Kind) -> None:
         sky = Sky(three(kind))
         await sky.fly(5.0)
         for id, companion in sky.companions.items():
-            beats = [p for p in companion.packets if p.message.get_type() == "HEARTBEAT"]
+            beats = [p for p in companion.packets if p.name == "HEARTBEAT"]
             assert 5 <= len(beats) <= 6
             assert {p.system for p in companion.packets} == {id}
             assert not companion.bad
@@ -91,9 +92,9 @@ async def test_only_the_vehicle_that_is_told_moves() -> None:
     two = sky.companions[2]
     two.send(set_mode(two.target, ARDUCOPTER_MODES["GUIDED"], px4=False))
     for _ in range(40):
-        two.send(velocity_target(two.target, 0.0, Vec(0.0, 3.0, 0.0)))
+        two.send(VelocityTarget(two.target, 0.0, Vec(0.0, 3.0, 0.0)))
         for deaf in (1, 3):  # the same frames on the others' links: not addressed to them
-            sky.companions[deaf].send(velocity_target(two.target, 0.0, Vec(0.0, 3.0, 0.0)))
+            sky.companions[deaf].send(VelocityTarget(two.target, 0.0, Vec(0.0, 3.0, 0.0)))
         await sky.fly(0.1)
     assert sky.world.motions[2].velocity == pytest.approx(Vec(0.0, 3.0, 0.0), abs=0.1)
     assert norm(sky.world.motions[1].velocity) < 0.1
@@ -189,7 +190,7 @@ def test_a_late_step_makes_up_for_lost_time_up_to_a_bound() -> None:
     world.step()
     assert world.elapsed_ns == 100_000_000
     assert world.wall_ns == clock.wall_ns()
-    clock.advance_to(60 * NS)  # stopped and continued
+    clock.advance_to(60 * NS_PER_S)  # stopped and continued
     world.step()
     assert world.elapsed_ns == 100_000_000 + BEHIND_MAX * world.step_ns
     assert world.lost_steps == 5990 - BEHIND_MAX

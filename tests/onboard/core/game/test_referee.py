@@ -9,16 +9,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from onboard.core.game.referee import Score, Verdict, judge, opening, passage
+from onboard.core.game.referee import GameResult, Score, Step, judge, opening, passage
+from onboard.core.game.rules import Rules, Target
 from onboard.core.math.vectors import ZERO, Vec
 from tests.support.situations import points
 
-FRESH = Score(Verdict.RUNNING, 0.0, -1, 1e300, 0.0)
+FRESH = Score(GameResult.RUNNING, 0.0, -1, 1e300, 0.0)
 
 
 def step(e0, e1, before, after, R=2.0, rho=4.0, target=None, start=0.0, dt=1.0, horizon=100.0, score=FRESH):
     goal = ZERO if target is None else target
-    return judge(score, start, dt, e0, e1, before, after, R, rho, target is not None, goal, 1.0, horizon)
+    rules = Rules(R, rho, horizon=horizon)
+    return judge(score, Step(start, dt, e0, e1, before, after), rules, Target(target is not None, goal))
 
 
 @settings(max_examples=500, deadline=None)
@@ -40,7 +42,7 @@ def test_passage_against_dense_sampling(a0, a1, b0, b1, radius):
 
 def test_a_capture_between_the_ends_of_a_step_counts():
     score = step(ZERO, Vec(10.0, 0.0, 0.0), (Vec(5.0, 10.0, 0.0),), (Vec(5.0, -10.0, 0.0),))
-    assert score.verdict == Verdict.CAPTURED
+    assert score.verdict == GameResult.CAPTURED
     assert 0.3 < score.time < 0.5
     assert score.smallest == pytest.approx(2.0)
 
@@ -48,11 +50,11 @@ def test_a_capture_between_the_ends_of_a_step_counts():
 def test_an_arrival_between_the_ends_of_a_step_counts():
     far = (Vec(99.0, 0.0, 0.0),)
     score = step(Vec(-10.0, 0.5, 0.0), Vec(10.0, 0.5, 0.0), far, far, target=ZERO)
-    assert score.verdict == Verdict.ARRIVED
+    assert score.verdict == GameResult.ARRIVED
     assert score.time == pytest.approx((10.0 - sqrt(0.75)) / 20.0)
 
 
-@pytest.mark.parametrize(("place", "verdict"), [(4.0, Verdict.CAPTURED), (9.0, Verdict.ARRIVED)])
+@pytest.mark.parametrize(("place", "verdict"), [(4.0, GameResult.CAPTURED), (9.0, GameResult.ARRIVED)])
 def test_whatever_comes_first_in_a_step_decides(place, verdict):
     guard = (Vec(place, 0.0, 0.0),)
     score = step(ZERO, Vec(20.0, 0.0, 0.0), guard, guard, R=0.5, target=Vec(7.0, 0.0, 0.0))
@@ -73,11 +75,11 @@ def test_the_safety_distance_is_watched_over_the_whole_step():
 def test_at_the_horizon_the_evader_has_escaped_and_later_captures_do_not_count():
     guard = (Vec(8.0, 0.0, 0.0),)
     score = step(ZERO, Vec(10.0, 0.0, 0.0), guard, guard, R=0.5, start=99.6, horizon=100.0)
-    assert (score.verdict, score.time) == (Verdict.ESCAPED, 100.0)
+    assert (score.verdict, score.time) == (GameResult.ESCAPED, 100.0)
 
 
 def test_a_verdict_stands():
-    done = Score(Verdict.ARRIVED, 3.0, -1, 7.0, 0.0)
+    done = Score(GameResult.ARRIVED, 3.0, -1, 7.0, 0.0)
     guard = (ZERO,)
     assert step(ZERO, ZERO, guard, guard, score=done) == done
 
@@ -88,4 +90,4 @@ def test_the_opening_knows_the_smallest_distance():
 
 def test_players_in_one_place_at_the_start_are_captured_at_once():
     score = step(ZERO, Vec(10.0, 0.0, 0.0), (ZERO,), (ZERO,))
-    assert (score.verdict, score.time) == (Verdict.CAPTURED, 0.0)
+    assert (score.verdict, score.time) == (GameResult.CAPTURED, 0.0)

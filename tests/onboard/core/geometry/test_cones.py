@@ -19,7 +19,7 @@ from onboard.core.geometry.cones import (
     is_free,
     within,
 )
-from onboard.core.math.states import Limits, Vehicle
+from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import NORTH, ZERO, Vec, along, angle_between, distance, dot, pitch_of, yaw_of
 from tests.support.situations import angle, headings, pursuers
 
@@ -80,7 +80,7 @@ def test_free_ray_in_the_plane_is_never_worse_than_sampling_and_never_blocked(te
 @settings(max_examples=1000, deadline=None)
 @given(pursuers(), headings(), st.floats(-80, 60), st.floats(0, 60), angle, st.floats(0.1, 2 * pi))
 def test_free_ray_within_pitch_and_heading_limits_is_exact(team, preferred, low, width, yaw_low, yaw_width):
-    limits = Limits(
+    limits = VehicleLimits(
         pitch_min=np.radians(low), pitch_max=np.radians(min(low + width, 90.0)),
         yaw_min=yaw_low, yaw_max=yaw_low + yaw_width,
     )
@@ -171,13 +171,13 @@ def test_a_pursuer_in_the_same_place_blocks_everything():
 
 
 def test_an_empty_pitch_band_has_no_ray():
-    empty = Limits(pitch_min=0.3, pitch_max=0.1)
+    empty = VehicleLimits(pitch_min=0.3, pitch_max=0.1)
     assert not free_ray_limited(NORTH, (), empty, False).exists
     assert within(NORTH, empty, False) == NORTH
 
 
 def test_a_level_band_keeps_the_ray_level():
-    level = Limits(pitch_min=0.0, pitch_max=0.0)
+    level = VehicleLimits(pitch_min=0.0, pitch_max=0.0)
     steep = Vec(cos(0.7), 0.0, -sin(0.7))
     ray = free_ray_limited(steep, (), level, False)
     assert ray.exists
@@ -189,6 +189,6 @@ def test_a_level_band_keeps_the_ray_level():
 
 
 def test_straight_down_a_band_without_a_preferred_azimuth_still_answers():
-    ray = free_ray_limited(Vec(0.0, 0.0, 1.0), (), Limits(pitch_min=-0.2, pitch_max=0.2), False)
+    ray = free_ray_limited(Vec(0.0, 0.0, 1.0), (), VehicleLimits(pitch_min=-0.2, pitch_max=0.2), False)
     assert ray.exists
     assert pitch_of(ray.direction) == pytest.approx(-0.2)

@@ -8,11 +8,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from onboard.core.math.states import Limits
+from onboard.core.math.states import VehicleLimits
 from onboard.core.math.vectors import ZERO, Vec, add, distance, dot, norm, pitch_of, scale, sub, unit
 from onboard.core.route.choice import (
     CHOICE,
     Choice,
+    Fix,
     Situation,
     TrackMemory,
     TrackRule,
@@ -38,7 +39,7 @@ ROUTE = (
     Waypoint(Vec(2000.0, 0.0, -100.0), 50.0),
     Waypoint(Vec(2000.0, 2000.0, -140.0), 100.0),
 )
-LIMITS = Limits(25.0, 55.0, radians(-20.0), radians(20.0))
+LIMITS = VehicleLimits(25.0, 55.0, radians(-20.0), radians(20.0))
 SETTING = Setting(LIMITS, 40.0, 6.0, Strategy.CHOOSE)
 
 
@@ -181,7 +182,7 @@ def test_a_follower_flies_the_route_and_says_so() -> None:
     rules = set()
     time = 0.0
     for _ in range(3000):
-        step = follow(ROUTE, SETTING, memory, time, position, velocity, wind)
+        step = follow(ROUTE, SETTING, memory, Fix(time, position, velocity, wind))
         if step.memory.leg != memory.leg:
             legs.append((memory.leg, time, distance(position, ROUTE[memory.leg].position)))
         memory = step.memory
@@ -203,7 +204,7 @@ def test_the_wind_s_rms_is_measured_from_its_estimates() -> None:
     memory = fresh()
     for k in range(4000):
         wind = Vec(5.0 + (3.0 if k % 2 else -3.0), 0.0, 0.0)
-        memory = follow(ROUTE, SETTING, memory, 0.05 * k, ROUTE[0].position, ZERO, wind).memory
+        memory = follow(ROUTE, SETTING, memory, Fix(0.05 * k, ROUTE[0].position, ZERO, wind)).memory
     assert norm(sub(memory.wind, Vec(5.0, 0.0, 0.0))) < 0.1
     assert (memory.square / 3.0) ** 0.5 == pytest.approx(3.0 / 3.0**0.5, rel=0.05)
     assert isinstance(memory, TrackMemory)

@@ -7,10 +7,11 @@ from math import atan2, cos, isfinite, pi, sin
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from onboard.core.math.states import Mate
 from onboard.core.math.vectors import Vec
 from onboard.core.safety.fence import fits, inside, outside_by
 from onboard.core.safety.health import HealthAction
-from onboard.core.safety.policy import Action, Cause, Fence, Mate, SupervisorInput
+from onboard.core.safety.policy import Action, Cause, Fence, SupervisorInput
 from onboard.core.safety.supervisor import SupervisorState, advance, handed_back, supervise
 from tests.support.supervised import COPTER, FIELD, PLANE, Flight, assert_within
 

@@ -6,8 +6,9 @@ from math import atan2, inf, nan
 
 import pytest
 
+from onboard.core.math.states import Mate
 from onboard.core.math.vectors import ZERO, Vec, distance, norm
-from onboard.core.safety.policy import Action, Cause, Mate
+from onboard.core.safety.policy import Action, Cause
 from onboard.core.safety.words import ACTIONS, CAUSES
 from tests.support.paths import ROOT
 from tests.support.supervised import COPTER, PLANE, Flight

@@ -8,9 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from onboard.core.game.advance import FREE
+from onboard.core.game.rules import Control, Rules, Target
+from onboard.core.game.views import EvaderView, Nearest, PursuerView
 from onboard.core.geometry.cones import blocked_cones
-from onboard.core.math.states import Limits, Vehicle
+from onboard.core.math.states import FREE, Vehicle, VehicleLimits
 from onboard.core.math.vectors import (
     NORTH,
     ZERO,
@@ -26,12 +27,11 @@ from onboard.core.math.vectors import (
     sub,
     unit,
 )
-from onboard.core.strategy.evasion import EVADER, EvaderView, evader, resultant_force, straight
+from onboard.core.strategy.evasion import EVADER, evader, resultant_force, straight
 from onboard.core.strategy.knowledge import Rule, RuleId
 from onboard.core.strategy.pursuit import (
     PURSUER,
     PURSUER_EARLIER,
-    PursuerView,
     pursuer,
     pursuer_bearing,
     pursuer_earlier,
@@ -49,15 +49,17 @@ def seen_by_evader(team, target=None, limits=FREE, planar=True):
     own = Vehicle(ZERO, scale(NORTH, 5.0), 5.0)
     cones = blocked_cones(own, team, 4.0)
     goal = ZERO if target is None else target
-    return EvaderView(own, limits, team, cones, target is not None, goal, 2.0, 100.0, 1.0, planar)
+    rules = Rules(2.0, 4.0, planar=planar)
+    return EvaderView(own, limits, team, cones, Target(target is not None, goal), rules)
 
 
 def seen_by_pursuer(place, heading=NORTH, speed=4.0, limits=FREE, mate=None, separation=0.0,
                     prediction=None, planar=True, velocity=ZERO):
     return PursuerView(
         Vehicle(place, velocity, speed), limits, Vehicle(ZERO, scale(heading, 5.0), 5.0), heading,
-        mate is not None, ZERO if mate is None else mate, separation,
-        prediction is not None, ZERO if prediction is None else prediction, 2.0, 0.05, planar,
+        prediction is not None, ZERO if prediction is None else prediction,
+        Nearest(mate is not None, ZERO if mate is None else mate), Control(0.05, 2.0),
+        Rules(2.0, 4.0, separation=separation, planar=planar),
     )  # fmt: skip
 
 
@@ -115,7 +117,7 @@ class TestEvader:
     @settings(max_examples=300, deadline=None)
     @given(pursuers(), points(), st.floats(-60.0, 0.0), st.floats(0.0, 60.0))
     def test_keeps_its_pitch_band_whichever_rule_fires(self, team, target, low, high):
-        limits = Limits(pitch_min=radians(low), pitch_max=radians(high))
+        limits = VehicleLimits(pitch_min=radians(low), pitch_max=radians(high))
         decision = evader(seen_by_evader(team, target, limits, planar=False))
         assert limits.pitch_min - 2e-9 <= pitch_of(decision.direction) <= limits.pitch_max + 2e-9
         assert norm(decision.direction) == pytest.approx(1.0, abs=1e-9)
@@ -164,7 +166,7 @@ class TestPursuer:
     @settings(max_examples=300, deadline=None)
     @given(points(), headings(), st.floats(-40, 0), st.floats(0, 40), st.sampled_from(sorted(PURSUERS)))
     def test_every_strategy_keeps_the_pitch_band(self, place, heading, low, high, name):
-        limits = Limits(pitch_min=radians(low), pitch_max=radians(high))
+        limits = VehicleLimits(pitch_min=radians(low), pitch_max=radians(high))
         view = seen_by_pursuer(place, heading, limits=limits, prediction=Vec(1.0, 2.0, 300.0), planar=False)
         decision = PURSUERS[name].decide(view)
         assert limits.pitch_min - 2e-9 <= pitch_of(decision.direction) <= limits.pitch_max + 2e-9

@@ -8,7 +8,7 @@ import pytest
 
 from onboard.core.math.vectors import ZERO, Vec, norm, sub
 from onboard.game.scenario import Kind, VehicleSpec
-from onboard.wire.mavlink.frames import Sender, dialect
+from onboard.wire.mavlink.dialect import DialectSender, dialect
 from tests.support.flown import ORIGIN, Flown
 
 GCS = dialect.MAVLink_heartbeat_message(6, 8, 0, 0, 4, 3)
@@ -150,7 +150,7 @@ def test_the_pilots_switch_takes_it_out_of_guided_at_once() -> None:
 
 def silent(flown: Flown, gcs: tuple[int, int], seconds: float) -> Flown:
     """Ten heartbeats of a ground station, then silence; velocities all the while."""
-    beat = Sender(*gcs)
+    beat = DialectSender(*gcs)
     for _ in range(10):
         flown.send(GCS, beat)
         chase(flown, Vec(1.0, 0.0, 0.0), 1.0)
@@ -163,7 +163,7 @@ def test_the_ground_stations_silence_brings_it_home_if_the_parameter_says_so() -
     chase(flown, Vec(1.0, 0.0, 0.0), 2.0)
     assert flown.mode == "RTL"
     assert "GCS Failsafe" in flown.texts()
-    flown.send(GCS, Sender(255, 190))
+    flown.send(GCS, DialectSender(255, 190))
     flown.fly(1.0)
     assert flown.texts()[-1] == "GCS Failsafe Cleared"
     assert flown.mode == "RTL"

@@ -8,7 +8,7 @@ import pytest
 
 from onboard.core.math.vectors import ZERO, Vec, norm
 from onboard.game.scenario import Kind
-from onboard.wire.mavlink.frames import Sender, dialect
+from onboard.wire.mavlink.dialect import DialectSender, dialect
 from sim_bridge.vehicle.flight.kinematic import G, wrap
 from tests.support.flown import ORIGIN, Flown
 
@@ -274,7 +274,7 @@ def test_modes_it_cannot_enter_fail(name: str) -> None:
 def test_the_ground_stations_silence(enabled: int, action: int, mode: str, expected: str) -> None:
     flown = Flown(Kind.ARDUPLANE, parameters={"FS_GCS_ENABL": enabled, "FS_LONG_ACTN": action})
     assert flown.mode_to(mode) == 0
-    flown.send(GCS, Sender(255, 190))
+    flown.send(GCS, DialectSender(255, 190))
     flown.fly(4.5)
     assert flown.mode == mode
     flown.fly(1.0)

@@ -10,12 +10,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec, norm, sub
 from onboard.game.scenario import Kind
-from onboard.wire.mavlink.frames import Framer, Sender, dialect
+from onboard.wire.mavlink.dialect import DialectSender, dialect
+from onboard.wire.mavlink.frames import Framer
 from onboard.wire.mavlink.signing import MemoryStore, Signing
 from sim_bridge.vehicle.autopilot.health import Fault
-from tests.support.flown import EPOCH_NS, ORIGIN, SECOND, Flown
+from tests.support.flown import EPOCH_NS, ORIGIN, Flown
 
 KINDS = pytest.mark.parametrize("kind", list(Kind), ids=lambda kind: kind.value)
 FLYING_MODE = {Kind.PX4: "HOLD", Kind.ARDUCOPTER: "LOITER", Kind.ARDUPLANE: "LOITER"}
@@ -159,7 +161,7 @@ def test_position_is_reported_in_its_own_frame_and_geodetically_alike(kind: Kind
     assert next(t for t, m in flown.heard if m is local) == at
     game = ORIGIN.ned_from_geodetic(world.lat * 1e-7, world.lon * 1e-7, world.alt * 1e-3)
     # The motion of that instant lies within a tick's way of the present one.
-    assert norm(sub(game, flown.position)) < 22.0 * (flown.now_ns - at) / SECOND + 0.5
+    assert norm(sub(game, flown.position)) < 22.0 * (flown.now_ns - at) / NS_PER_S + 0.5
     own = type(ORIGIN)(origin.latitude * 1e-7, origin.longitude * 1e-7, origin.altitude * 1e-3)
     seen = own.ned_from_geodetic(world.lat * 1e-7, world.lon * 1e-7, world.alt * 1e-3)
     assert norm(sub(seen, Vec(local.x, local.y, local.z))) < 0.05
@@ -257,7 +259,7 @@ def test_time_is_told(kind: Kind) -> None:
     flown = Flown(kind).fly(12.0)
     flown.send(dialect.MAVLink_timesync_message(0, 777))
     answer = flown.last("TIMESYNC")
-    assert (answer.tc1, answer.ts1) == (12 * SECOND, 777)
+    assert (answer.tc1, answer.ts1) == (12 * NS_PER_S, 777)
     heard = len(flown.heard)
     flown.send(dialect.MAVLink_timesync_message(1, 777))  # somebody's answer: nothing to say
     assert len(flown.heard) == heard
@@ -347,7 +349,8 @@ def test_a_second_ground_station_changes_nothing(kind: Kind) -> None:
 @KINDS
 def test_its_own_frames_coming_back_are_not_obeyed(kind: Kind) -> None:
     flown = Flown(kind)
-    flown.send(dialect.MAVLink_command_long_message(0, 0, 400, 0, 0, 21196, 0, 0, 0, 0, 0), Sender(1, 1))
+    disarm = dialect.MAVLink_command_long_message(0, 0, 400, 0, 0, 21196, 0, 0, 0, 0, 0)
+    flown.send(disarm, DialectSender(1, 1))
     assert flown.autopilot.armed
     assert flown.autopilot.counters["own_echo"] == 1
 
@@ -429,13 +432,13 @@ def test_with_a_key_it_obeys_signed_frames_alone_and_signs_its_own(kind: Kind) -
     flown.send(request)
     assert flown.got("COMMAND_ACK") == []
     assert flown.autopilot.counters["signature_unsigned"] == 1
-    signed = Sender(1, 191, signing=Signing(key, MemoryStore()))
+    signed = DialectSender(1, 191, signing=Signing(key, MemoryStore()))
     frame = signed.pack(request, EPOCH_NS + flown.now_ns)
     flown.autopilot.receive(flown.now_ns, frame, "peer")
     flown.fly(0.1)
     assert flown.last("COMMAND_ACK").result == 0
     verifier = Framer(signing=Signing(key, MemoryStore()))
-    assert all(verifier.feed(frame, EPOCH_NS + SECOND) for frame in flown.frames[-3:])
+    assert all(verifier.feed(frame, EPOCH_NS + NS_PER_S) for frame in flown.frames[-3:])
 
 
 @KINDS

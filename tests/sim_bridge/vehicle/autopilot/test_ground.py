@@ -6,7 +6,7 @@ import pytest
 
 from onboard.core.math.vectors import Vec
 from onboard.game.scenario import Kind
-from onboard.wire.mavlink.frames import dialect
+from onboard.wire.mavlink.dialect import dialect
 from tests.support.flown import Flown
 
 KINDS = pytest.mark.parametrize("kind", list(Kind), ids=lambda kind: kind.value)

@@ -6,7 +6,7 @@ import pytest
 
 from onboard.core.math.vectors import ZERO, Vec, norm, sub
 from onboard.game.scenario import Kind, VehicleSpec
-from onboard.wire.mavlink.frames import Sender, dialect
+from onboard.wire.mavlink.dialect import DialectSender, dialect
 from tests.support.flown import ORIGIN, Flown
 
 GCS = dialect.MAVLink_heartbeat_message(6, 8, 0, 0, 4, 3)
@@ -82,7 +82,7 @@ def test_what_it_does_then_is_a_parameter(action: int, mode: str) -> None:
 def test_the_data_link_is_any_ground_station_and_by_default_not_missed() -> None:
     for action, mode in ((0, "OFFBOARD"), (2, "RTL"), (3, "LAND"), (1, "HOLD")):
         flown = offboard(parameters={"NAV_DLL_ACT": action, "COM_DL_LOSS_T": 3})
-        flown.send(GCS, Sender(77, 190))
+        flown.send(GCS, DialectSender(77, 190))
         stream(flown, ZERO, 2.5)
         assert flown.mode == "OFFBOARD"
         stream(flown, ZERO, 1.0)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from onboard.config.strict import ConfigError
-from onboard.core.math.states import Limits
+from onboard.core.math.states import VehicleLimits
 from onboard.runtime.resources import configs
 from sim_bridge.vehicle.flight.aircraft import load, named, within
 from sim_bridge.vehicle.flight.plane import PathModel
@@ -62,7 +62,7 @@ def test_what_cannot_fly_is_refused_with_its_reason(
 
 def test_a_vehicle_s_own_limits_narrow_those_of_the_aircraft() -> None:
     model = named("nose").model
-    narrow = within(model, Limits(30.0, 50.0, radians(-10.0), radians(60.0)))
+    narrow = within(model, VehicleLimits(30.0, 50.0, radians(-10.0), radians(60.0)))
     assert (narrow.speed_min, narrow.speed_max) == (30.0, 50.0)
     assert narrow.pitch_min == radians(-10.0)
     assert narrow.pitch_max == model.pitch_max

@@ -8,14 +8,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from onboard.core.math.states import Limits
+from onboard.core.math.angles import wrap
+from onboard.core.math.states import VehicleLimits
 from onboard.core.math.vectors import ZERO, Vec, norm
 from sim_bridge.vehicle.flight.airframe import Plane, fixed_wing
-from sim_bridge.vehicle.flight.plane import wrap
 from sim_bridge.vehicle.motion import CALM, Air, Airframe, Demand, Lateral
 
 ALL = ["nose", "slip", "coordinated"]
-FREE = Limits()
+FREE = VehicleLimits()
 
 
 def fly(plane: Plane, demand: Demand, air: Air, seconds: float, dt: float = 0.05) -> None:
@@ -145,7 +145,7 @@ angles = st.floats(-pi, pi)
     ),
 )
 def test_no_demand_and_no_gust_takes_it_out_of_its_limits(name: str, orders: list) -> None:  # type: ignore[type-arg]
-    plane = fixed_wing(name, Limits(20.0, 50.0, radians(-20.0), radians(20.0)), ZERO, 0.0, 45.0)
+    plane = fixed_wing(name, VehicleLimits(20.0, 50.0, radians(-20.0), radians(20.0)), ZERO, 0.0, 45.0)
     for kind, angle, climb, airspeed, gust in orders:
         asked = Demand(kind, ZERO, angle, climb, airspeed)
         for _ in range(30):

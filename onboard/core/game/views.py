@@ -1,0 +1,140 @@
+"""What a player sees when it decides: the only place where views are made, for flights and for simulations.
+
+Strategies run in the moving air mass. There a target on the ground moves at −w, so the evader is shown the
+place where it will meet it. Kernel style: the same source runs interpreted onboard and compiled.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from onboard.core.game.rules import Control, Rules, Target
+from onboard.core.geometry.apollonius import intercept
+from onboard.core.geometry.cones import Cone, blocked_cones
+from onboard.core.math.states import Vehicle, VehicleLimits
+from onboard.core.math.vectors import NORTH, TINY, Vec, along, norm, scale, unit
+
+
+class EvaderView(NamedTuple):
+    """A situation as the evader sees it. Pursuers and target move in the same air mass."""
+
+    own: Vehicle
+    limits: VehicleLimits
+    pursuers: tuple[Vehicle, ...]
+    cones: tuple[Cone, ...]  # directions that the pursuers block, one cone each, from `blocked_cones`
+    target: Target  # where it will be met in the moving air
+    rules: Rules
+
+
+class Sighting(NamedTuple):
+    """The evader as a pursuer sees it, in the moving air mass."""
+
+    evader: Vehicle
+    heading: Vec  # ê, unit vector of the evader's velocity
+    has_prediction: bool
+    prediction: Vec  # the evader's place after the control's `lookahead` [m]
+
+
+class Nearest(NamedTuple):
+    """The nearest team mate."""
+
+    exists: bool
+    position: Vec  # [m; NED]
+
+
+class PursuerView(NamedTuple):
+    """A situation as a pursuer sees it, in the moving air mass."""
+
+    own: Vehicle
+    limits: VehicleLimits
+    evader: Vehicle
+    heading: Vec  # ê, unit vector of the evader's velocity
+    has_prediction: bool
+    prediction: Vec  # the evader's place after the control's `lookahead` [m]
+    mate: Nearest
+    control: Control
+    rules: Rules
+
+
+def level(v: Vec, planar: bool) -> Vec:
+    """A place [m] or velocity [m/s] as the game counts it: without its height in a plane game."""
+    if planar:
+        return Vec(v.x, v.y, 0.0)
+    return v
+
+
+def heading_at(vehicle: Vehicle) -> Vec:
+    """Unit vector of a vehicle's velocity through the air; north for a vehicle at rest."""
+    return unit(vehicle.velocity, NORTH)
+
+
+def target_in_air(target: Target, own: Vehicle, wind: Vec) -> Target:
+    """The point of the moving air where `own` meets a target on the ground, which moves at −w in the air.
+
+    `wind` is where the air moves to [m/s; NED]. The target itself in still air and where it cannot be met.
+    """
+    drift = norm(wind)
+    if not target.exists or drift <= TINY:
+        return target
+    meeting = intercept(target.position, scale(wind, -1.0 / drift), drift, own.position, own.speed)
+    if meeting.exists:
+        return Target(True, meeting.point)
+    return target
+
+
+def evader_view(
+    own: Vehicle,
+    limits: VehicleLimits,
+    pursuers: tuple[Vehicle, ...],
+    target: Target,
+    wind: Vec,
+    rules: Rules,
+) -> EvaderView:
+    """The situation as the evader sees it.
+
+    `target` lies on the ground [m; NED]; `wind` is where the air moves to [m/s; NED], zero for a vehicle that
+    holds its velocity over ground.
+    """
+    cones = blocked_cones(own, pursuers, rules.rho)
+    return EvaderView(own, limits, pursuers, cones, target_in_air(target, own, wind), rules)
+
+
+def sighted(evader: Vehicle, heading: Vec, lookahead: float) -> Sighting:
+    """The evader on a `heading` (unit), predicted to fly straight on for `lookahead` [s]."""
+    return Sighting(evader, heading, True, along(evader.position, heading, evader.speed * lookahead))
+
+
+def nearest_mate(own: Vec, mates: tuple[Vec, ...], but: int) -> Nearest:
+    """The place among `mates` [m; NED] nearest to `own`; the one with index `but` is left out."""
+    exists = False
+    position = own
+    smallest = 1e300
+    for index in range(len(mates)):
+        if index != but:
+            place = mates[index]
+            x = place.x - own.x
+            y = place.y - own.y
+            z = place.z - own.z
+            square = x * x + y * y + z * z
+            if square < smallest:
+                smallest = square
+                position = place
+                exists = True
+    return Nearest(exists, position)
+
+
+def pursuer_view(
+    own: Vehicle, limits: VehicleLimits, sighting: Sighting, mate: Nearest, control: Control, rules: Rules
+) -> PursuerView:
+    """The situation as a pursuer sees it."""
+    return PursuerView(
+        own,
+        limits,
+        sighting.evader,
+        sighting.heading,
+        sighting.has_prediction,
+        sighting.prediction,
+        mate,
+        control,
+        rules,
+    )
