@@ -11,7 +11,7 @@ import pytest
 from gcs.replay.decide import Comparison, decide
 from onboard.agent import event_file
 from onboard.agent.core import flight
-from onboard.agent.event_file import Full, Happened
+from onboard.agent.event_file import EventFile, FileSink, Full, Happened
 from onboard.config.strict import ConfigError
 from onboard.core.safety.policy import Policy
 from onboard.game.scenario import load
@@ -21,12 +21,12 @@ from onboard.wire.bus.messages import Role
 from sim_bridge.rehearsal import Rehearsal
 
 
-def fly(folder: Path, seconds: float, **agent: object) -> Path:
+def fly(folder: Path, seconds: float) -> Path:
     """A game in which one pursuer hunts one evader, agents and all; the folder."""
     scenario = load(configs() / "scenarios" / "flight" / "one-on-one.toml")
 
     async def play() -> None:
-        async with Rehearsal(scenario, virtual_clock(), folder=folder, configure={1: agent, 2: agent}):
+        async with Rehearsal(scenario, virtual_clock(), folder=folder):
             await asyncio.sleep(seconds)
 
     run_virtual(play())
@@ -91,16 +91,44 @@ def test_how_far_it_is_is_told_from_nothing_to_all(flown: Path) -> None:
     assert {what for _, what in told} == {"vehicle 1", "vehicle 2"}
 
 
-def test_a_full_file_is_fed_as_far_as_it_goes_and_says_so(tmp_path: Path) -> None:
-    run = fly(tmp_path, 30.0, events_max_mb=1.0)
-    for path in run.glob("*.events"):
-        assert path.stat().st_size < 1.1e6
-    records = [record for _, record in event_file.read(run / "vehicle-1.events").records]
-    assert isinstance(records[-1], Full)
-    assert all(isinstance(record, Happened) for record in records[:-1])
-    fed = decide(run).fed[0]
+def test_a_full_file_is_fed_as_far_as_it_goes_and_says_so(flown: Path, tmp_path: Path) -> None:
+    story = event_file.read(flown / "vehicle-1.events")
+    path = tmp_path / "vehicle-1.events"
+    short = EventFile(FileSink(path), 100_000)
+    short.begin(story.head.config, story.head.facts)
+    for _share, record in story.records:
+        assert isinstance(record, Happened)
+        short.add(record.now, record.event, record.effects)  # type: ignore[arg-type]
+    short.close()
+    assert 90_000 < path.stat().st_size < 100_100
+    assert short.counters() == {"events_unrecorded": 0, "events_file_full": 1}
+    *records, last = [record for _, record in event_file.read(path).records]
+    assert isinstance(last, Full)
+    assert all(isinstance(record, Happened) for record in records)
+    fed = decide(tmp_path).fed[0]
+    assert (fed.events, fed.otherwise) == (len(records), 0)
+    assert fed.remarks == ("the file was full at 0.1 MB: what came later is not in it",)
+
+
+def test_where_the_disk_was_too_slow_it_is_fed_up_to_there(flown: Path, tmp_path: Path) -> None:
+    class Slow(FileSink):
+        chunks = 0
+
+        def put(self, chunk: bytes) -> bool:
+            self.chunks += 1
+            return self.chunks != 3 and super().put(chunk)
+
+    story = event_file.read(flown / "vehicle-1.events")
+    lossy = EventFile(Slow(tmp_path / "vehicle-1.events"), 10**9)
+    lossy.begin(story.head.config, story.head.facts)
+    for _share, record in story.records:
+        assert isinstance(record, Happened)
+        lossy.add(record.now, record.event, record.effects)  # type: ignore[arg-type]
+    lossy.close()
+    assert lossy.counters()["events_unrecorded"] == 1
+    fed = decide(tmp_path).fed[0]
     assert fed.otherwise == 0
-    assert fed.remarks == ("the file was full at 1 MB: what came later is not in it",)
+    assert fed.remarks == ("the disk was too slow in flight: from here on records are missing",)
 
 
 def test_a_strategy_that_does_not_exist_is_told_before_anything_else(tmp_path: Path) -> None:

@@ -201,7 +201,7 @@ async def test_a_setup_from_another_than_the_master_is_ignored() -> None:
         await under_way(game, 1.0)
         agent = game.agents[PURSUER]
         assert agent.core.bus.setup is not None
-        other = replace(agent.core.bus.setup, master="usurper", capture_radius=99.0, safety_distance=199.0)
+        other = replace(agent.core.bus.setup, master="usurper", rules=swarm.RulesMessage(99.0, 199.0))
         game.bus.publish(key(game.game, SETUP), swarm.SETUP.encode(other), SETUP.delivery)
         await passes(game, 1.0)
         assert agent.core.bus.setup.master == "sim-bridge"

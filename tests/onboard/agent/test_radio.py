@@ -5,7 +5,7 @@ from __future__ import annotations
 from onboard.agent.core.events import ANY_PEER, Instant, LinkFacts, Outbox, Send
 from onboard.agent.core.mavlink_radio import Radio
 from onboard.runtime.loop import EPOCH_NS
-from onboard.wire.mavlink import commands
+from onboard.wire.mavlink.commands import OwnHeartbeat
 from onboard.wire.mavlink.frames import Packet, Sender
 from onboard.wire.mavlink.signing import MemoryStore, Signing
 
@@ -29,7 +29,7 @@ class Air:
 
     def sent(self) -> list[Send]:
         """What goes out when the radio sends a heartbeat."""
-        self.radio.send(commands.heartbeat())
+        self.radio.send(OwnHeartbeat())
         self.radio.flush(NOW)
         return [effect for effect in self.out.take() if isinstance(effect, Send)]
 
@@ -39,7 +39,7 @@ AUTOPILOT, STRANGER = 3, 7
 
 def beat(system: int = 2, component: int = 1, signing: Signing | None = None) -> bytes:
     """A heartbeat of somebody's."""
-    return Sender(system, component, signing=signing).pack(commands.heartbeat(), EPOCH_NS)
+    return Sender(system, component, signing=signing).pack(OwnHeartbeat(), EPOCH_NS)
 
 
 def test_answers_go_to_the_autopilots_peer_and_to_nobody_elses() -> None:

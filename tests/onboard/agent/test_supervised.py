@@ -127,7 +127,9 @@ async def test_pursuers_that_close_in_on_one_place_keep_apart() -> None:
 def wide(player: GamePlayer, separation: float) -> Callable[[Setup, str], None]:
     """The setup with a separation."""
     consider = player._consider
-    return lambda setup, error: consider(replace(setup, separation=separation), error)
+    return lambda setup, error: consider(
+        replace(setup, rules=replace(setup.rules, separation=separation)), error
+    )
 
 
 @virtual
