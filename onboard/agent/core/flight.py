@@ -18,8 +18,14 @@ from onboard.autopilot.base import ReleaseMode, Setpoint, Stage, Telemetry
 from onboard.core.math.constants import NEVER
 from onboard.core.math.states import Mate
 from onboard.core.math.vectors import ZERO, Vec, along
-from onboard.core.safety.policy import Action, Cause, SupervisorInput
-from onboard.core.safety.supervisor import SupervisorOutput, SupervisorState, handed_back, supervise
+from onboard.core.safety.policy import Action, Command, SupervisorInput
+from onboard.core.safety.supervisor import (
+    SupervisorOutput,
+    SupervisorState,
+    handed_back,
+    reordered,
+    supervise,
+)
 from onboard.core.safety.words import ACTIONS, CAUSES
 from onboard.pilot.pilot import PilotDecision, Question
 from onboard.pilot.setup import Own
@@ -28,6 +34,11 @@ from onboard.wire.bus.messages import Severity
 SILENT_S = 1.0  # a link silent for longer explains that the autopilot changed to hold by itself
 REGAIN_S = 6.0  # … for so long afterwards
 WIND_FRESH_S = 10.0
+RELEASES = {
+    Command.RELEASE_TO_HOLD: ReleaseMode.HOLD,
+    Command.RELEASE_TO_RETURN: ReleaseMode.RETURN,
+    Command.RELEASE_TO_LAND: ReleaseMode.LAND,
+}
 
 
 class OpenStep(NamedTuple):
@@ -37,7 +48,6 @@ class OpenStep(NamedTuple):
     begun: Instant
     telemetry: Telemetry
     wind: Vec  # [m/s; where the air moves to], ZERO for multicopters
-    hovers: bool
     question: Question | None
 
 
@@ -51,7 +61,8 @@ class Flight:
         self.config = config
         self.part = part
         self.decision: PilotDecision | None = None  # the last one; None while the part is not on
-        self.output: SupervisorOutput | None = None  # likewise
+        self.output: SupervisorOutput | None = None  # the last one; None while nothing is supervised
+        self.playing = False  # the part is on
         self.setpoint = ZERO  # [m/s; ground] let through in this step
         self.failures = 0  # of the strategy
         self.take_off = TakeOff(config.take_off_height)
@@ -84,8 +95,10 @@ class Flight:
         self.setpoint = ZERO
         if not state.on:
             self.decision = self.output = self.open = None
+            self.playing = False
             self._stand_by(now.s, telemetry, state)
             return None
+        self.playing = True
         return self._ask(now, telemetry)
 
     def answered(self, answer: Answered) -> bool:
@@ -115,7 +128,7 @@ class Flight:
         wind = t.wind if not hovers and now.s - t.wind_at < WIND_FRESH_S else ZERO
         position = along(t.position, t.velocity, min(max(0.0, now.s - t.position_at), 0.5))
         self._number += 1
-        step = OpenStep(self._number, now, t, wind, hovers, None)
+        step = OpenStep(self._number, now, t, wind, None)
         try:
             asked = self.part.ask(now, Own(position, t.velocity, wind))
         except Exception as trouble:  # an error of thinking must not end the flight: the supervisor acts
@@ -139,56 +152,77 @@ class Flight:
             self._alive_at = now + took_s
         self._failing = bool(error)
         decision = self.decision
-        seen = SupervisorInput(
+        seen = self._input(now, t)._replace(
+            wind=step.wind,
+            strategy_age=max(took_s, now - self._alive_at),
+            track_sigma=decision.sigma if decision is not None else inf,
+        )
+        wanted = decision.velocity if decision is not None and decision.decides else ZERO
+        self._supervise(wanted, seen)
+
+    def obey(self, now: float) -> None:
+        """Follow at once what the ground has ordered, or what it gives back."""
+        adapter = self._vehicle.adapter
+        if adapter is None:
+            return
+        telemetry = self._vehicle.look(now)
+        if self._orders.order is Action.PASS:
+            self.resumed()
+            adapter.enter(now)
+            self.drive(now, None)
+        else:
+            self._state = reordered(self._state)
+            self._supervise(ZERO, self._input(now, telemetry))
+
+    def _input(self, now: float, t: Telemetry) -> SupervisorInput:
+        """What the supervisor looks at, but for what belongs to a decision."""
+        return SupervisorInput(
             now=now,
             id=self.config.id,
             position=t.position,
             velocity=t.velocity,
-            wind=step.wind,
             mates=self._mates(now),
             telemetry_age=now - t.position_at if t.placed else inf,
             heartbeat_age=now - t.heartbeat_at,
-            strategy_age=max(took_s, now - self._alive_at),
-            track_sigma=decision.sigma if decision is not None else inf,
             ground_age=now - self._bus.master_at,
             clock_jump_age=now - self._jumps.jumped_at,
             battery=t.battery,
             ekf_ok=t.ekf_ok or t.ekf_at == NEVER,
             gps_fix=t.gps_fix if t.gps_at != NEVER else 3,
             pilot=self._vehicle.stage is Stage.TAKEN,
-            order=self._orders.action,
+            order=self._orders.order,
         )
-        wanted = decision.velocity if decision is not None and decision.decides else ZERO
+
+    def _supervise(self, wanted: Vec, seen: SupervisorInput) -> None:
+        """Let the supervisor judge, do what it commands, and tell where that is something new."""
         output = supervise(wanted, seen, self.part.policy, self._state)
         self._state, self.output = output.state, output
-        self._carry_out(now, output, step)
+        self._carry_out(seen.now, output, seen.wind)
         if output.changed:
             self._say(output)
 
-    def _carry_out(self, now: float, output: SupervisorOutput, step: OpenStep) -> None:
-        """From the supervisor's output to what the adapter is asked for."""
+    def _carry_out(self, now: float, output: SupervisorOutput, wind: Vec) -> None:
+        """From the supervisor's output to what the adapter is asked for: the one exit of setpoints."""
         adapter = self._vehicle.adapter
         if adapter is None:
             return
         ours = adapter.stage in (Stage.ACTIVE, Stage.ENTERING)
+        command = output.command
         setpoint: Setpoint | None = None
-        if self._orders.way is not None:
-            adapter.leave(now, self._orders.way)
-        elif output.stream:
+        if command is Command.STREAM:
             if not ours and adapter.stage is not Stage.TAKEN and self.may_control:
                 adapter.enter(now)
-            setpoint = Setpoint(output.air, step.wind)
+            setpoint = Setpoint(output.air, wind)
             self.setpoint = output.ground
-        elif output.action is Action.HOLD:
-            if step.hovers:
-                setpoint = Setpoint(ZERO)
-            elif ours:
-                adapter.leave(now, ReleaseMode.HOLD)
-        elif output.action is Action.RETURN:
-            if ours or adapter.stage is Stage.LEAVING:
-                adapter.leave(now, ReleaseMode.RETURN)
-        elif output.cause is not Cause.PILOT:
+        elif command is Command.HOVER:
+            setpoint = Setpoint(ZERO)
+        elif command is Command.END_STREAM:
             adapter.end(now)
+        elif command in RELEASES:
+            # Without an order only what is ours is released, or what is on its way to a milder mode.
+            leaving = adapter.stage is Stage.LEAVING and command is not Command.RELEASE_TO_HOLD
+            if ours or leaving or self._orders.order is not Action.PASS:
+                adapter.leave(now, RELEASES[command])
         self.drive(now, setpoint)
 
     # ------------------------------------------------------------------ before and after the part
@@ -199,9 +233,10 @@ class Flight:
         if adapter is None:
             return
         idle = adapter.stage in (Stage.IDLE, Stage.LEFT)
-        if self._orders.way is not None:
-            adapter.leave(now, self._orders.way)
-        elif state.over:
+        if self._orders.order is not Action.PASS:
+            self._supervise(ZERO, self._input(now, t))
+            return
+        if state.over:
             if adapter.stage in (Stage.ACTIVE, Stage.ENTERING):
                 adapter.leave(now, ReleaseMode.HOLD)
         elif state.engaged and self.may_control and state.near and idle:
@@ -217,7 +252,7 @@ class Flight:
     def _takes_off(self, now: float, state: PartState) -> bool:
         """A ground start: whether the vehicle is on its way up, by this agent's doing."""
         allowed = self.config.may_arm and state.engaged and self.may_control
-        if not allowed or self._orders.way is not None or state.over:
+        if not allowed or state.over:
             return False
         return self.take_off.step(now, self._vehicle)
 
@@ -239,7 +274,7 @@ class Flight:
 
     def resumed(self) -> None:
         """Control is given back to the agent: what the supervisor had latched is over."""
-        self._state = SupervisorState() if self.output is None else handed_back(self._state)
+        self._state = SupervisorState() if not self.playing else handed_back(self._state)
 
     def _taken(self, now: float) -> None:
         t, adapter = self._vehicle.telemetry, self._vehicle.adapter

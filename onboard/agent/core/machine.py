@@ -51,6 +51,7 @@ from onboard.agent.core.schedule import EARLY_S, Grid
 from onboard.agent.core.vehicle_link import VehicleLink
 from onboard.autopilot.base import ReleaseMode, Stage
 from onboard.core.math.constants import NEVER
+from onboard.core.safety.policy import Action
 from onboard.game.route_file import Route
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus.messages import CommandKind, CommandReply, Role, Severity
@@ -90,9 +91,7 @@ class AgentCore:
         )
         self.vehicle = VehicleLink(config, self.radio, self.journal, self.out)
         self.bus = BusView(config, facts.nonce, self.out, self.journal)
-        self.orders = Orders(
-            ReleaseMode.RETURN if config.safety.abort is KnockOff.RETURN else ReleaseMode.HOLD
-        )
+        self.orders = Orders(Action.RETURN if config.safety.abort is KnockOff.RETURN else Action.HOLD)
         self.game: GamePlayer | None = None
         part: Part
         if config.role is Role.TRACKER:
@@ -302,7 +301,7 @@ class AgentCore:
                 self.journal.warning("command_refused", f"{text}: {entry.reason}")
             else:
                 self.journal.info("command", text)
-                self._obey(now.s)
+                self.flight.obey(now.s)
         self._review_orders()
         reply = CommandReply(
             command_id=command.command_id,
@@ -324,19 +323,6 @@ class AgentCore:
         if self.vehicle.stage is Stage.TAKEN and kind not in (CommandKind.RESUME, CommandKind.START):
             return f"a pilot flies it, in {self.vehicle.telemetry.mode}"
         return ""
-
-    def _obey(self, now: float) -> None:
-        """Tell the adapter at once what the order in force is."""
-        adapter = self.vehicle.adapter
-        if adapter is None:
-            return
-        self.vehicle.look(now)
-        if self.orders.way is not None:
-            adapter.leave(now, self.orders.way)
-        else:
-            self.flight.resumed()
-            adapter.enter(now)
-        self.flight.drive(now, None)
 
     def _review_orders(self) -> None:
         entry = self.orders.review(self.vehicle.stage)
@@ -408,12 +394,12 @@ class AgentCore:
             self.journal.info("stage", f"{stage}{text}")
 
     def _stage(self, *, over: bool) -> str:
-        output = self.flight.output
+        output = self.flight.output if self.flight.playing else None
         if self.vehicle.stage is Stage.TAKEN:
             return "handed_over"
         if over:
             return "ended"
-        if self.orders.way is not None or (output is not None and not output.stream):
+        if self.orders.order is not Action.PASS or (output is not None and not output.stream):
             return "held"
         if output is not None and (self.vehicle.stage is Stage.ACTIVE or self.config.dry_run):
             return "acting"

@@ -17,7 +17,20 @@ class Action(IntEnum):
     CLIP = 1  # the nearest thing that is allowed goes out
     HOLD = 2  # stay here: hover or loiter
     RETURN = 3  # the autopilot's own way home
-    END = 4  # end the stream of setpoints; what that means is the adapter's business
+    LAND = 4  # the autopilot's own landing, where the vehicle is
+    END = 5  # end the stream of setpoints; what that means is the adapter's business
+
+
+class Command(IntEnum):
+    """What the adapter is to do: the supervisor alone says when a vehicle leaves the guided mode, and how."""
+
+    STREAM = 0  # send the setpoint
+    HOVER = 1  # send zero velocity: a multicopter holds under the agent's control
+    RELEASE_TO_HOLD = 2  # leave the vehicle in the autopilot's own mode to hold
+    RELEASE_TO_RETURN = 3  # … to fly home
+    RELEASE_TO_LAND = 4  # … to land
+    END_STREAM = 5  # send nothing more
+    HANDS_OFF = 6  # a pilot flies: ask for nothing
 
 
 class Cause(IntEnum):

@@ -14,7 +14,7 @@ from onboard.core.safety.envelope import believable, bounded, slewed
 from onboard.core.safety.fence import brake, keep_height, outside_by, turn
 from onboard.core.safety.field_profile import keep_layer
 from onboard.core.safety.health import HealthAction, health
-from onboard.core.safety.policy import Action, Cause, Policy, SupervisorInput
+from onboard.core.safety.policy import Action, Cause, Command, Policy, SupervisorInput
 from onboard.core.safety.separation import keep_apart
 
 PROTECTIVE = (
@@ -46,7 +46,8 @@ class SupervisorOutput(NamedTuple):
 
     action: Action
     cause: Cause
-    stream: bool  # whether `ground` goes out; False: hold, return or end by the autopilot's own modes
+    command: Command  # what the adapter is to do
+    stream: bool  # whether `ground` goes out; False: hold, return, land or end without it
     ground: Vec  # setpoint [m/s; over ground]; ZERO unless `stream`
     air: Vec  # the same relative to the air [m/s]
     state: SupervisorState
@@ -76,10 +77,37 @@ def supervise(wanted: Vec, seen: SupervisorInput, policy: Policy, state: Supervi
     changed = after.action != state.action or after.cause != state.cause
     if after.action >= Action.HOLD:
         after = after._replace(demand=ZERO, stamp=NEVER)
-        return SupervisorOutput(after.action, after.cause, False, ZERO, ZERO, after, changed)
+        command = commanded(after.action, after.cause, seen.order, policy.envelope.hovers)
+        return SupervisorOutput(after.action, after.cause, command, False, ZERO, ZERO, after, changed)
     after = after._replace(demand=allowed.air, stamp=seen.now)
     ground = add(allowed.air, wind)
-    return SupervisorOutput(after.action, after.cause, True, ground, allowed.air, after, changed)
+    return SupervisorOutput(
+        after.action, after.cause, Command.STREAM, True, ground, allowed.air, after, changed
+    )
+
+
+def commanded(action: Action, cause: Cause, order: Action, hovers: bool) -> Command:
+    """What the adapter is to do where no decision goes out.
+
+    Against a pilot's hands nothing is asked for. An order from the ground leaves the guided mode even where a
+    fault ends the stream: of an order and a graver rule that also leaves it, the graver one is followed.
+    """
+    if cause == Cause.PILOT:
+        return Command.HANDS_OFF
+    release = max(order, action) if action < Action.END else order
+    if release == Action.LAND:
+        return Command.RELEASE_TO_LAND
+    if release == Action.RETURN:
+        return Command.RELEASE_TO_RETURN
+    if release == Action.HOLD:
+        by_order = order >= Action.HOLD
+        return Command.RELEASE_TO_HOLD if by_order or not hovers else Command.HOVER
+    return Command.END_STREAM
+
+
+def reordered(state: SupervisorState) -> SupervisorState:
+    """The state once another order is given: it need not wait until the last one has settled."""
+    return state._replace(urged=NEVER)
 
 
 def handed_back(state: SupervisorState) -> SupervisorState:

@@ -9,6 +9,7 @@ ACTIONS: dict[Action, str] = {
     Action.CLIP: "clip",
     Action.HOLD: "hold",
     Action.RETURN: "return",
+    Action.LAND: "land",
     Action.END: "end",
 }
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from onboard.agent.core.command_book import CommandState, Orders
-from onboard.autopilot.base import ReleaseMode, Stage
+from onboard.autopilot.base import Stage
 from onboard.core.safety.policy import Action
 from onboard.game.scenario import Kind
-from onboard.wire.bus.messages import CommandKind
+from onboard.wire.bus.messages import CommandKind, Phase
 from tests.support.flights import (
     PURSUER,
     autopilot,
@@ -50,6 +50,19 @@ async def test_an_order_in_flight_is_pending_then_confirmed_by_the_autopilots_mo
         assert game.health[PURSUER].stage == "held"
         await passes(game, 5.0)
         assert mode(game, PURSUER) == WORDS[kind][what]
+
+
+@virtual
+async def test_an_order_to_land_is_that_for_the_supervisor_too_and_before_the_game_as_well() -> None:
+    async with game_of(chase()) as game:
+        assert await game.until(lambda: game.phase is Phase.STAGING and mode(game, PURSUER) == "LOITER", 20.0)
+        await passes(game, 1.0)
+        await order(game, PURSUER, command(CommandKind.LAND))
+        assert await game.until(lambda: mode(game, PURSUER) == "LAND", 2.0)
+        assert "supervisor_land" in game.kinds(PURSUER)
+        assert "supervisor_return" not in game.kinds(PURSUER)
+        await passes(game, 1.2)
+        assert (await order(game, PURSUER, command(CommandKind.LAND))).state == "confirmed"
 
 
 @virtual
@@ -127,9 +140,9 @@ async def test_a_later_order_supersedes_an_open_one_and_bytes_that_are_none_are_
 
 
 def test_what_is_not_obeyed_confirms_nothing() -> None:
-    orders = Orders(ReleaseMode.HOLD)
+    orders = Orders(Action.HOLD)
     entry, new = orders.give(command(CommandKind.HOLD), "no autopilot")
-    assert (entry.state, new, orders.action) == (CommandState.REFUSED, True, Action.PASS)
+    assert (entry.state, new, orders.order) == (CommandState.REFUSED, True, Action.PASS)
     assert orders.review(Stage.LEFT) is None
     for n in range(200):
         orders.give(command(CommandKind.HOLD, f"n-{n}"), "")
