@@ -13,8 +13,8 @@ from onboard.agent.config import AgentConfig
 from onboard.agent.core.clocks import MasterClock
 from onboard.agent.core.events import Instant, Outbox, Subscribe, Unsubscribe
 from onboard.agent.core.journal import Journal
-from onboard.core.math.constants import NEVER, NS_PER_S
-from onboard.core.math.states import MateState
+from onboard.core.math.constants import NEVER
+from onboard.core.math.states import Mate, MateState, carried
 from onboard.core.math.vectors import Vec
 from onboard.wire.bus import messages as swarm
 from onboard.wire.bus import topics
@@ -110,16 +110,13 @@ class BusView:
                 self._followed.append(id)
                 self._out.put(Subscribe(topics.key(self._game, topics.STATE, id)))
 
-    def mate_states(self, base_ns: int) -> tuple[MateState, ...]:
-        """What the team mates last said of themselves."""
+    def mates_at(self, now: float) -> tuple[Mate, ...]:
+        """The team mates where they are at `now` [s, monotonic], carried forward from when they were heard.
+
+        The strategy and the supervisor are both given this one result."""
         return tuple(
-            MateState(
-                heard.state.id,
-                (heard.state.stamp_ns - base_ns) / NS_PER_S,
-                Vec(*heard.state.position),
-                Vec(*heard.state.velocity),
-            )
-            for heard in self.mates.values()
+            carried(MateState(id, heard.at, Vec(*heard.state.position), Vec(*heard.state.velocity)), now)
+            for id, heard in self.mates.items()
         )
 
     def _take_setup(self, key: str, payload: bytes, now: Instant) -> Track | None:

@@ -16,7 +16,6 @@ from onboard.agent.core.takeoff import TakeOff
 from onboard.agent.core.vehicle_link import Control, VehicleLink
 from onboard.autopilot.base import ReleaseMode, Setpoint, Stage, Telemetry
 from onboard.core.math.constants import NEVER
-from onboard.core.math.states import Mate
 from onboard.core.math.vectors import ZERO, Vec, along
 from onboard.core.safety.policy import Action, Command, SupervisorInput
 from onboard.core.safety.supervisor import (
@@ -181,7 +180,7 @@ class Flight:
             id=self.config.id,
             position=t.position,
             velocity=t.velocity,
-            mates=self._mates(now),
+            mates=self._bus.mates_at(now),
             telemetry_age=now - t.position_at if t.placed else inf,
             heartbeat_age=now - t.heartbeat_at,
             ground_age=now - self._bus.master_at,
@@ -286,15 +285,6 @@ class Flight:
             self._orders.taken()
 
     # ------------------------------------------------------------------ inside
-
-    def _mates(self, now: float) -> tuple[Mate, ...]:
-        found = []
-        for id, heard in self._bus.mates.items():
-            age = now - heard.at
-            velocity = Vec(*heard.state.velocity)
-            there = along(Vec(*heard.state.position), velocity, min(max(0.0, age), 1.0))
-            found.append(Mate(id, there, velocity, age))
-        return tuple(found)
 
     def _say(self, output: SupervisorOutput) -> None:
         """Tell a transition of the supervisor, with the level and module whose decision it met."""

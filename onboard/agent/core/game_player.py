@@ -15,7 +15,6 @@ from onboard.agent.core.readiness import lacking
 from onboard.agent.core.vehicle_link import VehicleLink
 from onboard.core.game.rules import Target
 from onboard.core.math.constants import NS_PER_S
-from onboard.core.math.states import carried
 from onboard.core.math.vectors import Vec
 from onboard.core.strategy.knowledge import Decision
 from onboard.pilot.memory import Memory
@@ -117,8 +116,7 @@ class GamePlayer:
             game = game._replace(target=Target(True, bus.target))
             self.flying = flying._replace(game=game)
         at = self._seconds(now.wall_ns)
-        mates = tuple(carried(mate, at) for mate in bus.mate_states(self._base_ns))
-        return flying.viewpoint.look(at, own, mates, game, self._memory)
+        return flying.viewpoint.look(at, own, bus.mates_at(now.s), game, self._memory)
 
     def conclude(self, question: Question, decision: Decision) -> PilotDecision:
         """What the strategy's answer means in this game."""
