@@ -97,7 +97,8 @@ def place(game: Rehearsal, id: int) -> Vec:
 def flies(agent: Agent) -> bool:
     """Whether setpoints count and go out."""
     verdict = agent.core.flight.output
-    return agent.core.vehicle.stage is Stage.ACTIVE and verdict is not None and verdict.stream
+    decided = agent.core.flight.playing and verdict is not None and verdict.stream
+    return agent.core.vehicle.stage is Stage.ACTIVE and decided
 
 
 def command(kind: CommandKind, id: str = "c-1", sender: str = "tower") -> Command:

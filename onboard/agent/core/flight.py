@@ -16,8 +16,8 @@ from onboard.agent.core.takeoff import TakeOff
 from onboard.agent.core.vehicle_link import Control, VehicleLink
 from onboard.autopilot.base import ReleaseMode, Setpoint, Stage, Telemetry
 from onboard.core.math.constants import NEVER
-from onboard.core.math.vectors import ZERO, Vec, along
-from onboard.core.safety.policy import Action, Command, SupervisorInput
+from onboard.core.math.vectors import ZERO, Vec, along, sub
+from onboard.core.safety.policy import Action, Cause, Command, SupervisorInput
 from onboard.core.safety.supervisor import (
     SupervisorOutput,
     SupervisorState,
@@ -192,15 +192,17 @@ class Flight:
             order=self._orders.order,
         )
 
-    def _supervise(self, wanted: Vec, seen: SupervisorInput) -> None:
-        """Let the supervisor judge, do what it commands, and tell where that is something new."""
+    def _supervise(self, wanted: Vec, seen: SupervisorInput, *, streams: bool = True) -> None:
+        """Let the supervisor judge, do what it commands, and tell where that is something new.
+
+        Without `streams` a velocity that it lets pass is not sent."""
         output = supervise(wanted, seen, self.part.policy, self._state)
         self._state, self.output = output.state, output
-        self._carry_out(seen.now, output, seen.wind)
+        self._carry_out(seen.now, output, seen.wind, streams=streams)
         if output.changed:
             self._say(output)
 
-    def _carry_out(self, now: float, output: SupervisorOutput, wind: Vec) -> None:
+    def _carry_out(self, now: float, output: SupervisorOutput, wind: Vec, *, streams: bool) -> None:
         """From the supervisor's output to what the adapter is asked for: the one exit of setpoints."""
         adapter = self._vehicle.adapter
         if adapter is None:
@@ -208,7 +210,7 @@ class Flight:
         ours = adapter.stage in (Stage.ACTIVE, Stage.ENTERING)
         command = output.command
         setpoint: Setpoint | None = None
-        if command is Command.STREAM:
+        if command is Command.STREAM and streams:
             if not ours and adapter.stage is not Stage.TAKEN and self.may_control:
                 adapter.enter(now)
             setpoint = Setpoint(output.air, wind)
@@ -227,31 +229,30 @@ class Flight:
     # ------------------------------------------------------------------ before and after the part
 
     def _stand_by(self, now: float, t: Telemetry, state: PartState) -> None:
-        """Take control when the part is about to begin, leave when it is over."""
+        """Take control when the part is about to begin; what is under control is supervised from then on."""
         adapter = self._vehicle.adapter
         if adapter is None:
             return
-        idle = adapter.stage in (Stage.IDLE, Stage.LEFT)
-        if self._orders.order is not Action.PASS:
-            self._supervise(ZERO, self._input(now, t))
-            return
-        if state.over:
-            if adapter.stage in (Stage.ACTIVE, Stage.ENTERING):
-                adapter.leave(now, ReleaseMode.HOLD)
-        elif state.engaged and self.may_control and state.near and idle:
-            adapter.enter(now)
-        if self._takes_off(now, state):
+        ordered = self._orders.order is not Action.PASS
+        if not ordered and not state.over:
+            idle = adapter.stage in (Stage.IDLE, Stage.LEFT)
+            if state.engaged and state.near and idle and self.may_control:
+                adapter.enter(now)
+            if self._takes_off(now, state):
+                self.drive(now, None)
+                return
+        if not ordered and adapter.stage not in (Stage.ENTERING, Stage.ACTIVE):
             self.drive(now, None)
             return
-        ours = adapter.stage in (Stage.ENTERING, Stage.ACTIVE)
-        fresh = now - t.position_at <= self.part.policy.telemetry_age
-        hover = ours and fresh and not adapter.holds_airspeed
-        self.drive(now, Setpoint(ZERO) if hover else None)
+        # A multicopter hovers; a plane flies on as it does: in its guided mode it circles by itself.
+        hovers = not adapter.holds_airspeed
+        seen = self._input(now, t)._replace(over=state.over, wind=ZERO if hovers else t.wind)
+        self._supervise(ZERO if hovers else sub(t.velocity, t.wind), seen, streams=hovers)
 
     def _takes_off(self, now: float, state: PartState) -> bool:
         """A ground start: whether the vehicle is on its way up, by this agent's doing."""
         allowed = self.config.may_arm and state.engaged and self.may_control
-        if not allowed or state.over:
+        if not allowed:
             return False
         return self.take_off.step(now, self._vehicle)
 
@@ -290,7 +291,7 @@ class Flight:
         """Tell a transition of the supervisor, with the level and module whose decision it met."""
         action, decision = output.action, self.decision
         severity = Severity.INFO
-        if action > Action.CLIP:
+        if action > Action.CLIP and output.cause is not Cause.OVER:
             severity = Severity.ERROR if action is Action.END else Severity.WARNING
         level, module = (decision.level, decision.module) if decision is not None else ("", "")
         word = ACTIONS[action]

@@ -143,10 +143,13 @@ class AgentCore:
         """When to call `handle` with a `Tick` at the latest [s, monotonic]; inf = not by itself."""
         if self._leaving is not None:
             return self._leaving.at
-        waits = inf
-        if self.flight.open is not None:
-            waits = self.flight.open.begun.s + self.config.safety.strategy_age_s + self._period
-        return min(self._step_at, self._chores.at, self._heartbeat.at, self._health.at, waits)
+        return min(self._step_at, self._chores.at, self._heartbeat.at, self._health.at, self._answer_by)
+
+    @property
+    def _answer_by(self) -> float:
+        """When a strategy that was asked counts as stalled [s]; inf while none is."""
+        asked = self.flight.open
+        return inf if asked is None else asked.begun.s + self.config.safety.strategy_age_s + self._period
 
     @property
     def pending(self) -> bool:
@@ -187,10 +190,10 @@ class AgentCore:
             if self._leaving.due(now.s):
                 self._leave_on(now)
             return
-        waits = self.flight.open
-        if waits is not None and now.s - waits.begun.s > self.config.safety.strategy_age_s + self._period:
+        asked = self.flight.open
+        if asked is not None and now.s >= self._answer_by - EARLY_S:
             self.flight.given_up(now.s)
-            self._stepped_on(now, waits.begun)
+            self._stepped_on(now, asked.begun)
         if now.s >= self._step_at - EARLY_S:
             self._by_timer = True
             self._expect(now.s)

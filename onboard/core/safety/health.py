@@ -38,6 +38,8 @@ def health(seen: SupervisorInput, policy: Policy, far_outside: bool) -> HealthAc
     worst = CALM
     if seen.order > worst.action:
         worst = HealthAction(seen.order, Cause.ORDER, False)
+    if seen.over and worst.action < Action.HOLD:
+        worst = HealthAction(Action.HOLD, Cause.OVER, False)
     if far_outside and worst.action < Action.RETURN:
         worst = HealthAction(Action.RETURN, Cause.FAR_OUTSIDE_FENCE, True)
     low = policy.battery > 0.0 and seen.battery != -1.0 and not seen.battery >= policy.battery

@@ -60,6 +60,7 @@ class Cause(IntEnum):
     PILOT = 21
     ORDER = 22
     FAR_OUTSIDE_FENCE = 23
+    OVER = 24
 
 
 class Envelope(NamedTuple):
@@ -135,3 +136,4 @@ class SupervisorInput(NamedTuple):
     gps_fix: int = 3
     pilot: bool = False  # somebody else changed the autopilot's mode
     order: Action = Action.PASS  # what the ground ordered
+    over: bool = False  # what the vehicle was to do is done: nothing is left to fly

@@ -100,8 +100,8 @@ def commanded(action: Action, cause: Cause, order: Action, hovers: bool) -> Comm
     if release == Action.RETURN:
         return Command.RELEASE_TO_RETURN
     if release == Action.HOLD:
-        by_order = order >= Action.HOLD
-        return Command.RELEASE_TO_HOLD if by_order or not hovers else Command.HOVER
+        released = order >= Action.HOLD or cause == Cause.OVER or not hovers
+        return Command.RELEASE_TO_HOLD if released else Command.HOVER
     return Command.END_STREAM
 
 

@@ -27,9 +27,8 @@ def opened() -> tuple[BusView, Outbox]:
 def state(id: int, stamp_ns: int) -> bytes:
     """A vehicle at 10 m north that flies east at 4 m/s."""
     place, velocity, still = (10.0, 0.0, -50.0), (0.0, 4.0, 0.0), (0.0, 0.0, 0.0)
-    return swarm.STATE.encode(
-        State(id, Role.PURSUER, stamp_ns, place, velocity, 4.0, still, 0.0, 0.0, 0.0, "GUIDED", True, nonce=id)
-    )
+    it = State(id, Role.PURSUER, stamp_ns, place, velocity, 4.0, still, 0.0, 0.0, 0.0, "GUIDED", True, id)
+    return swarm.STATE.encode(it)
 
 
 @pytest.mark.parametrize("off_s", [-5.0, 0.0, 5.0])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from onboard.agent.core.events import Think
 from onboard.autopilot.base import Stage
 from onboard.game.scenario import Kind
 from onboard.runtime.impairment import CLEAR, CUT
@@ -168,6 +169,29 @@ async def test_a_dry_run_decides_and_publishes_but_sends_nothing() -> None:
         assert agent.core.flight.decision is not None
         assert agent.core.flight.decision.decides
         assert sent == []
+
+
+@virtual
+async def test_a_battery_that_is_low_while_the_vehicle_waits_under_control_sends_it_home() -> None:
+    async with game_of(chase()) as game:
+        assert await game.until(lambda: mode(game, PURSUER) == "GUIDED" and game.phase is Phase.READY, 30.0)
+        autopilot(game, PURSUER).set_battery(0.1)
+        assert await game.until(lambda: mode(game, PURSUER) == "RTL", 4.0)
+        assert "supervisor_return" in game.kinds(PURSUER)
+
+
+@virtual
+async def test_a_strategy_that_never_answers_ends_the_stream() -> None:
+    async with game_of(chase()) as game:
+        await under_way(game, 3.0)
+        agent = game.agents[PURSUER]
+        agent._effects[Think] = lambda effect: None
+        begun = agent.now
+        assert await game.until(lambda: not flies(agent), 1.0)
+        assert agent.core.vehicle.sent_at - begun <= 0.3
+        assert "supervisor_end" in game.kinds(PURSUER)
+        await passes(game, 5.0)
+        assert speed(game, PURSUER) < 0.3
 
 
 @virtual
