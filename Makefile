@@ -9,13 +9,14 @@ export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
-.PHONY: help install demo test check bench bench-games bench-predictor check-aarch64 golden fuzz soak mavproxy clean lock
+.PHONY: help install demo test check check-long bench bench-games bench-predictor check-aarch64 golden fuzz soak mavproxy clean lock
 
 help:
 	@echo "make install   the environment only"
 	@echo "make demo      set everything up and play a whole game end to end"
 	@echo "make test      set everything up and pass the tests"
 	@echo "make check     ruff, mypy strict, import contracts, closed locks"
+	@echo "make check-long   the long tests, and every property with five times other examples"
 	@echo "make bench     benchmarks; results go to benchmarks/results/"
 	@echo "make bench-games, bench-predictor   the long comparisons"
 	@echo "make golden    what whole games, agents and campaigns do, against what was recorded of them"
@@ -50,6 +51,12 @@ check: install
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 	$(BIN)/python locks/closed.py
+
+check-long: install
+	$(BIN)/python -m pytest -m long -n 2 --dist worksteal --timeout 1200
+	for seed in 1 2 3 4 5; do \
+	  HYPOTHESIS_PROFILE=long $(BIN)/python -m pytest -m hypothesis -n 2 --dist worksteal --timeout 1200 \
+	    --hypothesis-seed $$seed || exit 1; done
 
 bench: install
 	$(BIN)/python -m pytest tests/benchmarks -n 0 --timeout 1800 -o python_files="test_*.py bench_*.py" --benchmark-json benchmarks/results/latest.json

@@ -11,11 +11,9 @@ from typing import Annotated, Any
 for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_name, "1")
 
-import msgspec  # noqa: E402  (threads are set before anything imports NumPy)
-import typer  # noqa: E402
+import typer  # noqa: E402  (threads are set before anything imports NumPy)
 
-from gcs import settings as gcs_settings  # noqa: E402
-from gcs.settings import Settings  # noqa: E402
+from gcs.options import BUS, STATION, Options, takes  # noqa: E402
 from onboard.config.strict import ConfigError  # noqa: E402
 from onboard.runtime.program import run  # noqa: E402
 from onboard.wire.bus.messages import CommandKind, Role  # noqa: E402
@@ -30,38 +28,7 @@ app = typer.Typer(
 game_app = typer.Typer(help="Games with the ground station as their master.", no_args_is_help=True)
 app.add_typer(game_app, name="game")
 
-ConfigOption = Annotated[Path | None, typer.Option("--config", help="Settings file: see configs/gcs.toml.")]
-GameOption = Annotated[str | None, typer.Option("--game", help="Name of the game on the bus.")]
-BusOption = Annotated[str | None, typer.Option("--bus", help="Zenoh endpoint, e.g. tcp/192.168.1.10:7447.")]
-ZenohOption = Annotated[Path | None, typer.Option("--zenoh", help="Zenoh configuration file (TLS and more).")]
-OperatorOption = Annotated[str | None, typer.Option("--operator", help="Who signs the commands.")]
-RunsOption = Annotated[Path | None, typer.Option("--runs", help="Folder for recordings.")]
-RecordOption = Annotated[bool, typer.Option("--record/--no-record", help="Record everything heard.")]
-PlainOption = Annotated[bool, typer.Option("--plain", help="Lines in place of the console.")]
-
-
-def _settings(
-    config: Path | None,
-    game: str | None,
-    bus: str | None,
-    zenoh: Path | None = None,
-    operator: str | None = None,
-    runs: Path | None = None,
-) -> Settings:
-    """The file's settings with the options over them."""
-    found = gcs_settings.load(config)
-    replace = msgspec.structs.replace
-    if game is not None:
-        found = replace(found, game=game)
-    if bus is not None:
-        found = replace(found, bus=replace(found.bus, endpoint=bus))
-    if zenoh is not None:
-        found = replace(found, bus=replace(found.bus, zenoh=str(zenoh)))
-    if operator is not None:
-        found = replace(found, operator=operator)
-    if runs is not None:
-        found = replace(found, recording=replace(found.recording, folder=str(runs)))
-    return gcs_settings.check(found, "options" if config is None else str(config))
+RunArgument = Annotated[Path, typer.Argument(help="Run folder, or a recording in it.")]
 
 
 def _play(program: Coroutine[Any, Any, int]) -> int:
@@ -77,32 +44,19 @@ def _play(program: Coroutine[Any, Any, int]) -> int:
 
 
 @app.callback(invoke_without_command=True)
-def console(
-    ctx: typer.Context,
-    config: ConfigOption = None,
-    game: GameOption = None,
-    bus: BusOption = None,
-    zenoh: ZenohOption = None,
-    operator: OperatorOption = None,
-    runs: RunsOption = None,
-    record: RecordOption = True,
-    plain: PlainOption = False,
-) -> int:
+@takes(*STATION)
+def console(options: Options) -> int:
     """The ground station: picture, console, commands, recording, replay, report."""
-    if ctx.invoked_subcommand is not None:
-        return 0
     from gcs import programs
 
-    found = _settings(config, game, bus, zenoh, operator, runs)
-    return _play(programs.watch(found, record=record and found.recording.enabled, plain=plain))
+    found = options.settings()
+    return _play(programs.watch(found, record=found.recording.enabled, plain=bool(options.plain)))
 
 
 @app.command()
+@takes(*BUS)
 def status(
-    config: ConfigOption = None,
-    game: GameOption = None,
-    bus: BusOption = None,
-    zenoh: ZenohOption = None,
+    options: Options,
     json: Annotated[bool, typer.Option("--json", help="One JSON object.")] = False,
     wait: Annotated[float, typer.Option("--wait", help="How long to listen first [s].")] = 1.5,
 ) -> int:
@@ -111,22 +65,19 @@ def status(
 
     if not 0.0 <= wait <= 60.0:
         raise ConfigError(f"--wait: found {wait:g}, expected 0 to 60 s")
-    return _play(programs.status(_settings(config, game, bus, zenoh), json=json, wait_s=wait))
+    return _play(programs.status(options.settings(), json=json, wait_s=wait))
 
 
 @app.command()
+@takes(*BUS, "operator")
 def command(
+    options: Options,
     kind: Annotated[CommandKind, typer.Argument(help="What to do.")],
     ids: Annotated[list[int] | None, typer.Argument(help="Vehicles.")] = None,
     everybody: Annotated[bool, typer.Option("--all", help="All that are heard or in the game.")] = False,
     role: Annotated[Role | None, typer.Option("--role", help="Every vehicle of a role.")] = None,
     yes: Annotated[bool, typer.Option("--yes", help="Do not ask before return and land.")] = False,
     within: Annotated[float, typer.Option("--within", help="How long to try [s].")] = 10.0,
-    config: ConfigOption = None,
-    game: GameOption = None,
-    bus: BusOption = None,
-    zenoh: ZenohOption = None,
-    operator: OperatorOption = None,
 ) -> int:
     """Command vehicles; exit 0 only when every one of them has confirmed."""
     from gcs import programs
@@ -136,32 +87,24 @@ def command(
         raise ConfigError(f"whom: found {' and '.join(given) or 'nothing'}, expected ids, --all or --role")
     if not 0.1 <= within <= 3600.0:
         raise ConfigError(f"--within: found {within:g}, expected 0.1 to 3600 s")
-    order = programs.Order(kind, tuple(ids or ()), role, everybody, within)
-    return _play(programs.command(_settings(config, game, bus, zenoh, operator), order, sure=yes))
-
-
-RunArgument = Annotated[Path, typer.Argument(help="Run folder, or a recording in it.")]
+    order = programs.Order(kind, tuple(ids or ()), role, within)
+    return _play(programs.command(options.settings(), order, sure=yes))
 
 
 @app.command()
-def record(
-    config: ConfigOption = None,
-    game: GameOption = None,
-    bus: BusOption = None,
-    zenoh: ZenohOption = None,
-    runs: RunsOption = None,
-) -> int:
+@takes(*BUS, "runs")
+def record(options: Options) -> int:
     """Record everything that is heard, without a console, until ctrl-C or SIGTERM."""
     from gcs import programs
 
-    return _play(programs.watch(_settings(config, game, bus, zenoh, None, runs), record=True, plain=True))
+    return _play(programs.watch(options.settings(), record=True, plain=True))
 
 
 @app.command()
+@takes("config", "plain")
 def replay(
+    options: Options,
     run: RunArgument,
-    config: ConfigOption = None,
-    plain: PlainOption = False,
     decide: Annotated[
         bool, typer.Option("--decide", help="Run the strategies again; list where they decide otherwise.")
     ] = False,
@@ -175,28 +118,23 @@ def replay(
         raise ConfigError("--evader, --pursuer: found without --decide, expected with it")
     if decide:
         return programs.decide_again(run, {Role.EVADER: evader, Role.PURSUER: pursuer})
-    return programs.replay(run, gcs_settings.load(config).alerts, plain=plain)
+    return programs.replay(run, options.settings().alerts, plain=bool(options.plain))
 
 
 @app.command()
-def report(run: RunArgument, config: ConfigOption = None) -> int:
+@takes("config")
+def report(options: Options, run: RunArgument) -> int:
     """Write the run's report: one page for any browser, without network, and pictures."""
     from gcs import programs
 
-    return programs.report(run, gcs_settings.load(config).alerts)
+    return programs.report(run, options.settings().alerts)
 
 
 @game_app.command("run")
+@takes(*STATION)
 def game_run(
+    options: Options,
     scenario: Annotated[Path, typer.Argument(help="Scenario file.")],
-    config: ConfigOption = None,
-    game: GameOption = None,
-    bus: BusOption = None,
-    zenoh: ZenohOption = None,
-    operator: OperatorOption = None,
-    runs: RunsOption = None,
-    record: RecordOption = True,
-    plain: PlainOption = False,
     start: Annotated[
         bool, typer.Option("--start/--wait", help="Start when all are ready, or wait for `start all`.")
     ] = True,
@@ -205,14 +143,12 @@ def game_run(
     from gcs import programs
     from onboard.game.scenario import load
 
-    found = _settings(config, game, bus, zenoh, operator, runs)
-    played = load(scenario)
-    recording = record and found.recording.enabled
-    return _play(programs.play(found, played, record=recording, plain=plain, auto_start=start))
+    found, played = options.settings(), load(scenario)
+    return _play(programs.play(found, played, plain=bool(options.plain), auto_start=start))
 
 
 def main() -> None:
-    """Entry point."""
+    """Run `gcs` and exit with its code."""
     run(app, "gcs")
 
 

@@ -10,13 +10,13 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple, TextIO
 
-from gcs.console.plain_lines import Plain
+from gcs.console.plain_lines import PlainLines
 from gcs.console.plain_lines import status as status_lines
 from gcs.picture.alert_rules import Thresholds
-from gcs.picture.commands import ENDS_A_FLIGHT
-from gcs.picture.plain_data import to_json
+from gcs.picture.command_book import ENDS_A_FLIGHT
+from gcs.picture.json_document import to_json
 from gcs.picture.terminal_text import printable
-from gcs.picture.values import Leg, Picture
+from gcs.picture.values import Leg, LegState, Picture
 from gcs.session import Session, on_air, version
 from gcs.settings import Settings
 from onboard.config.strict import ConfigError
@@ -33,13 +33,12 @@ GATHER_S = 1.5  # to learn who is there
 
 
 class Order(NamedTuple):
-    """A command from a shell."""
+    """A command from a shell, to the vehicles named, to those of a role, or to all."""
 
     kind: CommandKind
-    ids: tuple[int, ...]
+    ids: tuple[int, ...]  # empty: all that are known, of `role` if that is given
     role: Role | None
-    everybody: bool
-    within_s: float
+    within_s: float  # how long confirmations are waited for
 
 
 async def watch(settings: Settings, *, record: bool, plain: bool) -> int:
@@ -69,7 +68,7 @@ async def print_lines(session: Session, over: Callable[[], bool] = lambda: False
     loop = asyncio.get_running_loop()
     for number in (signal.SIGINT, signal.SIGTERM):
         loop.add_signal_handler(number, stop.set)
-    lines = Plain()
+    lines = PlainLines()
     print(session.status(), flush=True)
     try:
         while not stop.is_set():
@@ -87,7 +86,7 @@ async def print_lines(session: Session, over: Callable[[], bool] = lambda: False
 
 
 async def status(settings: Settings, *, json: bool, wait_s: float) -> int:
-    """The picture once."""
+    """Print the picture once, after listening for `wait_s`; exit code 1 when nobody is heard."""
     async with on_air(settings, listen=False, record=False) as session:
         await asyncio.sleep(wait_s)
         picture = session.picture()
@@ -130,7 +129,7 @@ def _legs(session: Session, told: dict[int, str]) -> list[Leg]:
     """How each vehicle has answered so far."""
     legs = []
     for vehicle_id, command_id in sorted(told.items()):
-        view = session.station.watch.book.view(command_id, session.station.now_ns())
+        view = session.station.reducer.book.view(command_id, session.station.now_ns())
         legs += [leg for leg in view.legs if leg.id == vehicle_id] if view else []
     return legs
 
@@ -141,11 +140,10 @@ def _told(session: Session, order: Order, told: dict[int, str], game: str) -> in
         print(f"gcs: nobody to command in game {game}: {session.bus.status()}", file=sys.stderr)
         return 1
     legs = _legs(session, told)
-    confirmed = sum(leg.state == "confirmed" for leg in legs)
+    confirmed = sum(leg.state is LegState.CONFIRMED for leg in legs)
     print(f"{order.kind.value}: {confirmed} of {len(legs)} confirmed", flush=True)
     for leg in legs:
-        state = "no answer" if leg.state == "sent" else leg.state
-        parts = [f"  vehicle {leg.id}: {state}", f"({leg.reason})" if leg.reason else "", leg.mode]
+        parts = [f"  vehicle {leg.id}: {leg.state.words}", f"({leg.reason})" if leg.reason else "", leg.mode]
         print(printable(" ".join(part for part in (*parts, f"after {leg.took_s:.2f} s") if part)), flush=True)
     return 0 if confirmed == len(legs) else 1
 
@@ -172,14 +170,13 @@ async def _asked(order: Order, ids: tuple[int, ...]) -> bool:
     return answer.strip().lower() == "yes"
 
 
-async def play(
-    settings: Settings, scenario: Scenario, *, record: bool, plain: bool, auto_start: bool
-) -> int:
-    """A game with the ground station as its master."""
+async def play(settings: Settings, scenario: Scenario, *, plain: bool, auto_start: bool) -> int:
+    """Play a game with the ground station as its master; exit code 0 when it ended with a verdict."""
     from gcs.master import FieldMaster
 
     _demand_terminal(plain)
-    async with on_air(settings, listen=settings.bus.listen, record=record) as session:
+    listen, record = settings.bus.listen, settings.recording.enabled
+    async with on_air(settings, listen=listen, record=record) as session:
         master = FieldMaster(session.station, scenario, auto_start=auto_start)
         session.extra = master.status
         async with asyncio.TaskGroup() as tasks:
@@ -194,7 +191,7 @@ async def play(
         picture: Picture = session.picture()
         if picture.game.outcome is not None:
             by = f" by {picture.game.outcome.captor}" if picture.game.outcome.captor else ""
-            print(f"evader {picture.game.outcome.verdict}{by} after {picture.game.outcome.time:.1f} s")
+            print(f"evader {picture.game.outcome.verdict.value}{by} after {picture.game.outcome.time:.1f} s")
         return master.exit_code
 
 
@@ -222,7 +219,7 @@ def replay(run: Path, limits: Thresholds, *, plain: bool) -> int:
 
 def _print_through(player: Player) -> None:
     """Every line of the log, and how all were every five seconds, without waiting."""
-    lines = Plain()
+    lines = PlainLines()
     at_ns = player.start_ns
     while True:
         player.seek(at_ns)

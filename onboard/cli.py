@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import argparse
 import os
-import sys
 from pathlib import Path
 from typing import Any, NoReturn
 
-from onboard.config.strict import ConfigError
+from onboard.runtime import program
+from onboard.runtime.program import fail
 
 NAME = "onboard-agent"
 OPTIONS = ("id", "role", "link", "autopilot", "game", "bus", "zenoh", "strategy", "route", "take_control",
@@ -22,15 +22,13 @@ OPTIONS = ("id", "role", "link", "autopilot", "game", "bus", "zenoh", "strategy"
 class Parser(argparse.ArgumentParser):
     """One line for a mistake."""
 
+    def print_help(self, file: Any = None) -> None:
+        """Print the help; unlike argparse, without silence where it cannot be written."""
+        print(self.format_help(), end="", file=file)
+
     def error(self, message: str) -> NoReturn:
         """Print it and exit with code 2."""
-        fail(f"{message} (see {self.prog} --help)")
-
-
-def fail(text: str) -> NoReturn:
-    """A user's mistake: one line on standard error, exit code 2."""
-    print(f"{NAME}: {' '.join(text.split())}", file=sys.stderr)
-    sys.exit(2)
+        fail(NAME, f"{message} (see {self.prog} --help)")
 
 
 def _common() -> Parser:
@@ -107,21 +105,16 @@ def run(arguments: list[str] | None = None) -> int:
         from onboard.agent import preflight
 
         return preflight.check(settings, given["seconds"])
-    from onboard.agent import program
+    from onboard.agent import program as agent
 
-    return program.fly(settings, Path(given["timing"]) if "timing" in given else None)
+    return agent.fly(settings, Path(given["timing"]) if "timing" in given else None)
 
 
 def main() -> None:
     """Entry point of `onboard-agent`."""
     for library in ("OPENBLAS", "OMP", "MKL"):  # before NumPy: one thread is faster here, and deterministic
         os.environ.setdefault(f"{library}_NUM_THREADS", "1")
-    try:
-        sys.exit(run())
-    except ConfigError as error:
-        fail(str(error))
-    except KeyboardInterrupt:
-        sys.exit(130)
+    program.run(run, NAME)
 
 
 if __name__ == "__main__":

@@ -55,7 +55,7 @@ def planar(
     animate: Annotated[Path | None, typer.Option(help="GIF or MP4 of the first game.")] = None,
 ) -> None:
     """Play the paper's plane game; exit 1 when a verdict differs from the paper's."""
-    from onboard.runtime.plugins import pursuer_strategy
+    from onboard.game.plugins import pursuer_strategy
     from sim_bridge.plane_game import program as room
 
     if dt is not None and not 0.0 < dt <= 1.0:
@@ -157,7 +157,7 @@ app.add_typer(scenario_app, name="scenario")
 def scenario_new(
     file: Annotated[Path, typer.Argument(help="File to write; it must not exist.")],
 ) -> None:
-    """Write a commented template."""
+    """Write a commented template of a scenario."""
     from sim_bridge.programs.scenario_tools import new
 
     print(new(file))
@@ -221,7 +221,7 @@ def _folder(path: Path) -> None:
 
 
 def main() -> None:
-    """Entry point."""
+    """Run the command line `sim-bridge`."""
     run(app, "sim-bridge")
 
 

@@ -9,7 +9,9 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, NamedTuple
+
+from msgspec import convert
 
 from gcs.recording.recorder import Recorder
 from onboard.agent.config import AgentConfig
@@ -19,16 +21,17 @@ from onboard.core.math.constants import NS_PER_S
 from onboard.game.master import GameMaster
 from onboard.game.scenario import Scenario
 from onboard.runtime.bus_memory import MemoryBroker, MemoryBus
-from onboard.runtime.impairment import Impaired, Impairment, impairment_of
+from onboard.runtime.impairment import Impaired, Impairment
 from onboard.runtime.links import memory_pair
 from onboard.runtime.protocols import Bus, Clock, Link, Sample
 from onboard.wire.bus.messages import Event, Health, Outcome, Phase, Role
 from onboard.wire.bus.topics import everything
 from onboard.wire.mavlink.tlog import TlogWriter
-from sim_bridge.programs.summary import Summary
 from sim_bridge.world.bridge import Bridge, mute
+from sim_bridge.world.bridge import Options as BridgeOptions
 from sim_bridge.world.run_observer import Observer
 from sim_bridge.world.staging import generator
+from sim_bridge.world.summary import Summary
 
 GAME = "rehearsal"
 TOLD_MAX = 100_000
@@ -54,49 +57,46 @@ class BusRecorder:
             await asyncio.sleep(0.2)
 
     def close(self) -> None:
-        """End the recording; idempotent."""
+        """End the recording; may be called again."""
         self._recorder.close()
 
     def _record(self, sample: Sample) -> None:
         self._recorder.record(sample.key, sample.payload, self._clock.wall_ns())
 
 
-class Rehearsal:
-    """One game; use it as `async with Rehearsal(…) as game: await game.until_ended()`.
+class Options(NamedTuple):
+    """What may be chosen about a rehearsal."""
 
-    `folder` receives one `.tlog` a vehicle and `recording.mcap`; None records nothing. `configure`
-    changes single agents' configurations. `say` hears what master and agents have to tell.
-    """
+    seed: int | None = None  # in place of the scenario's
+    folder: Path | None = None  # receives one .tlog per vehicle and recording.mcap; None records nothing
+    scenario_folder: Path | None = None  # in which the scenario's recordings of wind lie
+    game: str = GAME  # name of the game on the bus
+    agents: bool = True  # whether agents are started with the game
+    configure: Mapping[int, Mapping[str, Any]] = {}  # what single agents are told differently, by id
+    say: Callable[[str], None] = mute  # hears what master and agents have to tell
+    version: str = ""  # which the agents say they are of
+    battery_s: float = 1200.0  # a battery's time from full to empty in flight [s]
+
+
+class Rehearsal:
+    """One game; use it as `async with Rehearsal(…) as game: await game.until_ended()`."""
 
     def __init__(
         self,
         scenario: Scenario,
         clock: Clock,
-        *,
-        seed: int | None = None,
-        folder: Path | None = None,
-        scenario_folder: Path | None = None,
-        game: str = GAME,
-        agents: bool = True,
-        configure: Mapping[int, Mapping[str, Any]] | None = None,
-        say: Callable[[str], None] = mute,
-        version: str = "",
-        battery_s: float = 1200.0,
+        options: Options = Options(),  # noqa: B008  (a NamedTuple cannot change)
     ) -> None:
         self.scenario = scenario
         self.clock = clock
-        self.game = game
-        self.seed = scenario.seed if seed is None else seed
+        self.game = options.game
+        self.seed = scenario.seed if options.seed is None else options.seed
         self.told: list[str] = []
         self.agents: dict[int, Agent] = {}
         self._tasks: dict[int, asyncio.Task[None]] = {}
-        self._configure = configure or {}
-        self._with_agents = agents
-        self._version = version
-        self._say = say
-        self._folder = folder
+        self._options = options
         self._tlogs: dict[int, tuple[BinaryIO, TlogWriter]] = {}
-        impairment = impairment_of(scenario.flight.impairment)
+        impairment = convert(scenario.flight.impairment, Impairment, from_attributes=True)
         on_bus = scenario.flight.impairment.bus
         self.broker = MemoryBroker(
             impairment if on_bus else None, generator(self.seed, "bus") if on_bus else None
@@ -109,18 +109,12 @@ class Rehearsal:
             self.links[id] = Impaired(agent, impairment, generator(self.seed, f"link-{id}"))
             sides[id] = (autopilot,)
         self.bus: MemoryBus = self.broker.connect("observer")
-        self.observer = Observer(scenario, self.seed, "fast", game, self.bus)
+        self.observer = Observer(scenario, self.seed, "fast", self.game, self.bus)
+        bridge_options = BridgeOptions(
+            self._nonce(), self.game, self.seed, options.scenario_folder, battery_s=options.battery_s
+        )
         self.bridge = Bridge(
-            scenario,
-            clock,
-            self.broker.connect("sim-bridge"),
-            sides,
-            nonce=self._nonce(),
-            game=game,
-            seed=self.seed,
-            folder=scenario_folder,
-            say=self._tell,
-            battery_s=battery_s,
+            scenario, clock, self.broker.connect("sim-bridge"), sides, bridge_options, self._tell
         )
         self._world: asyncio.Task[None] | None = None
         self._recorder: BusRecorder | None = None
@@ -128,14 +122,15 @@ class Rehearsal:
     # ------------------------------------------------------------------ life
 
     async def __aenter__(self) -> Rehearsal:
-        if self._folder is not None:
-            self._recorder = BusRecorder(self._folder, self.game, self.clock)
+        folder = self._options.folder
+        if folder is not None:
+            self._recorder = BusRecorder(folder, self.game, self.clock)
             self._recorder.hear(self.bus)
             for id in self.scenario.ids:
-                file: BinaryIO = (self._folder / f"vehicle-{id}.tlog").open("wb")
+                file: BinaryIO = (folder / f"vehicle-{id}.tlog").open("wb")
                 self._tlogs[id] = (file, TlogWriter(file))
         self._world = asyncio.create_task(self.bridge.run(), name="world")  # ended in __aexit__
-        if self._with_agents:
+        if self._options.agents:
             for id in self.scenario.ids:
                 self.start_agent(id)
         return self
@@ -188,11 +183,11 @@ class Rehearsal:
             record = self._tlogs[id][1].write
         bus = self.broker.connect(f"agent-{id}")
         events = None
-        if self._folder is not None:
-            sink = FileSink(unused(self._folder / f"vehicle-{id}.events"))
+        if self._options.folder is not None:
+            sink = FileSink(unused(self._options.folder / f"vehicle-{id}.events"))
             events = EventFile(sink, round(config.events_max_mb * 1e6))
         equipment = Equipment(
-            nonce=self._nonce(), version=self._version, log=self._tell, record=record, events=events
+            nonce=self._nonce(), version=self._options.version, log=self._tell, record=record, events=events
         )
         agent = Agent(config, self.clock, [self.links[id]], bus, equipment)
         self.agents[id] = agent
@@ -214,7 +209,7 @@ class Rehearsal:
                 "prediction": flight.prediction,
                 "strategy": spec.strategy,
             }
-            found[id] = AgentConfig(**(settings | dict(self._configure.get(id, {}))))
+            found[id] = AgentConfig(**(settings | dict(self._options.configure.get(id, {}))))
         return found
 
     def kill_agent(self, id: int) -> None:
@@ -238,13 +233,13 @@ class Rehearsal:
 
     @property
     def master(self) -> GameMaster:
-        """The game's master."""
+        """The rules of the game's master."""
         assert self.bridge.master is not None
         return self.bridge.master.rules
 
     @property
     def phase(self) -> Phase:
-        """The game's phase."""
+        """Phase of the game now."""
         return self.master.phase
 
     @property
@@ -254,7 +249,7 @@ class Rehearsal:
 
     @property
     def events(self) -> list[Event]:
-        """All events so far."""
+        """All events of all vehicles so far, in order."""
         return self.observer.events
 
     @property
@@ -278,7 +273,7 @@ class Rehearsal:
     def _tell(self, line: str) -> None:
         self.told.append(line)
         del self.told[:-TOLD_MAX]
-        self._say(line)
+        self._options.say(line)
 
     def _look_after_tasks(self) -> None:
         """A task that failed ends the rehearsal: nothing is swallowed."""

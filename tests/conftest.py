@@ -1,4 +1,8 @@
-"""One BLAS thread, as every program sets it: with more, small matrices take ten times as long."""
+"""One BLAS thread, as every program sets it; the same examples every time; time limits that fit the machine.
+
+With more threads small matrices take ten times as long. With `HYPOTHESIS_PROFILE=long` (`make check-long`)
+the examples are others with each `--hypothesis-seed`.
+"""
 
 from __future__ import annotations
 
@@ -6,3 +10,22 @@ import os
 
 for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(name, "1")
+
+import pytest  # noqa: E402  (threads are set before NumPy is imported)
+from hypothesis import settings  # noqa: E402
+
+from tests.support.real_time import slowness  # noqa: E402
+
+settings.register_profile("ci", derandomize=True, deadline=None, print_blob=True)
+settings.register_profile("long", deadline=None, print_blob=True)
+settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "ci"))
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Give each test its time limit times the slowness of the machine at the start of the session."""
+    asked = config.getoption("timeout")
+    usual_s = float(config.getini("timeout") if asked is None else asked)
+    for item in items:
+        own = item.get_closest_marker("timeout")
+        limit_s = float(own.args[0]) if own is not None else usual_s
+        item.add_marker(pytest.mark.timeout(limit_s * max(2.0, slowness())), append=False)

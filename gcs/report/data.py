@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from gcs.picture.values import Alert, CommandView, LogLine
 from onboard.config.strict import ConfigError
+from onboard.game import palette
 from onboard.game import scenario as scenarios
 from onboard.game.scenario import Scenario
 from onboard.wire.bus.messages import Fence, Member, Outcome, Role, Setup, Triple
@@ -24,7 +25,7 @@ MOST_POINTS = 4000  # a vehicle's samples are thinned to so many
 
 
 class Flown(NamedTuple):
-    """One vehicle's way."""
+    """Where one vehicle flew, how fast, and how this is known. One row of each array is one sample."""
 
     id: int
     role: Role
@@ -49,9 +50,6 @@ class Link(NamedTuple):
     t: Array
     quality: Array  # 0…1
     battery: Array  # 0…1, NaN where unknown
-    telemetry_hz: Array
-    setpoint_hz: Array
-    clock_offset: Array  # [s]
 
 
 class Band(NamedTuple):
@@ -94,27 +92,40 @@ class Run(NamedTuple):
     timing: dict[str, Any]
 
     @property
+    def virtual(self) -> bool:
+        """Whether the game was played on virtual time, which runs faster than the clock on the wall."""
+        return "virtual_s" in self.timing
+
+    def colour(self, vehicle: int) -> str:
+        """A vehicle's colour on white paper, `#rrggbb`: the same in every report."""
+        flown, member = self.flown.get(vehicle), self.member(vehicle)
+        role = flown.role if flown is not None else member.role if member is not None else Role.TRACKER
+        if role is Role.TRACKER:
+            return palette.FAINT.light
+        return palette.vehicle(vehicle, role is Role.EVADER).light
+
+    @property
     def evader(self) -> Flown | None:
         """The evader, as far as somebody saw it."""
         return next((f for f in self.flown.values() if f.role is Role.EVADER), None)
 
     @property
     def capture_radius(self) -> float | None:
-        """R [m]."""
+        """The capture radius R [m] of the setup, else of the scenario; None where neither is known."""
         if self.setup is not None:
             return float(self.setup.rules.R)
         return self.scenario.rules.R if self.scenario is not None else None
 
     @property
     def safety_distance(self) -> float | None:
-        """ρ [m]."""
+        """The safety distance ρ [m] of the setup, else of the scenario; None where neither is known."""
         if self.setup is not None:
             return float(self.setup.rules.rho)
         return self.scenario.rules.rho if self.scenario is not None else None
 
     @property
     def fence(self) -> Fence | None:
-        """The geofence."""
+        """The geofence of the setup; None where there is none."""
         return self.setup.fence if self.setup is not None else None
 
     @property
@@ -167,6 +178,19 @@ class Run(NamedTuple):
         inside: NDArray[np.bool_] = t >= 0.0
         return inside if self.outcome is None else inside & (t <= self.outcome.time)
 
+    def at_the_end(self, flown: Flown) -> int:
+        """The sample nearest to the outcome; the last one where there is none."""
+        return len(flown.t) - 1 if self.outcome is None else int(np.abs(flown.t - self.outcome.time).argmin())
+
+    def rule_names(self) -> list[str]:
+        """Every rule that was in force, in order of first appearance."""
+        bands = sorted((b for found in self.rules.values() for b in found), key=lambda b: (b.start, b.rule))
+        return list(dict.fromkeys(band.rule for band in bands))
+
+    def action_names(self) -> list[str]:
+        """Every action of the supervisor, in order of the alphabet."""
+        return sorted({band.rule for bands in self.guards.values() for band in bands})
+
     def nearest(self) -> dict[int, float]:
         """The smallest distance of each pursuer to the evader within the game [m], by id."""
         found = {}
@@ -187,11 +211,6 @@ class Run(NamedTuple):
         """Its place in the roster."""
         roster = self.setup.roster if self.setup is not None else ()
         return next((m for m in roster if m.id == vehicle), None)
-
-
-def windy(run: Run) -> dict[int, Flown]:
-    """Who knows of any wind, by id: a calm that is only assumed is not worth a figure."""
-    return {i: f for i, f in run.flown.items() if np.nan_to_num(np.abs(f.wind)).max(initial=0.0) > 0.01}
 
 
 def thinned(flown: Flown) -> Flown:

@@ -139,6 +139,4 @@ def _at(t: Array, samples: list[tuple[int, float]], zero_ns: int) -> Array:
 
 def _link(log: _Log, zero_ns: int) -> Link:
     t = np.array([(stamp - zero_ns) / NS_PER_S for stamp, _ in log.batteries])
-    unknown = np.full(len(t), nan)
-    battery = np.array([value for _, value in log.batteries])
-    return Link(t, unknown, battery, unknown, unknown, unknown)
+    return Link(t, np.full(len(t), nan), np.array([value for _, value in log.batteries]))

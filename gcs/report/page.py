@@ -3,64 +3,35 @@
 from __future__ import annotations
 
 import json
+from base64 import b64encode
 from datetime import UTC, datetime
+from hashlib import sha256
 from html import escape
+from importlib.resources import files
 from typing import Any
 
 import numpy as np
 
-from gcs.report import theme as look
+from gcs.picture.values import LegState
+from gcs.report import drawing, theme
 from gcs.report.data import Run
-from gcs.report.plotly_parts import Figure
+from gcs.report.drawing import Drawing
 from onboard.core.math.constants import NS_PER_S
+from onboard.game import palette
 from onboard.wire.bus.messages import Role, Severity
 
-# The browser itself refuses every request; plotly.js compiles functions of its own (`unsafe-eval`).
-POLICY = (
-    "default-src 'none'; script-src 'unsafe-inline' 'unsafe-eval'; style-src 'unsafe-inline'; "
-    "img-src data: blob:; font-src data:; worker-src blob:"
-)
-CONFIG = {"responsive": True, "displaylogo": False, "scrollZoom": True, "showSendToCloud": False}
-STYLE = f"""
-:root {{ color-scheme: light; }}
-* {{ box-sizing: border-box; }}
-body {{ margin: 0; background: #f3f5f8; color: {look.INK};
-  font: 15px/1.5 system-ui, -apple-system, "Segoe UI", Roboto, "DejaVu Sans", sans-serif; }}
-main {{ max-width: 1160px; margin: 0 auto; padding: 24px 20px 60px; }}
-h1 {{ font-size: 27px; line-height: 1.25; margin: 0 0 4px; }}
-h2 {{ font-size: 18px; margin: 0 0 2px; }}
-.sub {{ color: {look.FAINT}; margin: 0; }}
-section, .facts div {{ background: {look.PAPER}; border: 1px solid {look.GRID}; border-radius: 10px; }}
-section {{ padding: 18px 20px; margin-top: 18px; overflow-x: auto; }}
-section > .sub {{ font-size: 14px; margin-bottom: 8px; }}
-.facts {{ display: grid; margin-top: 18px; gap: 12px;
-  grid-template-columns: repeat(auto-fit, minmax(140px, 1fr)); }}
-.facts div {{ padding: 12px 16px; }}
-.facts b {{ display: block; font-size: 20px; font-variant-numeric: tabular-nums; }}
-.facts span {{ color: {look.FAINT}; font-size: 13px; }}
-nav {{ margin-top: 14px; display: flex; flex-wrap: wrap; gap: 4px 16px; font-size: 14px; }}
-a {{ color: #0b5cad; text-decoration: none; }} a:hover {{ text-decoration: underline; }}
-table {{ border-collapse: collapse; width: 100%; font-size: 14px; font-variant-numeric: tabular-nums; }}
-th {{ text-align: left; color: {look.FAINT}; font-weight: 600; }}
-th, td {{ padding: 5px 14px 5px 0; border-bottom: 1px solid {look.GRID}; vertical-align: top; }}
-.n {{ text-align: right; }} td.n, td:first-child {{ white-space: nowrap; }}
-.tag {{ display: inline-block; border-radius: 5px; padding: 0 7px; font-size: 13px; white-space: nowrap; }}
-.error {{ background: #fde2e0; color: #8c1d18; }} .warning {{ background: #fff0cf; color: #6b4a00; }}
-.info {{ background: #e6eefb; color: #17407a; }} .good {{ background: #dff3e4; color: #14532d; }}
-.notes {{ border-left: 4px solid #d9a400; }}
-.dot {{ display: inline-block; width: 11px; height: 11px; border-radius: 50%; margin-right: 7px; }}
-.figure {{ width: 100%; }} .long {{ max-height: 560px; overflow-y: auto; }}
-footer {{ margin-top: 26px; color: {look.FAINT}; font-size: 13px; }}
-@media print {{ body {{ background: white; }} section {{ break-inside: avoid; }} nav {{ display: none; }}
-  .long {{ max-height: none; }} }}
-"""
+MOST_ROWS = 400  # places of a vehicle that the page's script knows
+CONFIRMED = "Confirmed means that the autopilot reports it."
+GLOSSARY = "What each rule and action of the figure of rules says, and where it comes from."
+TAGS = {LegState.CONFIRMED: "good", LegState.REFUSED: "error"}  # of others: warning
 
 
-def page(run: Run, figures: list[Figure], plotly_js: str) -> str:
-    """The whole file."""
+def page(run: Run, drawings: list[Drawing]) -> str:
+    """The whole file: the figures as SVG, the tables, the style sheet and the script."""
     tables = [
+        ("glossary", "Glossary", GLOSSARY, glossary(run)),
         ("vehicles", "Vehicles", "", vehicles(run)),
-        ("commands", "Commands", "Confirmed means that the autopilot reports it.", commands(run)),
+        ("commands", "Commands", CONFIRMED, commands(run)),
         ("alerts", "Alerts", "", alerts(run)),
         ("log", "Log", "", log(run)),
         ("parameters", "Game", "", parameters(run)),
@@ -68,41 +39,94 @@ def page(run: Run, figures: list[Figure], plotly_js: str) -> str:
         ("timing", "Timing", "From timing.json.", facts_table(run.timing)),
     ]
     tables = [table for table in tables if table[3]]
-    anchors = [(f.name, f.title) for f in figures] + [(name, title) for name, title, _, _ in tables]
+    anchors = [(d.name, d.title) for d in drawings] + [(name, title) for name, title, _, _ in tables]
     title = escape(run.name)
-    began = datetime.fromtimestamp(run.t0_ns // NS_PER_S, UTC).strftime("%Y-%m-%d %H:%M:%S UTC")
+    script = (files("gcs.report") / "page.js").read_text(encoding="utf-8")
     parts = [
         "<!doctype html>\n<html lang='en'>\n<head>\n<meta charset='utf-8'>\n",
-        f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">\n',
+        f'<meta http-equiv="Content-Security-Policy" content="{_policy(script)}">\n',
         "<meta name='viewport' content='width=device-width, initial-scale=1'>\n",
-        f"<title>{title}: flight report</title>\n<link rel='icon' href='data:,'>\n<style>{STYLE}</style>\n",
+        f"<title>{title}: flight report</title>\n<link rel='icon' href='data:,'>\n",
+        f"<style>{_style()}</style>\n",
         "</head>\n<body>\n<main>\n",
-        f"<header><h1>{escape(look.verdict(run))}</h1>\n",
-        f"<p class='sub'>{title} · began {began} · folder {escape(run.folder.name)}</p></header>\n",
+        f"<header><h1>{escape(theme.verdict(run))}</h1>\n",
+        f"<p class='sub'>{title} · {_when(run)} · folder {escape(run.folder.name)}</p></header>\n",
         notes(run),
         facts(run),
         "<nav>" + "".join(f"<a href='#{name}'>{escape(text)}</a>" for name, text in anchors) + "</nav>\n",
-        "<noscript><section class='notes'>The figures need JavaScript. The same are in the folder "
-        "<i>figures</i> as pictures.</section></noscript>\n",
     ]
-    for figure in figures:
-        size = f"style='height:{figure.height}px'"
+    figures = []
+    for one in drawings:
+        how = "Drag to turn, ctrl and scroll to enlarge" if one.scene else "Drag over a part to enlarge it"
         parts.append(
-            f"<section id='{figure.name}'><h2>{escape(figure.title)}</h2>\n"
-            f"<p class='sub'>{escape(figure.note)}</p>\n"
-            f"<div class='figure' id='figure-{figure.name}' {size}></div></section>\n"
+            f"<section id='{one.name}'><h2>{escape(one.title)}</h2>\n"
+            f"<p class='sub'>{escape(one.note)} {how}, double click for the whole.</p>\n"
+            f"<div class='figure' id='figure-{one.name}'>{drawing.svg(one)}</div></section>\n"
         )
+        figures.append(drawing.questions(one))
     for name, heading, note, body in tables:
         sub = f"<p class='sub'>{escape(note)}</p>\n" if note else ""
         parts.append(f"<section id='{name}'><h2>{escape(heading)}</h2>\n{sub}{body}</section>\n")
     parts.append("<footer>Positions in the game frame: metres north, east and up of its origin.</footer>\n")
-    parts.append("</main>\n<script>" + plotly_js.replace("</script", "<\\/script") + "</script>\n<script>\n")
-    parts.append(f"const config = {_json(CONFIG)};\n")
-    for figure in figures:
-        given = f"{_json(figure.data)}, {_json(figure.layout)}, config"
-        parts.append(f"Plotly.newPlot('figure-{figure.name}', {given});\n")
-    parts.append("</script>\n</body>\n</html>\n")
+    told = _json({"ways": _ways(run), "figures": figures})
+    parts.append("</main>\n<div id='tip'></div>\n")
+    parts.append(f"<script type='application/json' id='flight'>{told}</script>\n")
+    parts.append(f"<script>{script}</script>\n</body>\n</html>\n")
     return "".join(parts)
+
+
+def _policy(script: str) -> str:
+    """What the browser may do with the page: nothing but run this one script."""
+    digest = b64encode(sha256(script.encode()).digest()).decode()
+    return f"default-src 'none'; script-src 'sha256-{digest}'; style-src 'unsafe-inline'; img-src data:"
+
+
+def _style() -> str:
+    """The style sheet, with every colour of the figures as a variable that follows the browser's wish."""
+    colours = palette.every_colour()
+    names = {"ink": palette.INK, "faint": palette.FAINT, "paper": palette.PAPER, "grid": palette.GRID}
+
+    def variables(dark: bool) -> str:
+        named = {f"--c{c.light[1:]}": c for c in colours} | {f"--{name}": c for name, c in names.items()}
+        return "".join(f"{name}: {c.dark if dark else c.light}; " for name, c in named.items())
+
+    sheet = (files("gcs.report") / "page.css").read_text(encoding="utf-8")
+    screen = f"@media screen and (prefers-color-scheme: dark) {{ :root {{ {variables(True)}}} }}"
+    return f":root {{ {variables(False)}}}\n{screen}\n{sheet}"
+
+
+def _when(run: Run) -> str:
+    """When the game began, or that it was played on no clock of this world."""
+    if run.virtual:
+        return "played on virtual time"
+    return datetime.fromtimestamp(run.t0_ns // NS_PER_S, UTC).strftime("began %Y-%m-%d %H:%M:%S UTC")
+
+
+def _ways(run: Run) -> list[dict[str, Any]]:
+    """Where each vehicle was when: time [s], east, north, height [m]."""
+    ways: list[dict[str, Any]] = []
+    for vehicle, flown in sorted(run.flown.items()):
+        rows = np.column_stack([flown.t, flown.position[:, [1, 0, 2]] * (1.0, 1.0, -1.0)])
+        told = {"name": run.role_of(vehicle), "colour": run.colour(vehicle)}
+        ways.append(told | {"rows": drawing.thin(rows, MOST_ROWS)})
+    return ways
+
+
+def glossary(run: Run) -> str:
+    """Each rule and action that was in force, in a sentence."""
+    rows = []
+    for rule in run.rule_names():
+        name = _dot(palette.rule(rule).light) + escape(theme.words(rule))
+        rows.append([name, *map(escape, theme.explained(rule))])
+    for action in run.action_names():
+        name = _dot(palette.action(action).light) + escape(theme.words(action))
+        rows.append([name, theme.ACTIONS.get(action, "An action of the supervisor."), "supervisor"])
+    return _table(["rule", "what it says", "source"], rows) if rows else ""
+
+
+def _dot(colour: str) -> str:
+    """A sign in a colour of the palette."""
+    return f"<span class='dot' style='background:var(--c{colour[1:]})'></span>"
 
 
 def notes(run: Run) -> str:
@@ -116,7 +140,7 @@ def notes(run: Run) -> str:
 def facts(run: Run) -> str:
     """The numbers one asks for first."""
     start, end = run.span
-    found = [(f"{end - start:.1f} s", "flown and recorded")]
+    found = [(f"{end - start:.1f} s", "flown and recorded" + (", on virtual time" if run.virtual else ""))]
     nearest = run.nearest()
     if run.outcome is not None:
         found.insert(0, (f"{run.outcome.time:.2f} s", "from start to end of the game"))
@@ -141,7 +165,6 @@ def facts(run: Run) -> str:
 
 def vehicles(run: Run) -> str:
     """One row for each vehicle."""
-    colors = look.colors(run)
     nearest = run.nearest()
     rows = []
     for vehicle_id, flown in sorted(run.flown.items()):
@@ -154,8 +177,7 @@ def vehicles(run: Run) -> str:
         charge = link.battery[-1] if link is not None and len(link.t) else float("nan")
         rows.append(
             [
-                f"<span class='dot' style='background:{colors[vehicle_id]}'></span>"
-                + escape(run.role_of(vehicle_id)),
+                _dot(run.colour(vehicle_id)) + escape(run.role_of(vehicle_id)),
                 escape(member.strategy or "paper") if member is not None else "",
                 f"{member.speed:g}" if member is not None else "",
                 mean,
@@ -177,11 +199,11 @@ def commands(run: Run) -> str:
         at = f"{(command.issued_ns - run.t0_ns) / NS_PER_S:.1f}"
         legs = []
         for leg in command.legs:
-            kind = "good" if leg.state == "confirmed" else "error" if leg.state == "refused" else "warning"
-            took = f" in {leg.took_s:.2f} s" if leg.state == "confirmed" else ""
+            kind = TAGS.get(leg.state, "warning")
+            took = f" in {leg.took_s:.2f} s" if leg.state is LegState.CONFIRMED else ""
             why = f" ({escape(leg.reason)})" if leg.reason else ""
-            legs.append(f"<span class='tag {kind}'>{leg.id} {escape(leg.state)}{took}</span>{why}")
-        rows.append([at, escape(command.kind), escape(command.sender), " ".join(legs)])
+            legs.append(f"<span class='tag {kind}'>{leg.id} {escape(leg.state.value)}{took}</span>{why}")
+        rows.append([at, escape(command.kind.value), escape(command.sender), " ".join(legs)])
     return _table(["at s", "command", "from", "vehicles"], rows, numbers=(0,)) if rows else ""
 
 
@@ -205,7 +227,7 @@ def alerts(run: Run) -> str:
 
 
 def log(run: Run) -> str:
-    """What happened."""
+    """Every entry of the event log, oldest first."""
     rows = [
         [
             f"{(line.at_ns - run.t0_ns) / NS_PER_S:.2f}",
@@ -245,9 +267,9 @@ def facts_table(values: dict[str, Any]) -> str:
     rows, tables = [], []
     for key, value in _flat(values, ""):
         if isinstance(value, list):
-            tables.append(f"<p class='sub'>{escape(look.words(key))}</p>{_records(value)}")
+            tables.append(f"<p class='sub'>{escape(theme.words(key))}</p>{_records(value)}")
         else:
-            rows.append([escape(look.words(key)), escape(value)])
+            rows.append([escape(theme.words(key)), escape(value)])
     return (_table(["", ""], rows) if rows else "") + "".join(tables)
 
 
@@ -262,7 +284,7 @@ def _flat(value: Any, key: str) -> list[tuple[str, str | list[dict[str, Any]]]]:
 def _records(records: list[dict[str, Any]]) -> str:
     heads = list(dict.fromkeys(str(key) for record in records for key in record))
     rows = [[escape(_text(record[key])) if key in record else "" for key in heads] for record in records]
-    return _table([escape(look.words(head)) for head in heads], rows)
+    return _table([escape(theme.words(head)) for head in heads], rows)
 
 
 def _count(what: str, things: tuple[Any, ...]) -> str:
@@ -273,7 +295,7 @@ def _text(value: Any) -> str:
     if isinstance(value, bool) or value is None:
         return {True: "yes", False: "no", None: "–"}[value]
     if isinstance(value, dict):
-        return ", ".join(f"{look.words(str(k))} {_text(v)}" for k, v in value.items())
+        return ", ".join(f"{theme.words(str(k))} {_text(v)}" for k, v in value.items())
     if isinstance(value, list):
         return ", ".join(_text(item) for item in value)
     return f"{value:.6g}" if isinstance(value, float) else str(value)

@@ -9,11 +9,11 @@ from gcs.picture.alert_rules import Thresholds
 from gcs.recording.reader import Recording
 from gcs.recording.shell import RECORDING
 from gcs.report.data import Run, beside
+from gcs.report.drawing import write_png
+from gcs.report.figures import NAMES, figures
 from gcs.report.from_recording import from_recording
 from gcs.report.from_tlog import from_tlogs
 from gcs.report.page import page
-from gcs.report.plots import figures
-from gcs.report.png import write_figures
 from onboard.config.strict import ConfigError
 
 PAGE, FIGURES = "report.html", "figures"
@@ -55,16 +55,13 @@ def write_report(run: Path, limits: Thresholds | None = None, version: str = "")
     folder = values.folder
     try:
         (folder / FIGURES).mkdir(exist_ok=True)
-        pictures = write_figures(values, folder / FIGURES)
-        text = page(values, figures(values), plotly_js())
-        (folder / PAGE).write_text(text, encoding="utf-8")
+        for name in NAMES:
+            (folder / FIGURES / f"{name}.png").unlink(missing_ok=True)  # of an earlier report
+        drawings = figures(values)
+        (folder / PAGE).write_text(page(values, drawings), encoding="utf-8")
+        pictures = [folder / FIGURES / f"{drawing.name}.png" for drawing in drawings]
+        for drawing, picture in zip(drawings, pictures, strict=True):
+            write_png(drawing, values, picture)
     except OSError as error:
         raise ConfigError(f"{error.filename or folder}: {(error.strerror or str(error)).lower()}") from None
     return Written(folder / PAGE, tuple(pictures), values.notes)
-
-
-def plotly_js() -> str:
-    """The whole of plotly.js, to stand in the page itself."""
-    from plotly.offline import get_plotlyjs  # half a second to import: only who reports pays it
-
-    return str(get_plotlyjs())

@@ -1,62 +1,60 @@
-"""How a report looks: one colour and one name for each vehicle, rule and line, in pages and pictures."""
+"""What a report calls things: vehicles, rules and outcomes in words, and where a rule comes from."""
 
 from __future__ import annotations
 
+from typing import Any, NamedTuple
+
+from gcs.picture.terminal_text import printable
 from gcs.report.data import Run
-from onboard.wire.bus.messages import Role
+from onboard.core.route.choice import CHOICE, ChoiceRule
+from onboard.core.strategy.knowledge import Rule
+from onboard.core.strategy.registry import EVADERS, PURSUERS
 
-EVADER = "#e69f00"
-# told apart also by most who do not see all colours (Okabe and Ito, then Tol's muted scheme)
-PURSUERS = ("#0072b2", "#009e73", "#cc79a7", "#56b4e9", "#882255", "#44aa99", "#6a51a3", "#8c6d31")
-OTHERS = "#7f7f7f"
-TARGET = "#117733"
-CAPTURE = "#d62728"
-SAFETY = "#8a8a8a"
-FENCE = "#b0559b"
-INK, FAINT, PAPER, GRID = "#1c2330", "#5c6675", "#ffffff", "#e3e7ee"
-RULES = (
-    "#4477aa", "#ee6677", "#228833", "#ccbb44", "#66ccee", "#aa3377",
-    "#bbbbbb", "#997700", "#004488", "#994455", "#6699cc", "#ee99aa",
-)  # fmt: skip
-CLIP, GUARDS = "#5c6675", ("#111111", "#8c1d18", "#4a148c", "#004d40")
+ACTIONS = {
+    "clip": "The supervisor sent the nearest velocity that is allowed instead of the one decided.",
+    "hold": "The supervisor made the vehicle stay where it was: hover or loiter.",
+    "return": "The supervisor made the autopilot fly home.",
+    "land": "The supervisor made the autopilot land.",
+    "end": "The supervisor ended the stream of setpoints; the autopilot flies alone.",
+}
 
 
-def colors(run: Run) -> dict[int, str]:
-    """One colour for each vehicle, by id."""
-    found = {}
-    pursuers = 0
-    for vehicle_id, flown in sorted(run.flown.items()):
-        if flown.role is Role.EVADER:
-            found[vehicle_id] = EVADER
-        elif flown.role is Role.PURSUER:
-            found[vehicle_id] = PURSUERS[pursuers % len(PURSUERS)]
-            pursuers += 1
-        else:
-            found[vehicle_id] = OTHERS
-    return found
+BLOCKED = "When every ray is blocked"
 
 
-def rule_colors(run: Run) -> dict[str, str]:
-    """One colour for each rule, in order of first appearance."""
-    found: dict[str, str] = {}
-    bands = sorted((band for bands in run.rules.values() for band in bands), key=lambda b: (b.start, b.rule))
-    for band in bands:
-        if band.rule not in found:
-            found[band.rule] = RULES[len(found) % len(RULES)]
-    return found
+class Explained(NamedTuple):
+    """A rule or action in words."""
 
-
-def guard_colors(run: Run) -> dict[str, str]:
-    """One dark colour for each of the supervisor's actions; clipping, the mildest, is grey."""
-    actions = sorted({band.rule for bands in run.guards.values() for band in bands} - {"clip"})
-    named = {action: GUARDS[n % len(GUARDS)] for n, action in enumerate(actions)}
-    clips = any(band.rule == "clip" for bands in run.guards.values() for band in bands)
-    return ({"clip": CLIP} if clips else {}) | named
+    sentence: str
+    source: str  # section of the paper, or what else it comes from
 
 
 def words(name: str) -> str:
     """A rule's or key's name for a person."""
-    return name.replace("_", " ")
+    return printable(name.replace("_", " ")).strip()
+
+
+def glossary() -> dict[str, Explained]:
+    """Every rule of the knowledge bases by its name in a recording, each with a sentence."""
+    evasion: tuple[Rule[Any], ...] = tuple(rule for known in EVADERS.values() for rule in known.table)
+    pursuit: tuple[Rule[Any], ...] = tuple(rule for known in PURSUERS.values() for rule in known.table)
+    everything: tuple[Rule[Any] | ChoiceRule, ...] = (*evasion, *pursuit, *CHOICE)
+    rules = {
+        rule.id.name.lower(): Explained(f"When {rule.when}: {rule.then}.", rule.source) for rule in everything
+    }
+    others = {
+        "fixed": Explained("Always: the one strategy that the configuration names.", "configuration"),
+        "resultant_force": Explained(f"{BLOCKED} and there is no target: along F_res (21).", "3.4.1, rule 3"),
+        "resultant_force_to_target": Explained(
+            f"{BLOCKED} and there is a target: along F_res (22).", "3.4.1, rule 3"
+        ),
+    }
+    return rules | others
+
+
+def explained(rule: str) -> Explained:
+    """What a rule says; a rule that no knowledge base here holds is said to be a plug-in's."""
+    return glossary().get(rule, Explained("A rule of a strategy that this program does not hold.", "plug-in"))
 
 
 def verdict(run: Run) -> str:
@@ -66,4 +64,9 @@ def verdict(run: Run) -> str:
         told = run.summary.get("verdict") or run.summary.get("outcome")
         return f"Outcome: {told}" if isinstance(told, str) else "No outcome was recorded"
     who = f" by pursuer {outcome.captor}" if outcome.captor else ""
-    return f"Evader {outcome.verdict}{who} after {outcome.time:.1f} s"
+    return f"Evader {outcome.verdict.value}{who} after {outcome.time:.1f} s"
+
+
+def clock(run: Run) -> str:
+    """What the axis of time shows."""
+    return f"{'virtual ' if run.virtual else ''}time since the start of the game [s]"

@@ -25,9 +25,9 @@ from onboard.autopilot.base import Telemetry
 from onboard.autopilot.parameters import findings
 from onboard.config.strict import ConfigError
 from onboard.core.math.constants import NEVER, NS_PER_S
-from onboard.runtime.bus_zenoh import DEFAULT_ENDPOINT
 from onboard.runtime.clock import RealClock
 from onboard.runtime.protocols import Bus, Clock, Link, Sample
+from onboard.runtime.zenoh_config import DEFAULT_ENDPOINT
 from onboard.wire.mavlink import commands
 from onboard.wire.mavlink.ids import MessageId
 from onboard.wire.mavlink.modes import Kind

@@ -11,8 +11,8 @@ from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec
 from onboard.core.strategy.knowledge import Decision, RuleId
 from onboard.core.strategy.registry import EVADERS, PURSUERS
+from onboard.game.plugins import evader_strategy, pursuer_strategy
 from onboard.pilot.setup import Side
-from onboard.runtime.plugins import evader_strategy, pursuer_strategy
 from onboard.runtime.protocols import Clock
 
 Strategy = Callable[[Any], Decision]

@@ -10,9 +10,9 @@ from __future__ import annotations
 
 from math import atan, atan2, isfinite, tan
 
-from onboard.autopilot.base import Envelope, Note, ReleaseMode, Setpoint, Stage, Step, Telemetry
+from onboard.autopilot.base import Envelope, Note, ReleaseMode, Setpoint, Stage, Telemetry
 from onboard.autopilot.envelope import within
-from onboard.autopilot.mode_control import Control
+from onboard.autopilot.guided import Traits
 from onboard.core.math.angles import wrap
 from onboard.core.math.constants import NEVER, STANDARD_GRAVITY
 from onboard.core.math.vectors import Vec, add, clamp, norm
@@ -38,11 +38,7 @@ NAMES: dict[int, str] = {
     CommandId.CHANGE_ALTITUDE: "altitude",
     CommandId.CHANGE_HEADING: "course",
 }
-FAULTS = {
-    "not_finite": "a setpoint that is no number was not sent",
-    "no_direction": "a plane cannot stand still: give no setpoint, or leave to loiter",
-}
-WAYS = {
+RELEASE = {
     ReleaseMode.HOLD: "LOITER",
     ReleaseMode.RETURN: "RTL",
     ReleaseMode.LAND: "RTL",  # how it lands is its mission's business
@@ -50,7 +46,7 @@ WAYS = {
 
 
 def bank_for(course: float, velocity: Vec, yaw: float, bank_max: float) -> float:
-    """Bank [rad, right positive] that turns the flight over ground towards a course [rad].
+    """Return the bank [rad, right positive] that turns the flight over ground towards a course [rad].
 
     φ = atan(V ψ̇ / g) with ψ̇ proportional to the error: a coordinated turn.
     """
@@ -60,14 +56,11 @@ def bank_for(course: float, velocity: Vec, yaw: float, bank_max: float) -> float
     return clamp(atan(max(ground, CREEP) * rate / STANDARD_GRAVITY), -bank_max, bank_max)
 
 
-def _fault(setpoint: Setpoint) -> str:
-    if not (isfinite(norm(setpoint.velocity)) and isfinite(norm(setpoint.wind))):
-        return "not_finite"
-    return "no_direction" if norm(setpoint.velocity) <= 1e-6 else ""
+class _OnChange:
+    """When a wanted altitude or airspeed is sent: on change, again until acknowledged, at most at 2 Hz.
 
-
-class _Slow:
-    """One of altitude and airspeed: said on change, again until acknowledged, at most at 2 Hz."""
+    This is no retry of one command: each try carries the newest value, and an old one is never repeated.
+    """
 
     def __init__(self, step: float) -> None:
         self._step = step
@@ -76,6 +69,7 @@ class _Slow:
         self.open = True  # not acknowledged
 
     def due(self, now: float, value: float) -> bool:
+        """Return whether to send `value` now, and count it as sent."""
         age = now - self._at
         if age < SLOW_EVERY:
             return False
@@ -90,96 +84,73 @@ class _Slow:
         self.open = True
 
 
-class ArduPlaneAdapter:
-    """See `base.Adapter`. `plain` commands a course in place of a bank angle."""
+class ArduPlaneEncoder:
+    """Roll (or course), altitude and airspeed for an ArduPlane in GUIDED; see `guided.SetpointEncoder`.
 
-    holds_airspeed = True
-    guided_mode = "GUIDED"
-    kind = Kind.ARDUPLANE
+    `plain` commands a course in place of a bank angle. Until the first setpoint the plane circles.
+    """
 
-    def __init__(
-        self, to: Target, envelope: Envelope, *, may_arm: bool = False, plain: bool = False
-    ) -> None:
-        self.envelope = envelope
-        self.name = "arduplane-plain" if plain else "arduplane"
+    def __init__(self, to: Target, envelope: Envelope, *, plain: bool = False) -> None:
+        name = "arduplane-plain" if plain else "arduplane"
+        self.traits = Traits(
+            name, Kind.ARDUPLANE, "GUIDED", RELEASE, holds_airspeed=True, stops_in_silence=False
+        )
+        self._envelope = envelope
         self._plain = plain
         self._to = to
-        self._control = Control(self.kind, to, self.guided_mode, WAYS, may_arm=may_arm)
-        self._altitude, self._speed = _Slow(ALTITUDE_STEP), _Slow(SPEED_STEP)
-        self._reference = 0.0  # [m; MSL] where the commanded climbs lead
+        self._altitude, self._speed = _OnChange(ALTITUDE_STEP), _OnChange(SPEED_STEP)
+        self._reference = 0.0  # [m above sea level] where the commanded climbs lead
         self._at = NEVER  # of the last setpoint
         self._turned_at = NEVER
         self._course = NEVER  # [rad] of the plain variant's last command
         self._reboots = 0
-        self._refused: set[tuple[int, int]] = set()
-        self._notes: list[Note] = []
-        self._fault = ""
+        self._refused: set[tuple[int, int]] = set()  # (command, result) told already
 
-    @property
-    def stage(self) -> Stage:
-        """Who flies."""
-        return self._control.stage
+    def ready(self, now: float) -> bool:
+        """Return True: a plane asks for no setpoints before GUIDED."""
+        return True
 
-    def enter(self, now: float) -> None:
-        """Ask for GUIDED: until the first setpoint the plane circles where it is."""
-        self._control.enter(now)
+    def sends_in(self, stage: Stage) -> bool:
+        """Return whether setpoints count: in GUIDED alone."""
+        return stage is Stage.ACTIVE
 
-    def leave(self, now: float, way: ReleaseMode) -> None:
-        """End the targets; ask for LOITER or RTL."""
-        self._control.leave(now, way)
+    def fault(self, setpoint: Setpoint) -> str:
+        """Return "not_finite" for a setpoint that is no number, "no_direction" for a stop."""
+        if not (isfinite(norm(setpoint.velocity)) and isfinite(norm(setpoint.wind))):
+            return "not_finite"
+        return "no_direction" if norm(setpoint.velocity) <= 1e-6 else ""
 
-    def end(self, now: float) -> None:
-        """A plane would fly on: LOITER."""
-        if self._control.stage is Stage.ACTIVE:
-            self._control.leave(now, ReleaseMode.HOLD)
-
-    def arm(self, now: float) -> bool:
-        """Ask for arming, if made with `may_arm`."""
-        return self._control.arm()
-
-    def close(self) -> None:
-        """Nothing to release."""
-
-    def acknowledge(self, now: float, ack: CommandAck) -> None:
-        """Hear the answer to a command."""
-        self._control.acknowledge(now, ack)
+    def acknowledge(self, ack: CommandAck) -> list[Note]:
+        """Hear whether altitude, airspeed or course was taken; a refusal is told once."""
         name = NAMES.get(ack.command)
         if name is None:
-            return
+            return []
         if ack.result == 0:
             self._refused = {pair for pair in self._refused if pair[0] != ack.command}
             if ack.command != CommandId.CHANGE_HEADING:
                 (self._altitude if ack.command == CommandId.CHANGE_ALTITUDE else self._speed).open = False
-        elif (ack.command, ack.result) not in self._refused:
-            self._refused.add((ack.command, ack.result))
-            text = f"{name} refused: result {ack.result}"
-            self._notes.append(Note("warning", "setpoint_refused", text))
+            return []
+        if (ack.command, ack.result) in self._refused:
+            return []
+        self._refused.add((ack.command, ack.result))
+        return [Note("warning", "setpoint_refused", f"{name} refused: result {ack.result}")]
 
-    def step(self, now: float, telemetry: Telemetry, setpoint: Setpoint | None) -> Step:
-        """Roll (or course), altitude and airspeed for a setpoint, while GUIDED is ours."""
-        messages, notes = self._control.step(now, telemetry)
-        notes += self._notes
-        self._notes = []
-        if setpoint is None or self._control.stage is not Stage.ACTIVE:
-            return Step(tuple(messages), tuple(notes))
-        fault = _fault(setpoint)
-        if fault != self._fault and fault:
-            notes.append(Note("error", fault, FAULTS[fault]))
-        self._fault = fault
-        if fault:
-            return Step(tuple(messages), tuple(notes))
-        air = within(setpoint.velocity, self.envelope)
+    def restart(self) -> None:
+        """A plane needs no stream of setpoints."""
+
+    def encode(self, now: float, telemetry: Telemetry, setpoint: Setpoint) -> list[Outgoing]:
+        """Return the roll target (or course), and altitude and airspeed where they are due."""
+        air = within(setpoint.velocity, self._envelope)
         ground = add(air, setpoint.wind)
         if telemetry.reboots != self._reboots:
             self._reboots = telemetry.reboots
             self._altitude.forget()
             self._speed.forget()
-        messages += self._turn(now, telemetry, ground)
-        messages += self._climb(now, telemetry, ground)
-        speed = clamp(norm(air), self.envelope.speed_min, self.envelope.speed_max)
+        messages = self._turn(now, telemetry, ground) + self._climb(now, telemetry, ground)
+        speed = clamp(norm(air), self._envelope.speed_min, self._envelope.speed_max)
         if self._speed.due(now, speed):
             messages.append(commands.change_speed(self._to, speed))
-        return Step(tuple(messages), tuple(notes))
+        return messages
 
     def _turn(self, now: float, telemetry: Telemetry, ground: Vec) -> list[Outgoing]:
         if ground.x * ground.x + ground.y * ground.y < 1e-6:
@@ -189,19 +160,19 @@ class ArduPlaneAdapter:
             if now - self._turned_at < ROLL_EVERY:
                 return []
             self._turned_at = now
-            bank = bank_for(course, telemetry.velocity, telemetry.yaw, self.envelope.bank_max)
+            bank = bank_for(course, telemetry.velocity, telemetry.yaw, self._envelope.bank_max)
             return [RollTarget(self._to, telemetry.time_boot_s, bank)]
         stale = now - self._turned_at >= 1.0  # it may have been lost
         new = self._course == NEVER or abs(wrap(course - self._course)) >= COURSE_STEP
         if now - self._turned_at < COURSE_EVERY or not (new or stale):
             return []
         self._turned_at, self._course = now, course
-        lateral = STANDARD_GRAVITY * tan(self.envelope.bank_max)
+        lateral = STANDARD_GRAVITY * tan(self._envelope.bank_max)
         return [commands.change_heading(self._to, course, lateral)]
 
     def _climb(self, now: float, telemetry: Telemetry, ground: Vec) -> list[Outgoing]:
         """Altitude that follows the commanded climb: a reference integrates it, so that level stays level."""
-        climb = clamp(-ground.z, -self.envelope.sink_max, self.envelope.climb_max)
+        climb = clamp(-ground.z, -self._envelope.sink_max, self._envelope.climb_max)
         present = telemetry.altitude_m
         gap = now - self._at
         self._at = now

@@ -1,10 +1,10 @@
-"""What all adapters share: the snapshot they read, the setpoint they are given, what they answer.
+"""What adapters read, are given and answer: telemetry, setpoints, messages and notes.
 
-An adapter is a plain sans-I/O class, one for each kind of autopilot. The agent calls
+An adapter flies one autopilot and does no I/O. The agent calls
 
     adapter.step(now, telemetry, setpoint)      # each control step, and at least every 80 ms
 
-and sends the messages it gets back, in order, at once; notes it publishes as events. All times are
+and sends the messages it gets back, in order, at once; notes it publishes as events. All instants are
 local monotonic seconds. An adapter never arms unless it was made with `may_arm`, enters the autopilot's
 guided mode only after `enter`, leaves it whenever told, and lets go at once and for good (until `enter`, or
 until the pilot selects the guided mode again) when the mode changes by another hand.
@@ -97,7 +97,7 @@ class Stage(Enum):
 
 
 class ReleaseMode(Enum):
-    """How to leave."""
+    """What the autopilot shall do alone when this agent leaves."""
 
     HOLD = "hold"
     RETURN = "return"
@@ -105,10 +105,10 @@ class ReleaseMode(Enum):
 
 
 class Note(NamedTuple):
-    """Something a person should know: the agent publishes it as an event."""
+    """Something that a person should know of an adapter: the agent publishes it as an event."""
 
     severity: str  # info | warning | error
-    kind: str  # machine-readable
+    kind: str  # the same word for the same thing, for programs
     text: str
 
 
@@ -154,11 +154,11 @@ class Adapter(Protocol):
         ...
 
     def enter(self, now: float) -> None:
-        """Ask for the guided mode until the heartbeat reports it. Also takes control back after TAKEN."""
+        """Ask for the guided mode until the heartbeat reports it, also after TAKEN."""
         ...
 
-    def leave(self, now: float, way: ReleaseMode) -> None:
-        """End the setpoints and ask for a mode the autopilot can hold alone, until it reports it."""
+    def leave(self, now: float, mode: ReleaseMode) -> None:
+        """End the setpoints and ask for a mode that the autopilot flies alone, until it reports it."""
         ...
 
     def end(self, now: float) -> None:
@@ -167,7 +167,7 @@ class Adapter(Protocol):
         ...
 
     def arm(self, now: float) -> bool:
-        """Ask for arming until the heartbeat reports it; False (and nothing sent) unless `may_arm`."""
+        """Ask for arming until the heartbeat reports it; return False, and send nothing, unless `may_arm`."""
         ...
 
     def acknowledge(self, now: float, ack: CommandAck) -> None:
@@ -179,5 +179,5 @@ class Adapter(Protocol):
         ...
 
     def step(self, now: float, telemetry: Telemetry, setpoint: Setpoint | None) -> Step:
-        """Messages due now. `setpoint` None: none is allowed now, and none is sent."""
+        """Return the messages due now. `setpoint` None: none is allowed now, and none is sent."""
         ...

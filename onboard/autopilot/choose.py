@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from types import MappingProxyType
+from typing import NamedTuple
 
-from onboard.autopilot.arduplane import ArduPlaneAdapter
+from onboard.autopilot.arduplane import ArduPlaneEncoder
 from onboard.autopilot.base import Adapter, Envelope, Refusal
-from onboard.autopilot.mavsdk import Child, Courier, MavsdkAdapter
+from onboard.autopilot.guided import GuidedAdapter
+from onboard.autopilot.mavsdk import Child, Courier, MavsdkAdapter, MavsdkEncoder
 from onboard.autopilot.parameters import gcs_failsafe
-from onboard.autopilot.velocity import VelocityAdapter
+from onboard.autopilot.velocity import GUIDED, VelocityEncoder
 from onboard.wire.mavlink.commands import Target
-from onboard.wire.mavlink.modes import Kind
+from onboard.wire.mavlink.modes import MODES, Kind
 from onboard.wire.mavlink.values import Heartbeat
 
 SCHEMES = {
@@ -29,50 +32,68 @@ _WHY_NOT = {
 }
 
 
+class AdapterOptions(NamedTuple):
+    """What the configuration says of the way to fly."""
+
+    scheme: str = "auto"  # a key of `SCHEMES`
+    may_arm: bool = False  # whether the adapter may ever arm
+    hold_mode: str = ""  # a multicopter's mode to hold in, in its autopilot's words; "": the adapter's
+    mavsdk_url: str = ""  # the connection that MAVSDK opens for itself, beside the agent's link
+    envelope: Envelope = Envelope()
+    launch: Callable[..., Courier] = Child  # starts MAVSDK's child process with the arguments given
+
+
 def adapter_for(
     heartbeat: Heartbeat,
     to: Target,
-    *,
-    scheme: str = "auto",
-    envelope: Envelope | None = None,
-    parameters: Mapping[str, float] | None = None,
-    may_arm: bool = False,
-    hold_mode: str = "",
-    mavsdk_url: str = "",
-    launch: Callable[..., Courier] = Child,
+    options: AdapterOptions = AdapterOptions(),  # noqa: B008  (frozen)
+    parameters: Mapping[str, float] = MappingProxyType({}),
 ) -> Adapter | Refusal:
-    """The adapter for an autopilot by its heartbeat, or the reason why there is none.
+    """Return the adapter for an autopilot by its heartbeat, or the reason why there is none.
 
-    `scheme` (configuration) is `auto` or must fit. `parameters` are the autopilot's, as far as read: the
-    plain variant of ArduPlane is refused unless they show that the GCS failsafe watches this agent.
-    `mavsdk_url` is the connection that MAVSDK opens for itself, besides the agent's link; `launch` starts its
-    child process with the arguments given.
+    `parameters` are the autopilot's, as far as read: the plain variant of ArduPlane is refused unless they
+    show that the GCS failsafe watches this agent.
     """
     kind = heartbeat.kind
-    if kind in _WHY_NOT:
-        return Refusal(_WHY_NOT[kind])
-    if kind is Kind.UNKNOWN:
+    reason = _refusal(heartbeat, options)
+    if reason:
+        return Refusal(reason)
+    if options.scheme == "mavsdk":
+        encoder = MavsdkEncoder(kind, to, options.envelope)
+        return MavsdkAdapter(
+            to, encoder, options.mavsdk_url, may_arm=options.may_arm, launch=options.launch
+        )
+    if kind is not Kind.ARDUPLANE:
+        velocity = VelocityEncoder(kind, to, options.envelope, options.hold_mode)
+        return GuidedAdapter(to, velocity, may_arm=options.may_arm)
+    plain = options.scheme == "arduplane-plain"
+    finding = gcs_failsafe(kind, parameters, to.system) if plain else None
+    if finding is not None:
         return Refusal(
+            f"the course command of arduplane-plain never lapses, and {finding.text}: {finding.remedy}"
+        )
+    return GuidedAdapter(to, ArduPlaneEncoder(to, options.envelope, plain=plain), may_arm=options.may_arm)
+
+
+def _refusal(heartbeat: Heartbeat, options: AdapterOptions) -> str:
+    """Why this autopilot is not flown as configured; "" where it is."""
+    kind, scheme = heartbeat.kind, options.scheme
+    if kind in _WHY_NOT:
+        return _WHY_NOT[kind]
+    if kind is Kind.UNKNOWN:
+        return (
             f"unknown autopilot (autopilot {heartbeat.autopilot}, vehicle type {heartbeat.vehicle_type}): "
             "expected a PX4 multicopter, an ArduCopter or an ArduPlane"
         )
     if kind not in SCHEMES.get(scheme, ()):
         fitting = [name for name, kinds in SCHEMES.items() if kind in kinds]
-        return Refusal(f"{kind.value} cannot be flown by {scheme}: expected {', '.join(fitting)}")
-    limits = envelope or Envelope()
-    if scheme == "mavsdk":
-        if not MavsdkAdapter.available():
-            return Refusal("MAVSDK is not installed: pip install 'apollonius[mavsdk]'")
-        if not mavsdk_url:
-            return Refusal("mavsdk needs a connection of its own: give its URL")
-        return MavsdkAdapter(kind, to, limits, mavsdk_url, may_arm=may_arm, launch=launch)
-    if kind is not Kind.ARDUPLANE:
-        return VelocityAdapter(kind, to, limits, may_arm=may_arm, hold_mode=hold_mode)
-    plain = scheme == "arduplane-plain"
-    if plain:
-        finding = gcs_failsafe(kind, parameters or {}, to.system)
-        if finding is not None:
-            return Refusal(
-                f"the course command of arduplane-plain never lapses, and {finding.text}: {finding.remedy}"
-            )
-    return ArduPlaneAdapter(to, limits, may_arm=may_arm, plain=plain)
+        return f"{kind.value} cannot be flown by {scheme}: expected {', '.join(fitting)}"
+    if scheme == "mavsdk" and not MavsdkAdapter.available():
+        return "MAVSDK is not installed: pip install 'apollonius[mavsdk]'"
+    if scheme == "mavsdk" and not options.mavsdk_url:
+        return "mavsdk needs a connection of its own: give its URL"
+    hold = options.hold_mode
+    if hold and kind in GUIDED and (hold not in MODES[kind] or hold == GUIDED[kind]):
+        names = ", ".join(name for name in MODES[kind] if name != GUIDED[kind])
+        return f"hold_mode '{hold}' is no mode in which {kind.value} flies alone: expected one of {names}"
+    return ""

@@ -26,7 +26,7 @@ class Thresholds(NamedTuple):
 
 
 class Health(NamedTuple):
-    """A reading: empty tuples are good health."""
+    """What is wrong with a vehicle; empty tuples mean good health."""
 
     lacks: tuple[str, ...]  # what must come before it may fly
     faults: tuple[str, ...]  # what is wrong
@@ -36,7 +36,7 @@ class Health(NamedTuple):
 
 
 def read(now: float, telemetry: Telemetry, limits: Thresholds | None = None) -> Health:
-    """The autopilot's health at `now` [s, monotonic].
+    """Return the autopilot's health at `now` [s, monotonic].
 
     A report that never came is a lack; one that came and went silent is a fault. Of the estimator (EKF)
     nothing is demanded where the autopilot does not report it: then GPS alone is judged.

@@ -27,7 +27,7 @@ ONCE = frozenset(
 class Heard(NamedTuple):
     """What to do with a packet."""
 
-    use: bool
+    use: bool  # whether it counts; False: it was heard before, or came over a link that does not count
     took_over: bool = False  # the active link changed with this packet
 
 
@@ -37,18 +37,16 @@ def _content(raw: bytes) -> bytes:
 
 
 class Redundant:
-    """The links are numbered from 0, the preferred one first."""
+    """Which of several links counts; they are numbered from 0, the preferred one first."""
 
     def __init__(self, links: int) -> None:
         self.active = 0
-        self.take_overs = 0
-        self.duplicates = 0
         self._heard_at = [NEVER] * links
         self._steady_since = [NEVER] * links
         self._recent: OrderedDict[bytes, float] = OrderedDict()
 
     def take(self, now: float, link: int, packet: Packet) -> Heard:
-        """Judge a packet of the autopilot that came over `link` [s, monotonic]."""
+        """Judge a packet of the autopilot that came over `link` at `now` [s, monotonic]."""
         if now - self._heard_at[link] > STEADY:
             self._steady_since[link] = now
         self._heard_at[link] = now
@@ -57,17 +55,11 @@ class Redundant:
         preferred = link < before and now - self._steady_since[link] >= BACK
         if link != before and (silent or preferred):
             self.active = link
-            self.take_overs += before != link and self._heard_at[before] != NEVER
         took_over = self.active != before
         once = packet.name in ONCE
         if self._seen(now, _content(packet.raw) if once else packet.raw):
-            self.duplicates += 1
             return Heard(False, took_over)
         return Heard(once or link == self.active, took_over)
-
-    def silent(self, now: float) -> tuple[int, ...]:
-        """The links that have been silent for a second or more (or always)."""
-        return tuple(k for k, at in enumerate(self._heard_at) if now - at > 1.0)
 
     def _seen(self, now: float, content: bytes) -> bool:
         at = self._recent.get(content, NEVER)

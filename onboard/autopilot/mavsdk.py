@@ -13,20 +13,16 @@ import subprocess
 import sys
 from collections.abc import Callable
 from importlib.util import find_spec
-from math import degrees, isfinite
+from math import degrees
 from struct import Struct
 from typing import Protocol
 
 from onboard.autopilot.base import Envelope, Note, ReleaseMode, Setpoint, Stage, Step, Telemetry
-from onboard.autopilot.envelope import Shaper
-from onboard.autopilot.mode_control import Control
-from onboard.autopilot.velocity import GUIDED, WAYS, yaw_along
+from onboard.autopilot.guided import GuidedAdapter
+from onboard.autopilot.velocity import VelocityEncoder
 from onboard.core.math.constants import NEVER
-from onboard.core.math.vectors import add, norm
-from onboard.wire.mavlink.commands import CommandLong, Target
-from onboard.wire.mavlink.ids import CommandId
+from onboard.wire.mavlink.commands import Target
 from onboard.wire.mavlink.modes import Kind
-from onboard.wire.mavlink.values import CommandAck
 
 LINE = Struct("<cd4d")  # what, when [s, monotonic], north, east, down [m/s], yaw [deg]
 SETPOINT, ENTER, HOLD, RETURN, LAND, RELEASE = b"S", b"E", b"H", b"R", b"L", b"X"
@@ -106,58 +102,47 @@ class Child:
                     pipe.close()
 
 
-class MavsdkAdapter:
-    """See `base.Adapter`; its steps give no messages: they go through the child."""
+class MavsdkEncoder(VelocityEncoder):
+    """Velocity targets as the child takes them: always with a yaw, and while it asks for offboard too."""
 
-    name = "mavsdk"
-    holds_airspeed = False
+    def __init__(self, kind: Kind, to: Target, envelope: Envelope) -> None:
+        super().__init__(kind, to, envelope)
+        self.traits = self.traits._replace(name="mavsdk")
+        self._looks = True
+
+    def sends_in(self, stage: Stage) -> bool:
+        """Return whether the child wants setpoints."""
+        return stage in (Stage.ENTERING, Stage.ACTIVE)
+
+
+class MavsdkAdapter(GuidedAdapter):
+    """See `base.Adapter`; modes and setpoints go through the child, arming alone over the agent's link."""
 
     def __init__(
         self,
-        kind: Kind,
         to: Target,
-        envelope: Envelope,
+        encoder: MavsdkEncoder,
         url: str,
         *,
         may_arm: bool = False,
         launch: Callable[..., Courier] = Child,
     ) -> None:
-        self.kind = kind
-        self.guided_mode = GUIDED[kind]
-        self._control = Control(kind, to, self.guided_mode, WAYS[kind], may_arm=may_arm)
-        self._shaper = Shaper(envelope)
-        self._url, self._system = url, to.system
-        self._way = ReleaseMode.HOLD
+        super().__init__(to, encoder, may_arm=may_arm)
         self._launch = launch
+        self._targets = encoder
+        self._url, self._system = url, to.system
         self._courier: Courier | None = None
         self._launched_at = NEVER
 
     @staticmethod
     def available() -> bool:
-        """Whether the optional extra is installed."""
+        """Return whether the optional extra is installed."""
         return find_spec("mavsdk") is not None
 
     @property
-    def stage(self) -> Stage:
-        """Who flies."""
-        return self._control.stage
-
-    def enter(self, now: float) -> None:
-        """Ask the child to start offboard; give setpoints meanwhile (zero to hover)."""
-        self._control.enter(now)
-
-    def leave(self, now: float, way: ReleaseMode) -> None:
-        """End the setpoints; ask the child to hold, return or land."""
-        self._way = way
-        self._control.leave(now, way)
-
-    def end(self, now: float) -> None:
-        """Silence: the child then stops offboard within 200 ms and exits."""
-        self._shaper.restart()
-
-    def arm(self, now: float) -> bool:
-        """Arming goes over the agent's own link."""
-        return self._control.arm()
+    def child(self) -> int | None:
+        """The child's process id, while there is one."""
+        return self._courier.process.pid if isinstance(self._courier, Child) else None
 
     def close(self) -> None:
         """End the child."""
@@ -165,37 +150,28 @@ class MavsdkAdapter:
             self._courier.close()
             self._courier = None
 
-    def acknowledge(self, now: float, ack: CommandAck) -> None:
-        """Hear the answer to arming."""
-        self._control.acknowledge(now, ack)
-
     def step(self, now: float, telemetry: Telemetry, setpoint: Setpoint | None) -> Step:
-        """Pass orders and setpoints on to the child; messages are those for arming alone."""
-        ended = self._ended()  # before the mode is judged: it was the child that changed it
-        messages, notes = self._control.step(now, telemetry)
-        notes = ended + notes
-        ids = [message.command for message in messages if isinstance(message, CommandLong)]
-        asking = CommandId.SET_MODE in ids
-        # The child asks for modes; over the agent's own link go requests to arm alone.
-        arming = [m for m, number in zip(messages, ids, strict=True) if number == CommandId.ARM]
+        """Pass orders and setpoints on to the child; return the messages for arming alone."""
+        notes = self._ended()  # before the mode is judged: it was the child that changed it
+        asked = self._machine.step(now, telemetry)
+        notes += asked.notes
+        messages = tuple(self._arming(asked))
         courier = self._present(now)
         if courier is None:
-            return Step(tuple(arming), tuple(notes))
+            return Step(messages, tuple(notes))
         notes += courier.said()
-        stage = self._control.stage
-        if stage is Stage.TAKEN:  # it must not ask for hold: that would take the vehicle from the pilot
+        if self.stage is Stage.TAKEN:  # it must not ask for hold: that would take the vehicle from the pilot
             courier.send(LINE.pack(RELEASE, now, 0.0, 0.0, 0.0, 0.0))
             self.close()
-        elif asking:
-            order = ENTER if stage is Stage.ENTERING else ORDERS[self._way]
+        elif asked.mode:
+            order = ENTER if self.stage is Stage.ENTERING else ORDERS[self._machine.leaving_by]
             courier.send(LINE.pack(order, now, 0.0, 0.0, 0.0, 0.0))
-        if setpoint is not None and stage in (Stage.ENTERING, Stage.ACTIVE):
-            wanted = add(setpoint.velocity, setpoint.wind)
-            if isfinite(norm(wanted)):
-                v = self._shaper.shape(now, wanted)
-                yaw = degrees(yaw_along(v, telemetry.yaw))
-                courier.send(LINE.pack(SETPOINT, now, v.x, v.y, v.z, yaw))
-        return Step(tuple(arming), tuple(notes))
+        sound = self._sound(setpoint, notes)
+        if sound is not None:
+            target = self._targets.target(now, telemetry, sound)
+            v, yaw = target.velocity, degrees(target.yaw or 0.0)
+            courier.send(LINE.pack(SETPOINT, now, v.x, v.y, v.z, yaw))
+        return Step(messages, tuple(notes))
 
     def _ended(self) -> list[Note]:
         """What there is to tell of a child that has ended: control is given up."""
@@ -203,14 +179,14 @@ class MavsdkAdapter:
             return []
         notes = self._courier.said()
         self.close()
-        if self._control.stage is Stage.ACTIVE:
-            self._control.release()
+        if self.stage is Stage.ACTIVE:
+            self._machine.give_up()
             notes.append(Note("error", "mavsdk_ended", "the MAVSDK child has ended: offboard is over"))
         return notes
 
     def _present(self, now: float) -> Courier | None:
         """The child, started when it is needed."""
-        needed = self._control.stage in (Stage.ENTERING, Stage.ACTIVE, Stage.LEAVING)
+        needed = self.stage in (Stage.ENTERING, Stage.ACTIVE, Stage.LEAVING)
         if self._courier is None and needed and now - self._launched_at >= RELAUNCH:
             self._launched_at = now
             self._courier = self._launch(self._url, str(self._system))

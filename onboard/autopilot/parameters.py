@@ -1,12 +1,10 @@
-"""The autopilot's parameters that matter to a companion: failsafes, fence, and what the aircraft can do."""
+"""The autopilot's parameters that matter to this agent: which are read, and which defeat a failsafe."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import radians
 from typing import NamedTuple
 
-from onboard.autopilot.base import Envelope
 from onboard.wire.mavlink.modes import Kind
 
 Parameters = Mapping[str, float]
@@ -52,7 +50,10 @@ WANTED: dict[Kind, tuple[str, ...]] = {
 
 
 def gcs_failsafe(kind: Kind, parameters: Parameters, system: int) -> Finding | None:
-    """Whether the autopilot acts when this agent's heartbeat (from `system`) falls silent."""
+    """Return why the autopilot would not act when this agent's heartbeat (from `system`) falls silent.
+
+    None where it acts.
+    """
     if kind is Kind.PX4_MULTICOPTER:
         return None  # it watches the setpoints themselves: COM_OF_LOSS_T
     name = "FS_GCS_ENABL" if kind is Kind.ARDUPLANE else "FS_GCS_ENABLE"
@@ -72,7 +73,7 @@ def gcs_failsafe(kind: Kind, parameters: Parameters, system: int) -> Finding | N
 
 
 def findings(kind: Kind, parameters: Parameters, system: int) -> tuple[Finding, ...]:
-    """All that a preflight check should say of an autopilot's parameters."""
+    """Return all that a preflight check should say of an autopilot's parameters."""
     found: list[Finding] = []
     failsafe = gcs_failsafe(kind, parameters, system)
     if failsafe is not None:
@@ -97,28 +98,3 @@ def findings(kind: Kind, parameters: Parameters, system: int) -> tuple[Finding, 
         text = f"GUID_TIMEOUT is {timeout:g} s: it flies on that long after the last setpoint"
         found.append(Finding("warning", "GUID_TIMEOUT", text, "set GUID_TIMEOUT to 1"))
     return tuple(found)
-
-
-def envelope_from(kind: Kind, parameters: Parameters, declared: Envelope) -> Envelope:
-    """The declared envelope made tighter by what the autopilot's parameters say it will do."""
-
-    def first(*names: str, factor: float = 1.0) -> float | None:
-        values = [parameters[name] * factor for name in names if parameters.get(name, 0.0) > 0.0]
-        return values[0] if values else None
-
-    if kind is Kind.PX4_MULTICOPTER:
-        low, high = None, first("MPC_XY_VEL_MAX")
-        climb, sink, bank = first("MPC_Z_VEL_MAX_UP"), first("MPC_Z_VEL_MAX_DN"), None
-    elif kind is Kind.ARDUPLANE:
-        low, high = first("AIRSPEED_MIN", "ARSPD_FBW_MIN"), first("AIRSPEED_MAX", "ARSPD_FBW_MAX")
-        climb, sink = first("TECS_CLMB_MAX"), first("TECS_SINK_MAX")
-        bank = first("ROLL_LIMIT_DEG") or first("LIM_ROLL_CD", factor=0.01)
-    else:
-        low = high = climb = sink = bank = None
-    return declared._replace(
-        speed_min=max(declared.speed_min, low or 0.0),
-        speed_max=min(declared.speed_max, high or declared.speed_max),
-        climb_max=min(declared.climb_max, climb or declared.climb_max),
-        sink_max=min(declared.sink_max, sink or declared.sink_max),
-        bank_max=min(declared.bank_max, radians(bank) if bank else declared.bank_max),
-    )

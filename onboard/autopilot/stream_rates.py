@@ -81,8 +81,8 @@ def plan(needs: Sequence[Need], budget: float, *, signed: bool = False) -> dict[
     return rates
 
 
-class Asking:
-    """Asks one autopilot for rates, and adapts them to what arrives."""
+class StreamRates:
+    """The message rates that one autopilot is asked for; they adapt to what arrives."""
 
     def __init__(
         self,
@@ -107,13 +107,13 @@ class Asking:
         self._stale = True  # ask for everything, whatever was asked before
 
     def forget(self) -> None:
-        """The autopilot started again, or another link is used: ask for everything again."""
+        """Ask for everything again: the autopilot has started again, or another link is used."""
         self._stale = True
 
     def step(
         self, now: float, arrived: dict[str, float], buffer_free: float = 1.0, quality: float = 1.0
     ) -> list[CommandLong]:
-        """Requests due now; call about once a second.
+        """Return the requests due at `now` [s, monotonic]; call about once a second.
 
         `arrived`: measured rates [Hz] by message, as they were sent; `quality`: the share of frames that
         comes through, by which they were estimated; `buffer_free`: of the telemetry radio, 0…1 (1 if none).

@@ -1,7 +1,7 @@
-"""From an autopilot's packets to one snapshot: `take` each packet, ask for `snapshot` when deciding.
+"""What is known of one autopilot: each packet is taken in, `snapshot` is read when a decision is due.
 
-Accepts the autopilot's own component alone, so that a routed ground station's heartbeat cannot change a
-vehicle's mode. An old frame that a link delivers late does not undo a newer one.
+Only packets of the autopilot's own component count, so that the heartbeat of a ground station that a router
+passes on cannot change the vehicle's mode. A frame that a link delivers late does not replace a newer one.
 """
 
 from __future__ import annotations
@@ -68,9 +68,10 @@ class Observer:
         self._heard_at = NEVER
 
     def take(self, now: float, packet: Packet, link: int = 0) -> Value | None:
-        """Take one packet in; its value, or None where it is another's, nobody's, unsound or out of date.
+        """Take in one packet that came at `now` [s, monotonic]; return its value if it counts.
 
-        `link` tells several links apart: on each an autopilot numbers its frames from its own start.
+        None: the packet is another component's, nobody reads it, it is not sound, or a newer one came before.
+        `link` tells several links apart: an autopilot numbers its frames on each of them separately.
         """
         if packet.system != self.system or packet.component != self.component:
             return None
@@ -82,7 +83,7 @@ class Observer:
         if value is None:
             return None
         if isinstance(value, Heartbeat) and value.kind is Kind.UNKNOWN and value.autopilot == 8:
-            return None  # a component that says it is no autopilot
+            return None  # MAV_AUTOPILOT_INVALID: the sender is no autopilot
         kept = self._latest.get(type(value))
         late = kept is not None and now - kept[0] < OLD and (packet.sequence - kept[1]) % 256 > 128
         if late and kept is not None and kept[1] != NO_NUMBER:
@@ -92,14 +93,14 @@ class Observer:
         if isinstance(value, (GlobalPosition, Attitude)):
             if value.time_boot_s < self._boot_s - REBOOT:
                 self._reboots += 1
-                self._latest.clear()  # nothing the old life said holds any more
+                self._latest.clear()  # what was heard before the restart no longer holds
                 self._boot_s = value.time_boot_s
             self._boot_s = max(self._boot_s, value.time_boot_s)
         self._latest[type(value)] = (now, packet.sequence, value)
         return value
 
     def snapshot(self) -> Telemetry:
-        """What is known now."""
+        """Return what is known now."""
         heart_at, heart = self._of(Heartbeat)
         place_at, place = self._of(GlobalPosition)
         tilt_at, tilt = self._of(Attitude)

@@ -26,21 +26,20 @@ class Offset(NamedTuple):
 
 
 class TimesyncEstimator:
-    """Give it the local monotonic clock [ns] throughout."""
+    """The offset of one autopilot's clock. All instants are of the local monotonic clock [ns]."""
 
     def __init__(self) -> None:
         self._asked: deque[int] = deque(maxlen=PENDING)
         self._answers: deque[tuple[int, int]] = deque(maxlen=WINDOW)  # (round trip, offset)
         self._against: list[tuple[int, int]] = []
-        self.jumps = 0
 
     def ask(self, now_ns: int) -> Timesync:
-        """A question to send now; about one a second is enough."""
+        """Return a question to send now; about one a second is enough."""
         self._asked.append(now_ns)
         return Timesync(0, now_ns)
 
     def take(self, now_ns: int, value: Timesync) -> Timesync | None:
-        """Take a TIMESYNC in; the answer to send where it was the autopilot's own question."""
+        """Take a TIMESYNC in; return the answer to send where it was the autopilot's own question."""
         if value.answered_ns == 0:
             return Timesync(now_ns, value.asked_ns)
         if value.asked_ns not in self._asked:
@@ -55,7 +54,6 @@ class TimesyncEstimator:
             self._against.append(answer)
             if len(self._against) < JUMP:
                 return None
-            self.jumps += 1
             self._answers.clear()
             self._answers.extend(self._against)
             self._against = []
@@ -65,12 +63,8 @@ class TimesyncEstimator:
         return None
 
     def offset(self) -> Offset:
-        """The estimate now."""
+        """Return the estimate from the answers so far."""
         if not self._answers:
             return Offset(False, 0, 0, 0)
         trip, offset = min(self._answers)
         return Offset(True, offset, trip, trip // 2)
-
-    def ours_from(self, autopilot_ns: int) -> int:
-        """The local monotonic instant of one on the autopilot's clock (its own, where nothing is known)."""
-        return autopilot_ns - self.offset().offset_ns

@@ -38,7 +38,7 @@ YawDeg = Annotated[float, Meta(ge=-360, le=360, description="an angle in [−360
 TurnRateDeg = Annotated[float, Meta(gt=0, le=3600, description="a positive rate [deg/s], at most 3600")]
 
 SystemId = Annotated[int, Meta(ge=1, le=250, description="a MAVLink system id from 1 to 250")]
-Seed = Annotated[int, Meta(ge=0, le=2**63 - 1, description="zero or more, at most 2^63 − 1")]
+Seed = Annotated[int, Meta(ge=0, le=2**63 - 1, description="a whole number from 0 to 2^63 − 1")]
 GpsFix = Annotated[int, Meta(ge=0, le=6, description="a MAVLink GPS_FIX_TYPE from 0 to 6")]
 
 NotNegative = Annotated[float, Meta(ge=0, le=1e9, description="zero or more, at most 1e9")]

@@ -1,4 +1,4 @@
-"""The game's master: lease, setup, phase, brief, resume of restarted agents, outcome. Sans I/O.
+"""The game's master: lease, setup, phase, brief, resume of restarted agents, outcome. It does no I/O.
 
 There is exactly one in a game: the bridge in simulation, the ground station in the field. It listens
 first: who hears another master yields. Then it holds the lease, stages the vehicles, starts the game
@@ -10,41 +10,49 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from enum import Enum
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from onboard.core.game.referee import GameResult, Score, Step, judge, opening, passage
 from onboard.core.game.rules import Target
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import ZERO, Vec, along, sub
-from onboard.wire.bus import messages as swarm
+from onboard.game.phases import TRANSITIONS, PhaseEvent
+from onboard.wire.bus.codec import M
 from onboard.wire.bus.messages import (
+    AgentStage,
     EvaderBrief,
     Health,
     Master,
     Message,
     Outcome,
+    OutcomeResult,
     Phase,
     PhaseChange,
     Role,
     Setup,
+    Triple,
 )
 from onboard.wire.bus.topics import EVADER_BRIEF, MASTER, OUTCOME, PHASE, SETUP, Topic
 
-LEASE_S = 2.0
+LEASE_S = 2.0  # a master silent for longer is no master any more
 LEASE_EVERY_NS = NS_PER_S // 2
 LISTEN_NS = 12 * NS_PER_S // 10  # a master that holds the lease speaks twice in this time
 HEALTH_NS = 3 * NS_PER_S  # an agent silent for longer is not there: six heartbeats lost in a row
 SUPERSEDED_NS = 15 * NS_PER_S // 10  # an agent's earlier process counts as gone after this silence
-READY_STAGES = ("ready", "acting")
-_WORDS = {GameResult.CAPTURED: "captured", GameResult.ARRIVED: "arrived", GameResult.ESCAPED: "escaped"}
+READY_STAGES = (AgentStage.READY, AgentStage.ACTING)  # of agents that can begin
+_RESULTS = {
+    GameResult.CAPTURED: OutcomeResult.CAPTURED,
+    GameResult.ARRIVED: OutcomeResult.ARRIVED,
+    GameResult.ESCAPED: OutcomeResult.ESCAPED,
+}
 
 
 class Standing(Enum):
-    """Whether this one is the master."""
+    """Whether this master is the game's master."""
 
-    LISTENING = "listening"
-    HOLDING = "holding"
-    YIELDED = "yielded"  # another one is: this one says nothing more
+    LISTENING = "listening"  # for another one, before the first word
+    HOLDING = "holding"  # the lease
+    YIELDED = "yielded"  # another one is the master: this one says nothing more
 
 
 class Timing(NamedTuple):
@@ -59,7 +67,7 @@ class Timing(NamedTuple):
 class Publication(NamedTuple):
     """Something to be put on the bus."""
 
-    topic: Topic
+    topic: Topic[Any]
     message: Message
 
 
@@ -67,15 +75,18 @@ class _Agent:
     """What is known of one vehicle's agent."""
 
     def __init__(self) -> None:
-        self.health: Health | None = None
-        self.heard_ns = 0
-        self.acting_nonce = 0  # the process that plays
-        self.nonces: dict[int, int] = {}  # process → last heard [ns]
-        self.silent = False
+        self.health: Health | None = None  # its last heartbeat
+        self.heard_ns = 0  # arrival of that heartbeat [ns, monotonic]
+        self.acting_nonce = 0  # of the process that plays
+        self.nonces: dict[int, int] = {}  # nonce of a process → last heard [ns, monotonic]
+        self.silent = False  # as last told to the people
 
 
 class GameMaster:
-    """Give it time and messages; take `outgoing()` to the bus and `news()` to the people."""
+    """Give it time and messages; take `outgoing()` to the bus and `news()` to the people.
+
+    `target` is the evader's [m; NED], None in a game without one; of two masters the smaller `nonce` stays.
+    """
 
     def __init__(self, setup: Setup, target: Vec | None, name: str, nonce: int, timing: Timing) -> None:
         self.setup = setup
@@ -83,7 +94,7 @@ class GameMaster:
         self.nonce = nonce
         self.standing = Standing.LISTENING
         self.phase = Phase.STAGING
-        self.t0_ns = 0
+        self.t0_ns = 0  # beginning of the game [ns, wall]; 0 = not set
         self.outcome: Outcome | None = None
         self.score: Score | None = None
         self.nearest: dict[int, float] = {}  # smallest distance of each pursuer to the evader so far [m]
@@ -108,7 +119,7 @@ class GameMaster:
     # ------------------------------------------------------------------ what it hears
 
     def heard_master(self, message: Master, now_ns: int) -> None:
-        """Another master, or the own echo."""
+        """Take a master's lease from the bus: another master's, or the own echo."""
         if message.nonce == self.nonce or self.standing is Standing.YIELDED:
             return
         if self.standing is Standing.LISTENING or message.nonce < self.nonce:
@@ -120,7 +131,7 @@ class GameMaster:
             )
 
     def heard_health(self, health: Health, now_ns: int) -> None:
-        """An agent's heartbeat."""
+        """Take an agent's heartbeat, which arrived at `now_ns` [monotonic]."""
         agent = self._agents.get(health.id)
         if agent is None:
             self._say_once(("stranger", health.id), f"vehicle {health.id} is not in the roster: ignored")
@@ -140,9 +151,11 @@ class GameMaster:
         self._started = True
 
     def abort(self, wall_ns: int, now_ns: int, reason: str) -> None:
-        """End the game without a verdict."""
-        if self.outcome is None and self.standing is not Standing.YIELDED:
-            self._end("aborted", self._elapsed(wall_ns), 0, wall_ns, now_ns, reason)
+        """End the game without a result, in any phase before its end."""
+        if (self.phase, PhaseEvent.ABORT) in TRANSITIONS and self.standing is not Standing.YIELDED:
+            elapsed = self._elapsed(wall_ns)
+            outcome = self._outcome(OutcomeResult.ABORTED, wall_ns, time=elapsed, reason=reason)
+            self._end(PhaseEvent.ABORT, outcome, now_ns)
 
     # ------------------------------------------------------------------ time passes
 
@@ -169,7 +182,7 @@ class GameMaster:
         elif self.phase is Phase.RUNNING:
             self._look_after(wall_ns, now_ns)
         elif self.phase is Phase.ENDED and now_ns - self._ended_ns >= self._timing.recovery_s * NS_PER_S:
-            self._enter(Phase.RECOVERY, wall_ns, "")
+            self._follow(PhaseEvent.RECOVERY_DUE, wall_ns)
 
     def lacking(self, now_ns: int) -> dict[int, str]:
         """Why the game cannot start: vehicle → what it lacks."""
@@ -182,7 +195,8 @@ class GameMaster:
             elif len(agent.nonces) > 1:
                 lacking[id] = "two agents with this id"
             elif agent.health.stage not in READY_STAGES:
-                lacking[id] = f"{agent.health.stage}: {', '.join(agent.health.lacks) or 'no reason given'}"
+                why = ", ".join(agent.health.lacks) or "no reason given"
+                lacking[id] = f"{agent.health.stage.value}: {why}"
         return lacking
 
     def observe(self, wall_ns: int, now_ns: int, positions: Mapping[int, Vec]) -> None:
@@ -204,12 +218,12 @@ class GameMaster:
     # ------------------------------------------------------------------ what it says
 
     def outgoing(self) -> list[Publication]:
-        """What is to be published now; handed over once."""
+        """What is to be published now, in this order; each handed over once."""
         out, self._outgoing = self._outgoing, []
         return out
 
     def news(self) -> list[str]:
-        """Lines for people; handed over once."""
+        """Lines for people; each handed over once."""
         out, self._news = self._news, []
         return out
 
@@ -222,10 +236,11 @@ class GameMaster:
             for agent in self._agents.values():
                 agent.acting_nonce = agent.health.nonce if agent.health else 0
             self.t0_ns = wall_ns + round(self._timing.ready_s * NS_PER_S)
-            self._enter(Phase.READY, wall_ns, "")
+            self._follow(PhaseEvent.ALL_READY, wall_ns)
         elif lacking and patience_ns > 0 and now_ns - self._staged_ns > patience_ns:
             missing = "; ".join(f"vehicle {id}: {reason}" for id, reason in sorted(lacking.items()))
-            self._end("aborted", 0.0, 0, wall_ns, now_ns, f"not ready in time: {missing}")
+            outcome = self._outcome(OutcomeResult.ABORTED, wall_ns, reason=f"not ready in time: {missing}")
+            self._end(PhaseEvent.PATIENCE_OVER, outcome, now_ns)
 
     def _count_down(self, wall_ns: int, now_ns: int) -> None:
         lacking = self.lacking(now_ns)
@@ -233,9 +248,9 @@ class GameMaster:
             self.t0_ns = 0
             self._staged_ns = now_ns
             id, reason = min(lacking.items())
-            self._enter(Phase.STAGING, wall_ns, f"vehicle {id}: {reason}")
+            self._follow(PhaseEvent.NOT_READY, wall_ns, f"vehicle {id}: {reason}")
         elif wall_ns >= self.t0_ns:
-            self._enter(Phase.RUNNING, wall_ns, "")
+            self._follow(PhaseEvent.BEGINNING, wall_ns)
 
     def _look_after(self, wall_ns: int, now_ns: int) -> None:
         """Agents that fell silent, came back, or were started again while the game runs."""
@@ -249,7 +264,7 @@ class GameMaster:
             if silent or health is None:
                 continue
             if health.nonce == agent.acting_nonce:
-                if id in resume and health.stage == "acting":
+                if id in resume and health.stage is AgentStage.ACTING:
                     resume.discard(id)
             elif len(agent.nonces) == 1:
                 agent.acting_nonce = health.nonce
@@ -277,7 +292,9 @@ class GameMaster:
             self.nearest[id] = min(self.nearest.get(id, seen), seen)
         if score.verdict != GameResult.RUNNING:
             captor = ids[score.captor] if score.captor >= 0 else 0
-            self._end(_WORDS[GameResult(score.verdict)], score.time, captor, wall_ns, now_ns, "")
+            result = _RESULTS[GameResult(score.verdict)]
+            outcome = self._outcome(result, wall_ns, time=score.time, captor=captor)
+            self._end(PhaseEvent.RESULT, outcome, now_ns)
 
     def _judged(self, position: Vec) -> Vec:
         """Plane games and field profiles are judged horizontally."""
@@ -286,26 +303,32 @@ class GameMaster:
     def _elapsed(self, wall_ns: int) -> float:
         return max(0.0, (wall_ns - self.t0_ns) / NS_PER_S) if self.phase is Phase.RUNNING else 0.0
 
-    def _end(self, verdict: str, time: float, captor: int, wall_ns: int, now_ns: int, reason: str) -> None:
+    def _outcome(
+        self, result: OutcomeResult, wall_ns: int, *, time: float = 0.0, captor: int = 0, reason: str = ""
+    ) -> Outcome:
         smallest = self.score.smallest if self.score is not None else -1.0
-        self.outcome = Outcome(verdict, time, captor, smallest, wall_ns, reason)
+        return Outcome(result, time, captor, smallest, wall_ns, reason)
+
+    def _end(self, event: PhaseEvent, outcome: Outcome, now_ns: int) -> None:
+        self.outcome = outcome
         self._ended_ns = now_ns
         self._resume = ()
-        self._put(OUTCOME, self.outcome)
-        self._enter(Phase.ENDED, wall_ns, reason or verdict)
+        self._put(OUTCOME, outcome)
+        self._follow(event, outcome.stamp_ns, outcome.reason or outcome.verdict.value)
 
-    def _enter(self, phase: Phase, wall_ns: int, reason: str) -> None:
-        self.phase = phase
+    def _follow(self, event: PhaseEvent, wall_ns: int, reason: str = "") -> None:
+        """Enter the phase that an event leads to, and tell of it."""
+        self.phase = TRANSITIONS[self.phase, event]
         self._publish_phase(wall_ns, reason)
-        self._say(f"{phase.value}{': ' + reason if reason else ''}")
+        self._say(f"{self.phase.value}{': ' + reason if reason else ''}")
 
     def _publish_phase(self, wall_ns: int, reason: str) -> None:
         self._put(PHASE, PhaseChange(self.phase, self.t0_ns, wall_ns, self._resume, reason))
 
-    def _triple_target(self) -> swarm.Triple | None:
+    def _triple_target(self) -> Triple | None:
         return None if self._target is None else (self._target.x, self._target.y, self._target.z)
 
-    def _put(self, topic: Topic, message: Message) -> None:
+    def _put(self, topic: Topic[M], message: M) -> None:
         self._outgoing.append(Publication(topic, message))
 
     def _say(self, line: str) -> None:

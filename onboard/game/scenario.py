@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from enum import Enum
 from hashlib import sha256
-from math import inf
 from pathlib import Path
 from typing import Annotated
 
@@ -39,17 +38,14 @@ from onboard.config.bounds import (
     YawDeg,
 )
 from onboard.config.derive import Key, core_from, struct_from
-from onboard.config.strict import ConfigError
+from onboard.config.names import Title
+from onboard.config.strict import StrictConfig, demand
 from onboard.core.game.rules import Rules
 from onboard.core.math.states import VehicleLimits
 from onboard.core.math.vectors import Vec
 from onboard.pilot.predictor_choice import Predicting
 
 Point = Annotated[tuple[Coordinate, ...], msgspec.Meta(min_length=2, max_length=3)]
-
-
-class Part(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """Base of all parts of a scenario: frozen and strict."""
 
 
 class Kind(Enum):
@@ -95,11 +91,14 @@ LIMIT_KEYS = {
 """How a vehicle's table writes the core's VehicleLimits."""
 
 
-class Parameters(struct_from(Rules, Part, RULE_KEYS, ("planar",))):  # type: ignore[misc]
+class Parameters(struct_from(Rules, StrictConfig, RULE_KEYS, ("planar",))):  # type: ignore[misc]
     """The game's rules in the paper's symbols, and the time step `dt` of the plane and compiled games [s]."""
 
+    def __post_init__(self) -> None:
+        demand(self.rho is None or self.rho >= self.R, "rho", self.rho, f"at least R = {self.R:g} m")
 
-class Player(Part, frozen=True):
+
+class Player(StrictConfig, frozen=True):
     """Who plays and from where."""
 
     position: Point
@@ -107,7 +106,7 @@ class Player(Part, frozen=True):
     id: SystemId | None = None  # evader 1, pursuers from 2 where not given
     strategy: str = ""  # "" = the default of the role
     target: Point | None = None  # the evader's alone
-    heading_deg: float | None = None  # at the start; None = towards the target or the evader
+    heading_deg: YawDeg | None = None  # at the start; None = towards the target or the evader
 
 
 class VehicleSpec(struct_from(VehicleLimits, Player, LIMIT_KEYS)):  # type: ignore[misc]
@@ -116,6 +115,14 @@ class VehicleSpec(struct_from(VehicleLimits, Player, LIMIT_KEYS)):  # type: igno
     acceleration: PositiveAcceleration = 4.0  # [m/s²] of the kinematic airframe
     autopilot: Kind | None = None  # None = the scenario's
     airframe: AirframeKind | None = None
+
+    def __post_init__(self) -> None:
+        speed, fastest = self.speed, self.speed_max
+        demand(self.speed_min <= speed, "speed_min", self.speed_min, f"0 to speed = {speed:g} m/s")
+        demand(fastest is None or fastest >= speed, "speed_max", fastest, f"at least speed = {speed:g} m/s")
+        for angle in ("pitch", "yaw"):
+            low, high = getattr(self, f"{angle}_min_deg"), getattr(self, f"{angle}_max_deg")
+            demand(low <= high, f"{angle}_min_deg", f"{low:g} with {angle}_max_deg {high:g}", "min ≤ max")
 
     def start(self) -> Vec:
         """Start in the game frame."""
@@ -127,7 +134,7 @@ class VehicleSpec(struct_from(VehicleLimits, Player, LIMIT_KEYS)):  # type: igno
         return core_from(self, VehicleLimits, LIMIT_KEYS, speed_max=fastest)
 
 
-class OriginSpec(Part, frozen=True):
+class OriginSpec(StrictConfig, frozen=True):
     """Origin of the game frame (WGS-84; altitude above mean sea level)."""
 
     latitude_deg: Latitude = 47.397742
@@ -135,7 +142,7 @@ class OriginSpec(Part, frozen=True):
     altitude_m: Altitude = 488.0
 
 
-class SensorSpec(Part, frozen=True):
+class SensorSpec(StrictConfig, frozen=True):
     """The simulated sensor that publishes tracks."""
 
     rate_hz: Rate = 10.0
@@ -145,7 +152,7 @@ class SensorSpec(Part, frozen=True):
     dropout: PartialShare = 0.0  # share of lost measurements
 
 
-class ImpairmentSpec(Part, frozen=True):
+class ImpairmentSpec(StrictConfig, frozen=True):
     """What happens to datagrams (and, where `bus` says so, to the memory bus)."""
 
     loss: Share = 0.0  # share
@@ -159,11 +166,11 @@ class ImpairmentSpec(Part, frozen=True):
     bus: bool = False
 
 
-class WindSpec(Part, frozen=True):
+class WindSpec(StrictConfig, frozen=True):
     """Wind. `from_deg` is the direction it comes from, as pilots say it."""
 
     speed: Speed = 0.0  # mean, at 6 m (20 ft) above ground [m/s]
-    from_deg: float = 0.0
+    from_deg: YawDeg = 0.0
     shear: bool = False  # MIL-F-8785C profile
     gust_sigma: Speed = 0.0  # σ of the Dryden gusts [m/s]
     correlation_m: Distance = 0.0  # 0 = each vehicle its own gusts
@@ -175,15 +182,19 @@ Polygon = Annotated[
 ]
 
 
-class FenceSpec(Part, frozen=True):
+class FenceSpec(StrictConfig, frozen=True):
     """Geofence: polygon of [north, east] and a height band [m]."""
 
     polygon: Polygon
-    height_min: Coordinate
-    height_max: Coordinate
+    height_min: Coordinate  # [m]
+    height_max: Coordinate  # [m]
+
+    def __post_init__(self) -> None:
+        below = f"less than height_max = {self.height_max:g} m"
+        demand(self.height_min < self.height_max, "height_min", self.height_min, below)
 
 
-class Flight(Part, frozen=True):
+class Flight(StrictConfig, frozen=True):
     """What only `serve` and `fly` need."""
 
     autopilot: Kind = Kind.ARDUCOPTER
@@ -202,7 +213,7 @@ class Flight(Part, frozen=True):
     field_profile: bool = False
 
 
-class Expect(Part, frozen=True):
+class Expect(StrictConfig, frozen=True):
     """The paper's verdicts for a row of Table 1."""
 
     escapes: bool  # with the strategy of this paper
@@ -215,10 +226,10 @@ Pursuers = Annotated[
 ]
 
 
-class Scenario(Part, frozen=True):
+class Scenario(StrictConfig, frozen=True):
     """A whole scenario."""
 
-    name: str
+    name: Title
     evader: VehicleSpec
     pursuers: Pursuers
     description: str = ""
@@ -226,6 +237,15 @@ class Scenario(Part, frozen=True):
     parameters: Parameters = Parameters()
     flight: Flight = Flight()
     expect: Expect | None = None
+
+    def __post_init__(self) -> None:
+        demand(self.evader.speed > 0, "evader.speed", self.evader.speed, "a positive speed [m/s]")
+        for index, v in enumerate(self.pursuers):
+            demand(v.target is None, f"pursuers[{index}].target", v.target,
+                   "no target: only the evader has one")  # fmt: skip
+        ids = self.ids
+        demand(len(set(ids)) == len(ids), "pursuers.id", list(ids), "ids that differ")
+        demand(max(ids) <= 250, "pursuers", f"{len(self.pursuers)} pursuers", "system ids up to 250")
 
     @property
     def planar(self) -> bool:
@@ -261,35 +281,5 @@ def vec(point: Point) -> Vec:
 
 
 def load(path: Path) -> Scenario:
-    """Read and check a scenario file. Raises ConfigError."""
-    return check(config.read(path, Scenario), str(path))
-
-
-def check(scenario: Scenario, name: str) -> Scenario:
-    """Demand what types cannot say. Raises ConfigError with file, key, found and expected."""
-
-    def demand(ok: bool, key: str, found: object, expected: str) -> None:
-        if not ok:
-            raise ConfigError(f"{name}: {key}: found {found}, expected {expected}")
-
-    p = scenario.parameters
-    demand(p.rho is None or p.rho >= p.R, "parameters.rho", p.rho, f"at least R = {p.R:g} m")
-    for index, v in enumerate(scenario.vehicles):
-        at = "evader" if index == 0 else f"pursuers[{index - 1}]"
-        demand(index > 0 or v.speed > 0, f"{at}.speed", v.speed, "a positive speed [m/s]")
-        high = inf if v.speed_max is None else v.speed_max
-        demand(v.speed_min <= v.speed, f"{at}.speed_min", v.speed_min, f"0 to speed = {v.speed:g} m/s")
-        demand(high >= v.speed, f"{at}.speed_max", v.speed_max, f"at least speed = {v.speed:g} m/s")
-        for angle, most in (("pitch", 90), ("yaw", 360)):
-            low, high = (getattr(v, f"{angle}_{end}_deg") for end in ("min", "max"))
-            demand(low <= high, f"{at}.{angle}_min_deg", f"{low:g} with {angle}_max_deg {high:g}",
-                   f"−{most} ≤ min ≤ max ≤ {most}")
-        demand(v.target is None or index == 0, f"{at}.target", v.target, "no target: only the evader has one")
-    ids = scenario.ids
-    demand(len(set(ids)) == len(ids), "pursuers.id", list(ids), "ids that differ")
-    demand(max(ids) <= 250, "pursuers", f"{len(scenario.pursuers)} pursuers", "system ids up to 250")
-    fence = scenario.flight.fence
-    if fence is not None:
-        demand(fence.height_min < fence.height_max, "flight.fence.height_min", fence.height_min,
-               f"less than height_max = {fence.height_max:g} m")
-    return scenario
+    """Read a scenario file. Raises ConfigError that names file, key, found and expected."""
+    return config.read(path, Scenario)

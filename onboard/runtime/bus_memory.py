@@ -14,8 +14,8 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING
 
-from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.impairment import Channel, Impairment
+from onboard.runtime.memory_delivery import MemoryDelivery
 from onboard.runtime.patterns import matches
 from onboard.runtime.protocols import Sample
 from onboard.wire.bus.topics import Delivery
@@ -24,10 +24,8 @@ if TYPE_CHECKING:
     from numpy.random import Generator
 
 EVENTS_KEPT = 256  # events a publisher keeps of each key
-CALLS_MAX = 4096  # calls under way to one connection before LATEST messages to it are dropped
 ROUTES_MAX = 10_000  # keys whose hearers are remembered
 RECONNECT_S = 0.5  # a connection is back at most this long after the broker
-RESEND_S = 0.2  # what an impaired connection loses of reliable messages comes this much later
 
 
 class _Undo:
@@ -152,17 +150,16 @@ class MemoryBus:
         self._servers: list[tuple[str, Callable[[bytes], bytes]]] = []
         self._kept: dict[str, _Kept] = {}
         self._counts: Counter[str] = Counter()
-        self._pending = 0
-        self._reliable_ns = 0  # arrival of the last reliable message: the next comes no sooner
-        self._reliable: deque[tuple[bytes, Callable[[bytes], None]]] = deque(maxlen=CALLS_MAX)
-        self._pumping = False
+        self._delivery = MemoryDelivery(channel, self._counts)
+        self.tap: Callable[[Sample], None] | None = None  # is told of everything delivered to this connection
+        self.stopped = False  # its process is stopped (SIGSTOP): publishes nothing, and its tokens stay
         self._online = False
         self._closed = False
 
     def publish(self, key: str, payload: bytes, delivery: Delivery) -> None:
         """Put a message; counts `no_bus` while there is no broker."""
-        if self._closed:
-            self._counts["closed"] += 1
+        if self._closed or self.stopped:
+            self._counts["closed" if self._closed else "stopped"] += 1
             return
         number = 0
         if delivery in (Delivery.CACHED, Delivery.EVENT):
@@ -221,7 +218,7 @@ class MemoryBus:
             if number not in answered and bus._online:
                 answered.add(number)
                 bus._counts["answered"] += 1
-                self._soon(Delivery.LATEST, handler(question), partial(arrived, number))
+                self._delivery.bring(Delivery.LATEST, handler(question), partial(arrived, number))
 
         def arrived(number: int, reply: bytes) -> None:
             replies.setdefault(number, reply)
@@ -230,7 +227,7 @@ class MemoryBus:
 
         self._counts["requests" if self._online else "no_bus"] += 1
         for number, (bus, _) in enumerate(asked):
-            bus._soon(Delivery.LATEST, payload, partial(answer, number))
+            bus._delivery.bring(Delivery.LATEST, payload, partial(answer, number))
         if asked:
             try:
                 async with asyncio.timeout(timeout_s):
@@ -275,6 +272,14 @@ class MemoryBus:
             counts.update({f"in_{cause}": count for cause, count in self.channel.counts.items()})
         return counts
 
+    def cut(self) -> None:
+        """From now on nothing goes out or comes in, and nobody is told: as with a radio out of reach."""
+        self._online = False
+
+    def mend(self) -> None:
+        """End a `cut`: what publishers keep is caught up with, as after a broker's return."""
+        self._returned()
+
     async def close(self) -> None:
         """Leave the broker; tokens and kept values go with it."""
         if self._closed:
@@ -291,7 +296,7 @@ class MemoryBus:
         self._broker.tokens_changed()
 
     def _lost(self) -> None:
-        self._reliable.clear()
+        self._delivery.clear()
         self._look()
 
     def _returned(self) -> None:
@@ -338,51 +343,11 @@ class MemoryBus:
                         continue
                     listener.had[source] = number
                 self._counts["received"] += 1
+                if self.tap is not None:
+                    self.tap(Sample(sample.key, payload))
                 listener.receiver(Sample(sample.key, payload))
 
-        self._soon(delivery, sample.payload, arrived)
-
-    def _soon(self, delivery: Delivery, payload: bytes, arrived: Callable[[bytes], None]) -> None:
-        """Call `arrived` with what comes of a payload, in a later round of the loop."""
-        loop = asyncio.get_running_loop()
-        latest = delivery is Delivery.LATEST
-        if latest and self._pending >= CALLS_MAX:
-            self._counts["overflow"] += 1
-        elif self.channel is None:
-            self._pending += 1
-            loop.call_soon(self._land, payload, arrived)
-        elif latest:
-            now_ns = round(loop.time() * NS_PER_S)
-            for arrival_ns, shape in self.channel.fate(payload, now_ns):
-                self._pending += 1
-                loop.call_later((arrival_ns - now_ns) / NS_PER_S, self._land, shape, arrived)
-        else:
-            if len(self._reliable) == self._reliable.maxlen:
-                self._counts["overflow"] += 1
-            self._reliable.append((payload, arrived))
-            if not self._pumping:
-                self._pump(self.channel)
-
-    def _pump(self, channel: Channel) -> None:
-        """Pass on the reliable messages in order; what the channel loses is sent again later."""
-        loop = asyncio.get_running_loop()
-        now_ns = round(loop.time() * NS_PER_S)
-        self._pumping = False
-        while self._reliable:
-            payload, arrived = self._reliable[0]
-            fate = channel.fate(b"", now_ns)
-            if not fate:
-                self._pumping = True
-                loop.call_later(RESEND_S, self._pump, channel)
-                return
-            self._reliable.popleft()
-            self._reliable_ns = max(self._reliable_ns, fate[0][0])
-            self._pending += 1
-            loop.call_later((self._reliable_ns - now_ns) / NS_PER_S, self._land, payload, arrived)
-
-    def _land(self, payload: bytes, arrived: Callable[[bytes], None]) -> None:
-        self._pending -= 1
-        arrived(payload)
+        self._delivery.bring(delivery, sample.payload, arrived)
 
     def _look(self) -> None:
         """Tell the own watchers which tokens came and went."""
@@ -390,7 +355,7 @@ class MemoryBus:
         for watcher in self._watchers:
             seen = {key for key in tokens if matches(watcher.pattern, key)}
             for key in sorted(watcher.alive ^ seen):
-                self._soon(Delivery.REQUEST, b"", partial(self._tell, watcher, key, key in seen))
+                self._delivery.bring(Delivery.REQUEST, b"", partial(self._tell, watcher, key, key in seen))
             watcher.alive = seen
 
     @staticmethod

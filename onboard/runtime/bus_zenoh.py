@@ -1,4 +1,4 @@
-"""The bus over Zenoh: the only place that imports it.
+"""The bus over Zenoh: with `zenoh_config` the only place that imports it.
 
 Zenoh calls back on threads of its own. Here they touch one locked, bounded `Inbox` and wake the
 event loop; all else happens on the loop. LATEST messages overwrite each other by key, the rest waits
@@ -9,7 +9,6 @@ advanced subscriber, which asks for what it missed: a late joiner, or after the 
 from __future__ import annotations
 
 import asyncio
-import json
 import threading
 from collections import deque
 from collections.abc import Callable
@@ -20,23 +19,19 @@ from typing import Any
 import zenoh
 from zenoh import ext, handlers
 
-from onboard.config.strict import ConfigError
 from onboard.runtime.inbox import Inbox
 from onboard.runtime.patterns import intersects
 from onboard.runtime.protocols import Sample, Subscription
-from onboard.wire.bus.topics import ROOT, TOPICS, Delivery, topic_of
+from onboard.runtime.zenoh_config import DEFAULT_ENDPOINT, Candidate, first_sentence, sessions_of
+from onboard.wire.bus.topics import TOPICS, Delivery
 
-DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
 EVENTS_KEPT = 256  # events a publisher keeps of each key
 RETRY_S = 0.5  # between attempts to connect
-LEASE_MS = 2000  # a silent partner is given up after this
 FIRST_ATTEMPT_S = 2.0  # `open_zenoh` returns at the latest after this, connected or not
 CLOSE_S = 2.0
 _HEARTBEAT_S = 0.5  # of advanced publishers: how soon a lost last event is noticed
 _KEPT = (Delivery.CACHED, Delivery.EVENT)
-_KEPT_PATTERNS = tuple(
-    f"{ROOT}/*/{topic.suffix.format(id='*')}" for topic in TOPICS if topic.delivery in _KEPT
-)
+_KEPT_PATTERNS = tuple(topic.key("*") for topic in TOPICS if topic.delivery in _KEPT)
 
 
 class _Declared:
@@ -68,8 +63,8 @@ class _Declared:
 class ZenohBus:
     """A Zenoh session that may come later, go and return. Made by `open_zenoh`, on an event loop."""
 
-    def __init__(self, sessions: list[tuple[str, zenoh.Config]], endpoint: str) -> None:
-        self._sessions = sessions  # what to try, in order, each time: (how, configuration)
+    def __init__(self, sessions: list[Candidate], endpoint: str) -> None:
+        self._sessions = sessions  # what to try, in order, each time
         self._endpoint = endpoint
         self._loop = asyncio.get_running_loop()
         self._inbox = Inbox(self._loop)
@@ -148,8 +143,8 @@ class ZenohBus:
                 return
             key = str(sample.key_expr)
             call = partial(deliver, Sample(key, sample.payload.to_bytes()))
-            topic = topic_of(key)
-            if topic is not None and topic.delivery is Delivery.LATEST and not every:
+            place = TOPICS.find(key)
+            if place is not None and place.topic.delivery is Delivery.LATEST and not every:
                 inbox.latest((slot, key), call)
             else:
                 inbox.queue(call)
@@ -296,7 +291,7 @@ class ZenohBus:
                 try:
                     session = zenoh.open(config)
                 except zenoh.ZError as error:
-                    self._inbox.queue(partial(self._failed, _first_sentence(error)))
+                    self._inbox.queue(partial(self._failed, first_sentence(error)))
                 else:
                     self._inbox.queue(partial(self._opened, session, how))
                     return
@@ -340,25 +335,6 @@ def _publisher(session: Any, key: str, delivery: Delivery) -> Any:
     )
 
 
-def _first_sentence(error: Exception) -> str:
-    """Zenoh's errors carry the source line after ` at /`: not for people."""
-    return str(error).split(" at /")[0].strip()
-
-
-def _config(file: Path | None, settings: dict[str, object]) -> zenoh.Config:
-    """A configuration: the defaults of this product, then the file, then what was asked for."""
-    try:
-        config = zenoh.Config.from_file(str(file)) if file else zenoh.Config()
-    except zenoh.ZError as error:
-        raise ConfigError(f"{file}: {_first_sentence(error)}") from None
-    for name, value in settings.items():
-        try:
-            config.insert_json5(name, json.dumps(value))
-        except zenoh.ZError:
-            raise ConfigError(f"bus: {name}: found {value!r}, expected e.g. {DEFAULT_ENDPOINT}") from None
-    return config
-
-
 async def open_zenoh(
     endpoint: str | None = None, *, listen: bool = False, config_file: Path | None = None
 ) -> ZenohBus:
@@ -369,24 +345,7 @@ async def open_zenoh(
     configuration (JSON5) for TLS, access control, a router elsewhere; without an `endpoint` its own
     endpoints and mode stay. Raises ConfigError for a file or an endpoint that cannot be.
     """
-    common: dict[str, object] = {
-        "timestamping/enabled": True,
-        "transport/link/tx/lease": LEASE_MS,
-        "connect/retry": {"period_init_ms": 500, "period_max_ms": 500, "period_increase_factor": 1},
-        "connect/timeout_ms": 0,
-        "connect/exit_on_failure": True,
-    }
-    if config_file is not None and endpoint is None:
-        bus = ZenohBus([("client", _config(config_file, common))], str(config_file))
-        await bus.first_attempt(FIRST_ATTEMPT_S)
-        return bus
-    where = endpoint or DEFAULT_ENDPOINT
-    common |= {"scouting/multicast/enabled": False, "scouting/gossip/enabled": False}
-    client = {"mode": "client", "connect/endpoints": [where], "listen/endpoints": []}
-    sessions = [("joined" if listen else "client", _config(config_file, common | client))]
-    if listen:
-        router = {"mode": "router", "listen/endpoints": [where], "connect/endpoints": []}
-        sessions.insert(0, ("listening", _config(config_file, common | router)))
-    bus = ZenohBus(sessions, where)
+    where = endpoint or str(config_file or DEFAULT_ENDPOINT)
+    bus = ZenohBus(sessions_of(endpoint, listen, config_file), where)
     await bus.first_attempt(FIRST_ATTEMPT_S)
     return bus

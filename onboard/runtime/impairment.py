@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from onboard.core.math.constants import NS_PER_S
-from onboard.game.scenario import ImpairmentSpec
 from onboard.runtime.protocols import Link, Receiver
 
 if TYPE_CHECKING:
@@ -29,7 +28,10 @@ _STRETCH_S = (1e-3, 1e6)  # shortest and longest stretch of a burst or of good t
 
 
 class Impairment(msgspec.Struct, frozen=True, kw_only=True):
-    """What happens to the datagrams of one direction. Shares in 0…1, times in seconds."""
+    """What happens to the datagrams of one direction. Shares in 0…1, times in seconds.
+
+    A scenario has the same keys, but for `cut`.
+    """
 
     loss: float = 0.0  # share lost, each on its own
     delay_s: float = 0.0
@@ -44,15 +46,6 @@ class Impairment(msgspec.Struct, frozen=True, kw_only=True):
 
 CLEAR = Impairment()
 CUT = Impairment(cut=True)
-
-
-def impairment_of(spec: ImpairmentSpec) -> Impairment:
-    """The impairment that a scenario asks for."""
-    return Impairment(
-        loss=spec.loss, delay_s=spec.delay_s, jitter_s=spec.jitter_s,
-        duplication=spec.duplication, reordering=spec.reordering,
-        burst_rate=spec.burst_rate, burst_s=spec.burst_s, bit_error=spec.bit_error,
-    )  # fmt: skip
 
 
 class Channel:

@@ -42,6 +42,11 @@ class VirtualLoop(asyncio.BaseEventLoop):
         self._order = 0
         self._cancelled = 0
 
+    @property
+    def timers(self) -> int:
+        """Timers kept: those that are due later, and cancelled ones that are not swept yet."""
+        return len(self._heap)
+
     def time(self) -> float:
         """Elapsed virtual time [s]."""
         return self.clock.monotonic_ns() / NS_PER_S

@@ -1,36 +1,116 @@
-"""How our programs end: a user's mistake is one line on standard error and exit code 2."""
+"""The host of every command: how a program begins and in what ways it can end.
+
+A user's mistake costs one line on standard error and exit code 2, ctrl-C one line and 130. A reader of the
+output who leaves (`| head`) ends the program quietly; output that cannot be written ends it with one line.
+"""
 
 from __future__ import annotations
 
+import contextlib
+import errno
 import os
 import sys
-
-import typer
+from collections.abc import Callable, Iterator
+from typing import Any, NoReturn, TextIO
 
 from onboard.config.strict import ConfigError
 
+MISTAKE = 2
+NOT_WRITTEN = 74  # EX_IOERR of sysexits.h
+INTERRUPTED = 130  # as a shell reports SIGINT
+READER_LEFT = 141  # as a shell reports SIGPIPE
+NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
 
-def run(app: typer.Typer, name: str) -> None:
-    """Run a program: ConfigError and wrong options become one line, ctrl-C exit code 130."""
+
+def run(app: Callable[..., Any], name: str) -> NoReturn:
+    """Run a program to its end and leave with its exit code.
+
+    `app` is a Typer application, or a function without arguments that gives the exit code (None: 0); `name`
+    stands before every line on standard error. Never returns: raises SystemExit.
+    """
+    tolerate_characters(sys.stdout, sys.stderr)
     try:
-        code = app(standalone_mode=False, prog_name=name)
+        code = _called(app, name)
+        if sys.stdout is not None:
+            sys.stdout.flush()  # here, where what goes wrong can be told
     except ConfigError as error:
-        _fail(name, str(error))
+        fail(name, str(error))
+    except BaseExceptionGroup as group:  # a mistake found within tasks
+        mistakes = [error for error in _leaves(group) if isinstance(error, ConfigError)]
+        if not mistakes or len(mistakes) < sum(1 for _ in _leaves(group)):
+            raise
+        fail(name, str(mistakes[0]))
+    except KeyboardInterrupt:
+        _end(name, "interrupted", INTERRUPTED)
+    except BrokenPipeError:
+        _discard_output()
+        sys.exit(READER_LEFT)
+    except OSError as error:
+        if error.errno not in NO_ROOM:
+            raise
+        _discard_output()
+        where = f"{error.filename}: " if error.filename else "cannot write: "
+        _end(name, f"{where}{(error.strerror or str(error)).lower()}", NOT_WRITTEN)
+    sys.exit(code if isinstance(code, int) else 0)
+
+
+def fail(name: str, text: str) -> NoReturn:
+    """Tell a user's mistake in one line on standard error and exit with code 2."""
+    _end(name, " ".join(text.split()), MISTAKE)
+
+
+def tolerate_characters(*streams: TextIO | None) -> None:
+    """Let streams write any text: a character that their encoding lacks comes out as `\\u03c8` does."""
+    for stream in streams:
+        reconfigure = getattr(stream, "reconfigure", None)  # a test's own stream may have none
+        if reconfigure is not None:
+            reconfigure(errors="backslashreplace")
+
+
+def _called(app: Callable[..., Any], name: str) -> Any:
+    """What the program gives, or the code of a `sys.exit` in it."""
+    typer = sys.modules.get("typer")  # the agent does without: it costs 12 MB of memory
+    try:
+        return app() if typer is None else _called_by_typer(app, name, typer)
+    except SystemExit as error:
+        return error.code
+
+
+def _called_by_typer(app: Callable[..., Any], name: str, typer: Any) -> Any:
+    if not isinstance(app, typer.Typer):
+        return app()
+    command = typer.main.get_command(app)
+    try:  # not `app()`: it would turn ctrl-C and a reader who left into exit codes of its own
+        with command.make_context(name, sys.argv[1:]) as context:
+            return command.invoke(context)
+    except typer.Exit as error:
+        return error.exit_code
     except typer.TyperException as error:
         text = error.format_message()
         if text.startswith("Usage:"):  # no arguments at all: the help
             print(text, file=sys.stderr)
-            sys.exit(2)
-        _fail(name, f"{' '.join(text.split())} (see {name} --help)")
-    except (KeyboardInterrupt, typer.Abort):
-        sys.exit(130)
-    except BrokenPipeError:  # `| head`: the reader has left
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        sys.exit(141)
-    else:
-        sys.exit(code if isinstance(code, int) else 0)
+            sys.exit(MISTAKE)
+        fail(name, f"{text} (see {name} --help)")
+    except typer.Abort:
+        raise KeyboardInterrupt from None
 
 
-def _fail(name: str, text: str) -> None:
-    print(f"{name}: {text}", file=sys.stderr)
-    sys.exit(2)
+def _end(name: str, text: str, code: int) -> NoReturn:
+    with contextlib.suppress(OSError):  # standard error may be full, or its reader gone
+        print(f"{name}: {text}", file=sys.stderr, flush=True)
+    sys.exit(code)
+
+
+def _discard_output() -> None:
+    """Lead standard output into nothing, so that what is left in its buffer does no harm at the exit."""
+    if sys.stdout is not None:
+        with contextlib.suppress(OSError, ValueError):  # a test's own stream has no descriptor
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _leaves(group: BaseExceptionGroup[BaseException]) -> Iterator[BaseException]:
+    for error in group.exceptions:
+        if isinstance(error, BaseExceptionGroup):
+            yield from _leaves(error)
+        else:
+            yield error

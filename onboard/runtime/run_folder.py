@@ -5,6 +5,7 @@ from __future__ import annotations
 from datetime import UTC, datetime
 from pathlib import Path
 
+from onboard.config.names import file_name
 from onboard.config.strict import ConfigError
 from onboard.core.math.constants import NS_PER_S
 
@@ -12,7 +13,7 @@ from onboard.core.math.constants import NS_PER_S
 def new_run(parent: Path, name: str, now_ns: int) -> Path:
     """Make a new run folder at a wall instant [ns]. Raises ConfigError where that cannot be."""
     at = datetime.fromtimestamp(now_ns // NS_PER_S, UTC).strftime("%Y%m%dT%H%M%SZ")
-    safe = "-".join("".join(c if c.isalnum() else " " for c in name).split())
+    safe = file_name(name)
     for suffix in ("", *(f"-{n}" for n in range(2, 100))):
         folder = parent / f"{at}-{safe}{suffix}"
         try:

@@ -20,8 +20,8 @@ from onboard.core.game.advance import (
 )
 from onboard.core.game.referee import GameResult
 from onboard.core.math.vectors import Vec
+from onboard.game.plugins import evader_strategy, pursuer_strategy
 from onboard.game.scenario import Scenario, load
-from onboard.runtime.plugins import evader_strategy, pursuer_strategy
 from onboard.runtime.resources import configs
 from sim_bridge.plane_game.setup import conditions_of, game_of
 

@@ -15,13 +15,13 @@ from typing import NamedTuple
 
 from onboard.config.strict import ConfigError
 from onboard.core.math.constants import NS_PER_S
+from onboard.game.plugins import evader_strategy, pursuer_strategy
 from onboard.game.scenario import Scenario, load
 from onboard.runtime.clock import RealClock
 from onboard.runtime.loop import run_virtual, virtual_clock
-from onboard.runtime.plugins import evader_strategy, pursuer_strategy
 from onboard.runtime.run_folder import new_run
 from sim_bridge.programs import run_folder
-from sim_bridge.programs.summary import Summary
+from sim_bridge.world.summary import Summary
 
 REPORT_S = 120.0
 ROOMS = ("flight", "spatial")  # below configs/scenarios/: what is known by its bare name
@@ -61,8 +61,10 @@ def fly(path: Path, options: Options, say: Callable[[str], None] = print) -> Flo
             summary, timing = _fast(scenario, options, folder, path.parent, tell)
         else:
             from sim_bridge.programs.fly_real import fly_real
+            from sim_bridge.programs.serve import Options as ServeOptions
 
-            summary, timing = asyncio.run(fly_real(scenario, options, folder, path.parent, tell))
+            server = ServeOptions(bus=options.bus, listen=True, once=True, seed=options.seed)
+            summary, timing = asyncio.run(fly_real(scenario, server, folder, path.parent, tell))
     except ConfigError:
         run_folder.discard(folder)
         raise
@@ -77,17 +79,18 @@ def fly(path: Path, options: Options, say: Callable[[str], None] = print) -> Flo
 def _fast(
     scenario: Scenario, options: Options, folder: Path, home: Path, say: Callable[[str], None]
 ) -> tuple[Summary, dict[str, object]]:
+    from sim_bridge.rehearsal import Options as RehearsalOptions
     from sim_bridge.rehearsal import Rehearsal
 
-    seed = scenario.seed if options.seed is None else options.seed
     clock = RealClock()
 
     async def play() -> tuple[Summary, float]:
         virtual = virtual_clock()
-        async with Rehearsal(
-            scenario, virtual, seed=seed, folder=folder, scenario_folder=home, say=say,
+        chosen = RehearsalOptions(
+            seed=options.seed, folder=folder, scenario_folder=home, say=say,
             version=run_folder.versions().get("apollonius", ""),
-        ) as game:  # fmt: skip
+        )  # fmt: skip
+        async with Rehearsal(scenario, virtual, chosen) as game:
             run_folder.write(folder / "configuration.json", game.configuration())
             await game.until_ended()
             await game.land_agents()

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import msgspec
 
+from onboard.config.names import game_name
 from onboard.config.strict import ConfigError
 from onboard.game.master import Standing
 from onboard.game.scenario import Scenario, load
@@ -22,9 +23,9 @@ from onboard.runtime.tasks import Pace, periodic
 from onboard.wire.bus.messages import Outcome, Phase
 from onboard.wire.bus.topics import DEFAULT_GAME
 from sim_bridge.world.bridge import Bridge
+from sim_bridge.world.bridge import Options as BridgeOptions
 from sim_bridge.world.radio import GROUND_STATIONS, Radio, agent_ports
 from sim_bridge.world.staging import kind_of
-from sim_bridge.world.world import Tap
 
 HOST = "127.0.0.1"
 STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
@@ -47,30 +48,27 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
     ground_stations: bool = True  # send to 14550 too
 
 
-def serve(
-    scenario: Path, options: Options, say: Callable[[str], None] = print, tap: Tap | None = None
-) -> Outcome | None:
+def serve(scenario: Path, options: Options, say: Callable[[str], None] = print) -> Outcome | None:
     """Serve a scenario file until ctrl-C or SIGTERM (or the game's end); gives the outcome if there was one.
 
     Raises ConfigError: a wrong scenario, a port or a bus that cannot be.
     """
-    return asyncio.run(serve_scenario(load(scenario), options, say, tap, scenario.parent))
+    return asyncio.run(serve_scenario(load(scenario), options, say, scenario.parent))
 
 
 async def serve_scenario(
     scenario: Scenario,
     options: Options,
     say: Callable[[str], None],
-    tap: Tap | None = None,
     folder: Path | None = None,
     started: Started | None = None,
     ending: Ending | None = None,
 ) -> Outcome | None:
-    """`serve` on the running loop; recordings of wind lie in `folder`; `started` is told what is up.
+    """Serve a scenario on the running loop; recordings of wind lie in `folder`.
 
-    `ending` is awaited when it shall end, while the vehicles still fly."""
-    if not options.game or set(options.game) & set("/*$?#"):
-        raise ConfigError(f"game: found '{options.game}', expected a name without / * $ ? #")
+    `started` is told once the bridge answers; `ending` is awaited before the vehicles stop flying.
+    """
+    game_name(options.game)
     loop, stop = asyncio.get_running_loop(), asyncio.Event()
     radios: dict[int, Radio] = {}
     bus: ZenohBus | None = None
@@ -86,19 +84,10 @@ async def serve_scenario(
             radios[id] = Radio(await open_udp(options.host, 0), peers)
         bus = await open_zenoh(options.bus or None, listen=options.listen, config_file=options.zenoh)
         links: dict[int, Sequence[Link]] = {id: (radio,) for id, radio in radios.items()}
-        bridge = Bridge(
-            scenario,
-            RealClock(),
-            bus,
-            links,
-            nonce=secrets.randbits(48),
-            game=options.game,
-            seed=options.seed,
-            folder=folder,
-            tap=tap,
-            say=say,
-            referee=options.referee,
+        bridge_options = BridgeOptions(
+            secrets.randbits(48), options.game, options.seed, folder, options.referee
         )
+        bridge = Bridge(scenario, RealClock(), bus, links, bridge_options, say)
         _introduce(scenario, options, ports, radios, bus, say)
         if started is not None:
             started(bridge, bus, ports)

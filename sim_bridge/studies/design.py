@@ -1,20 +1,21 @@
 """`sim-bridge design`: what the loops of an aircraft give, in figures and in plots.
 
 All figures belong to the loop as flown: the open loop is the kernel's own step, cut at the servo's
-command (`flight.cut`); the step responses are flown by `step_plane`, limits and all.
+command (`loop_analysis`); the step responses are flown by `step_plane`, limits and all.
 """
 
 from __future__ import annotations
 
 from math import degrees, pi, radians
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from onboard.core.math.vectors import ZERO, Vec
+from sim_bridge.studies.pictures import pyplot, save
 from sim_bridge.vehicle.flight import control_toolbox as linear
-from sim_bridge.vehicle.flight import loop_analysis as cut
+from sim_bridge.vehicle.flight import loop_analysis
 from sim_bridge.vehicle.flight.aircraft import Aircraft, load
 from sim_bridge.vehicle.flight.axis import AxisLaw, AxisModel
 from sim_bridge.vehicle.flight.control_toolbox import Array, Margins
@@ -91,26 +92,26 @@ def _angle(state: PlaneState, aircraft: Aircraft, axis: str) -> float:
 def bandwidth(axis: AxisModel, law: AxisLaw, dt: float) -> float:
     """Where the closed loop has fallen by 3 dB [rad/s]."""
     omega = np.geomspace(1e-2, pi / dt * 0.999, 5000)
-    size = np.abs(linear.response(cut.closed_response(axis, law, dt), omega))
+    size = np.abs(linear.response(loop_analysis.closed_response(axis, law, dt), omega))
     below = np.flatnonzero(size < 1.0 / np.sqrt(2.0))
     return float(omega[below[0]]) if len(below) else float("inf")
 
 
 def figures(aircraft: Aircraft) -> tuple[AxisFigures, AxisFigures]:
-    """The pitch and the yaw axis."""
+    """Margins, bandwidth and step responses of the pitch and the yaw axis."""
     m = aircraft.model
     pitch = fly_step(aircraft, "pitch", 10.0, 12.0)
     return (
         AxisFigures(
             "pitch",
-            linear.margins(cut.open_loop(m.pitch, m.pitch_law, m.dt), m.dt),
+            linear.margins(loop_analysis.open_loop(m.pitch, m.pitch_law, m.dt), m.dt),
             bandwidth(m.pitch, m.pitch_law, m.dt),
             pitch,
             pitch,
         ),
         AxisFigures(
             "yaw",
-            linear.margins(cut.open_loop(m.yaw, m.yaw_law, m.dt), m.dt),
+            linear.margins(loop_analysis.open_loop(m.yaw, m.yaw_law, m.dt), m.dt),
             bandwidth(m.yaw, m.yaw_law, m.dt),
             fly_step(aircraft, "yaw", 30.0, 60.0),
             fly_step(aircraft, "yaw", 30.0, 90.0, Vec(0.0, SIDE_GUST, 0.0)),
@@ -119,7 +120,7 @@ def figures(aircraft: Aircraft) -> tuple[AxisFigures, AxisFigures]:
 
 
 def report(aircraft: Aircraft) -> str:
-    """The figures as text."""
+    """Margins, bandwidth and step responses of an aircraft as lines for people."""
     spec = aircraft.spec
     lines = [
         f"{spec.name}: path model {spec.path}, stepped at {spec.rate_hz:g} Hz",
@@ -173,7 +174,6 @@ def design(config_path: Path, figures_dir: Path | None) -> str:
     aircraft = load(config_path)
     text = report(aircraft)
     if figures_dir is not None:
-        figures_dir.mkdir(parents=True, exist_ok=True)
         drawn = [draw_bode(aircraft, figures_dir), draw_steps(aircraft, figures_dir)]
         text += "\n\n" + "\n".join(f"drawn: {path}" for path in drawn)
     return text
@@ -181,12 +181,12 @@ def design(config_path: Path, figures_dir: Path | None) -> str:
 
 def draw_bode(aircraft: Aircraft, folder: Path) -> Path:
     """Bode plot of both open loops as flown."""
-    plt = _pyplot()
+    plt = pyplot()
     m = aircraft.model
     omega = np.geomspace(0.05, pi / m.dt * 0.999, 2000)
     figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(8, 6), layout="constrained")
     for name, axis, law in (("pitch", m.pitch, m.pitch_law), ("yaw", m.yaw, m.yaw_law)):
-        loop = cut.open_loop(axis, law, m.dt)
+        loop = loop_analysis.open_loop(axis, law, m.dt)
         values = linear.response(loop, omega)
         phase = np.degrees(np.unwrap(np.angle(values)))
         phase -= 360.0 * np.round((phase[0] + 180.0) / 360.0)
@@ -203,12 +203,14 @@ def draw_bode(aircraft: Aircraft, folder: Path) -> Path:
     above.legend()
     for axes in (above, below):
         axes.grid(True, which="both", alpha=0.25)
-    return _save(plt, figure, folder / f"{aircraft.spec.name}-bode.png")
+    path = save(figure, folder / f"{aircraft.spec.name}-bode.png")
+    plt.close(figure)
+    return path
 
 
 def draw_steps(aircraft: Aircraft, folder: Path) -> Path:
     """Step responses as flown: angle and surface."""
-    plt = _pyplot()
+    plt = pyplot()
     pitch, yaw = figures(aircraft)
     figure, grid = plt.subplots(2, 2, figsize=(10, 6), layout="constrained")
     for column, axis in enumerate((pitch, yaw)):
@@ -226,19 +228,6 @@ def draw_steps(aircraft: Aircraft, folder: Path) -> Path:
         grid[0][column].set(ylabel="angle [deg]")
         grid[1][column].set(ylabel="surface [deg]", xlabel="time [s]")
     figure.suptitle(f"{aircraft.spec.name}: steps as flown")
-    return _save(plt, figure, folder / f"{aircraft.spec.name}-steps.png")
-
-
-def _pyplot() -> Any:
-    import matplotlib
-
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
-    return plt
-
-
-def _save(plt: Any, figure: Any, path: Path) -> Path:
-    figure.savefig(path, dpi=120)
+    path = save(figure, folder / f"{aircraft.spec.name}-steps.png")
     plt.close(figure)
     return path

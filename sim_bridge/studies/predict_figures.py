@@ -3,29 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from onboard.pilot.predictor.activation import SParabola
-from sim_bridge.studies.predict import FIGURE4_TRAINED, FLYING, LAST, PAPER, STEADY, Drawn, Figure4
+from sim_bridge.studies.comparison import FLYING, LAST, PAPER, STEADY, Drawn
+from sim_bridge.studies.paper_example import FIGURE4_TRAINED, Figure4
+from sim_bridge.studies.pictures import pyplot, save_both
 
 COLOURS = {LAST: "#888888", STEADY: "#1f77b4", FLYING: "#d62728", PAPER: "#9467bd"}
 
 
-def _pyplot() -> Any:
-    import matplotlib
-
-    matplotlib.use("Agg")
-    matplotlib.rcParams["svg.hashsalt"] = "apollonius"
-    import matplotlib.pyplot as plt
-
-    return plt
-
-
 def draw_activation(folder: Path) -> list[Path]:
     """The s-parabola for p = 1/4 and 1/20 (Figure 3). Returns the files written."""
-    plt = _pyplot()
+    plt = pyplot()
     figure, axes = plt.subplots(1, 2, figsize=(10, 4), layout="constrained", sharey=True)
     s = np.linspace(-3.0, 3.0, 1201)
     for axis, p, name in zip(axes, (0.25, 0.05), ("1/4", "1/20"), strict=True):
@@ -38,12 +29,12 @@ def draw_activation(folder: Path) -> list[Path]:
         axis.axvline(0.0, color="#cccccc", linewidth=0.8)
     axes[0].set_ylabel("f(s)")
     axes[0].legend()
-    return _save(plt, figure, folder, "s-parabola")
+    return save_both(figure, folder, "s-parabola")
 
 
 def draw_example(example: Figure4, folder: Path) -> list[Path]:
     """Trajectory, prediction on the training set and on the test set (Figure 4). Returns the files."""
-    plt = _pyplot()
+    plt = pyplot()
     figure, axis = plt.subplots(figsize=(8, 6), layout="constrained")
     cut = FIGURE4_TRAINED
     axis.plot(*example.truth.T, color="#2ca02c", label="trajectory")
@@ -57,12 +48,12 @@ def draw_example(example: Figure4, folder: Path) -> list[Path]:
         aspect="equal",
     )
     axis.legend()
-    return _save(plt, figure, folder, "example-3-5-2")
+    return save_both(figure, folder, "example-3-5-2")
 
 
 def draw_comparison(drawn: Drawn, folder: Path) -> list[Path]:
     """The track with what was predicted 1 s ahead, and mean errors by horizon. Returns the files."""
-    plt = _pyplot()
+    plt = pyplot()
     figure, (left, right) = plt.subplots(1, 2, figsize=(13, 6), layout="constrained")
     truth = drawn.recording.truth
     left.plot(truth[:, 1], truth[:, 0], color="#2ca02c", label="track")
@@ -84,15 +75,4 @@ def draw_comparison(drawn: Drawn, folder: Path) -> list[Path]:
     right.minorticks_off()
     right.legend(fontsize=8)
     stem = "predict-" + "".join(c if c.isalnum() else "-" for c in drawn.comparison.track)
-    return _save(plt, figure, folder, stem)
-
-
-def _save(plt: Any, figure: Any, folder: Path, stem: str) -> list[Path]:
-    folder.mkdir(parents=True, exist_ok=True)
-    written = []
-    for ending in ("png", "svg"):
-        path = folder / f"{stem}.{ending}"
-        figure.savefig(path, dpi=110, metadata={"Date": None} if ending == "svg" else None)
-        written.append(path)
-    plt.close(figure)
-    return written
+    return save_both(figure, folder, stem)

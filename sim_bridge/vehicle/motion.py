@@ -54,11 +54,11 @@ CALM = Air(ZERO, ZERO)
 
 
 class Airframe(Protocol):
-    """A vehicle that moves."""
+    """A vehicle that turns demands and air into motion."""
 
     @property
     def motion(self) -> Motion:
-        """Where it is now."""
+        """Motion at the end of the last step."""
         ...
 
     def step(self, demand: Demand, air: Air, dt: float) -> Motion:

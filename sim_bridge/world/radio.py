@@ -26,7 +26,7 @@ class Radio:
 
     @property
     def name(self) -> str:
-        """For people."""
+        """The socket's address for people, as udp://host:port."""
         return f"udp://{self.address[0]}:{self.address[1]}"
 
     @property
@@ -50,11 +50,11 @@ class Radio:
         self._link.receive(self._arrived)
 
     def counters(self) -> dict[str, int]:
-        """The socket's."""
+        """Counters of the UDP socket, by cause."""
         return self._link.counters()
 
     def close(self) -> None:
-        """Close the socket."""
+        """Close the UDP socket."""
         self._link.close()
 
     def _arrived(self, data: bytes, peer: Hashable) -> None:

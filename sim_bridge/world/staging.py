@@ -23,7 +23,7 @@ Wind = Callable[[int, Motion, float], Air]  # (vehicle id, its motion, time sinc
 
 
 def calm(id: int, motion: Motion, t: float) -> Air:
-    """No wind."""
+    """Air that does not move: a `Wind` for games without wind."""
     return CALM
 
 
@@ -33,7 +33,7 @@ def seeds(seed: int, concern: str) -> SeedSequence:
 
 
 def generator(seed: int, concern: str) -> Generator:
-    """The generator of one concern."""
+    """The random generator of one concern: the same whichever other concerns there are."""
     return np.random.default_rng(seeds(seed, concern))
 
 
@@ -52,7 +52,7 @@ def wind_of(scenario: Scenario, seed: int, folder: Path | None = None) -> Wind:
 
 
 def frame_of(scenario: Scenario) -> Frame:
-    """The game frame."""
+    """The game frame: NED at the scenario's origin."""
     origin = scenario.flight.origin
     return Frame(origin.latitude_deg, origin.longitude_deg, origin.altitude_m)
 

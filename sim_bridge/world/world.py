@@ -6,20 +6,19 @@ virtual loop and the real one alike. What arrives on a link is answered at once.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 
 from onboard.core.math.constants import NS_PER_S
 from onboard.game.scenario import Scenario, VehicleSpec
 from onboard.runtime.protocols import Clock, Link
 from sim_bridge.vehicle.autopilot.autopilot import Autopilot
 from sim_bridge.vehicle.autopilot.make import autopilot_for
+from sim_bridge.vehicle.autopilot.setup import Options
 from sim_bridge.vehicle.motion import CALM, Airframe, Motion
 from sim_bridge.world.staging import Wind, airframe_of, calm, frame_of, kind_of, starts
 
 RATE_HZ = 100.0
 BEHIND_MAX = 50  # physics steps made up for in one call; beyond them time is lost, and counted
-
-Tap = Callable[[int, int, bytes, bool], None]  # (vehicle id, wall instant [ns], bytes, sent by the autopilot)
 
 
 class SimVehicle:
@@ -35,17 +34,11 @@ class SimVehicle:
         self.links = list(links)
         self.air = CALM
 
-    def send(self, frames: Sequence[bytes]) -> None:
-        """Send frames on every link."""
-        for link in self.links:
-            for frame in frames:
-                link.send(frame)
-
 
 class World:
-    """All vehicles of a scenario. `links`: for each vehicle id the links its autopilot speaks on.
+    """All vehicles of a scenario. `links` are those on which each vehicle's autopilot speaks, by vehicle id.
 
-    `wind` gives each vehicle its air; `tap` sees every frame sent and every datagram received.
+    `wind` gives each vehicle its air; `battery_s` is a battery's time from full to empty in flight [s].
     Raises ConfigError for an aircraft that its autopilot cannot fly.
     """
 
@@ -54,35 +47,25 @@ class World:
         scenario: Scenario,
         clock: Clock,
         links: Mapping[int, Sequence[Link]],
-        *,
         wind: Wind = calm,
-        rate_hz: float = RATE_HZ,
-        tap: Tap | None = None,
         battery_s: float = 1200.0,
     ) -> None:
-        self.step_ns = round(NS_PER_S / rate_hz)
+        self.step_ns = round(NS_PER_S / RATE_HZ)
         self.lost_steps = 0
         self._clock = clock
         self._wind = wind
-        self._tap = tap
         self._start_ns = clock.monotonic_ns()
         self._epoch_ns = clock.wall_ns()
         self._done = 0  # physics steps
         self.vehicles: dict[int, SimVehicle] = {}
         frame, motions = frame_of(scenario), starts(scenario, wind)
+        options = Options(
+            airborne=not scenario.flight.ground_start, epoch_ns=self._epoch_ns, battery_s=battery_s
+        )
         for id, spec in zip(scenario.ids, scenario.vehicles, strict=True):
             start = motions[id]
             air = wind(id, start, 0.0)
-            autopilot = autopilot_for(
-                spec,
-                kind_of(scenario, spec),
-                id,
-                frame,
-                start,
-                airborne=not scenario.flight.ground_start,
-                epoch_ns=self._epoch_ns,
-                battery_s=battery_s,
-            )
+            autopilot = autopilot_for(spec, kind_of(scenario, spec), id, frame, start, options)
             airframe = airframe_of(scenario, spec, start, air)
             self.vehicles[id] = vehicle = SimVehicle(id, spec, autopilot, airframe, links.get(id, ()))
             vehicle.air = air
@@ -96,7 +79,7 @@ class World:
 
     @property
     def elapsed_ns(self) -> int:
-        """Time simulated so far."""
+        """Time that has been simulated so far [ns]."""
         return self._done * self.step_ns
 
     @property
@@ -137,17 +120,12 @@ class World:
 
     def _flush(self, vehicle: SimVehicle) -> None:
         frames = vehicle.autopilot.outgoing()
-        if not frames:
-            return
-        if self._tap is not None:
+        for link in vehicle.links:
             for frame in frames:
-                self._tap(vehicle.id, self._clock.wall_ns(), frame, True)
-        vehicle.send(frames)
+                link.send(frame)
 
     def _listen(self, vehicle: SimVehicle, link: Link, number: int) -> None:
         def arrived(data: bytes, peer: Hashable) -> None:
-            if self._tap is not None:
-                self._tap(vehicle.id, self._clock.wall_ns(), data, False)
             vehicle.autopilot.receive(self.elapsed_ns, data, (number, peer))
             self._flush(vehicle)
 

@@ -10,7 +10,7 @@ import sys
 from collections.abc import Iterable
 from statistics import median
 
-from tests.support.aborts import LOSS, WITHIN_S, Trial, trials
+from tests.support.abort_trials import LOSS, WITHIN_S, Trial, trials
 
 TRIALS = 1000
 GAMES = 10

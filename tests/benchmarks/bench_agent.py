@@ -33,15 +33,14 @@ from onboard.game.scenario import Flight, Parameters, Scenario, SensorSpec, Vehi
 from onboard.game.staging import setup_of
 from onboard.runtime.bus_zenoh import ZenohBus, open_zenoh
 from onboard.runtime.clock import RealClock
-from onboard.wire.bus import messages as swarm
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import Master, Phase, PhaseChange, Role, State, Track
 from onboard.wire.mavlink.dialect import DialectSender
 from onboard.wire.mavlink.signing import MemoryStore, Signing
 from sim_bridge.world.world import World
-from tests.support import measured
-from tests.support.buses import free_port
-from tests.support.stopwatch import Stopwatch
+from tests.support import benchmark_record
+from tests.support.bus_stages import free_port
+from tests.support.setpoint_stopwatch import Stopwatch
 
 GAME = "bench"
 EVADER, PURSUER = 21, 22  # beyond the numbered ports: other games may be played on this machine
@@ -207,14 +206,16 @@ class Stage:
         self.world = World(what, self._clock, {PURSUER: [watch]})
         autopilot = self.world.vehicles[PURSUER].autopilot
         if signing is not None:
-            autopilot.setup = autopilot.setup._replace(signing=signing)
+            autopilot.setup = autopilot.setup._replace(
+                options=autopilot.setup.options._replace(signing=signing)
+            )
             autopilot._sender = DialectSender(PURSUER, 1, signing=signing)
         self._begun_ns = self._clock.wall_ns()
 
     async def run(self) -> None:
         """Until cancelled: the world at 100 Hz, states at 20 Hz, tracks at 10 Hz, the master at 2 Hz."""
         turn = 0
-        self._put(topics.SETUP, swarm.SETUP.encode(self._setup))
+        self._put(topics.SETUP, topics.SETUP.encode(self._setup))
         while True:
             self.world.step()
             if turn % 5 == 3:
@@ -227,13 +228,13 @@ class Stage:
             await asyncio.sleep(0.01)
 
     def _put(self, topic: topics.Topic, payload: bytes, id: int | None = None) -> None:
-        self._bus.publish(topics.key(GAME, topic, id), payload, topic.delivery)
+        self._bus.publish(topic.key(GAME, id), payload, topic.delivery)
 
     def _lease(self) -> None:
         now = self._clock.wall_ns()
-        self._put(topics.MASTER, swarm.MASTER.encode(Master("bench", now, 2.0, self._nonce)))
+        self._put(topics.MASTER, topics.MASTER.encode(Master("bench", now, 2.0, self._nonce)))
         phase = PhaseChange(Phase.RUNNING, self._begun_ns, now, resume=(PURSUER,))
-        self._put(topics.PHASE, swarm.PHASE.encode(phase))
+        self._put(topics.PHASE, topics.PHASE.encode(phase))
 
     def _states(self) -> None:
         now = self._clock.wall_ns()
@@ -242,7 +243,7 @@ class Stage:
                 id, Role.PURSUER, now, (400.0 + 30.0 * number, 50.0, -50.0), (-4.0, 0.0, 0.0), 4.0,
                 (0.0, 0.0, 0.0), 0.0, 0.0, 0.0, "GUIDED", True, nonce=id,
             )  # fmt: skip
-            self._put(topics.STATE, swarm.STATE.encode(state), id)
+            self._put(topics.STATE, topics.STATE.encode(state), id)
 
     def _tracks(self) -> None:
         now = self._clock.wall_ns()
@@ -251,7 +252,7 @@ class Stage:
             place = (-4.0 * t, 20.0 * sin(0.3 * t), -50.0)
             velocity = (-4.0, 6.0 * cos(0.3 * t), 0.0)
             track = Track(id, now, place, velocity, (0.01,) * 3 + (0.0025,) * 3, "bench")
-            self._put(topics.TRACK, swarm.TRACK.encode(track), id)
+            self._put(topics.TRACK, topics.TRACK.encode(track), id)
 
 
 async def latency(kind: str, folder: Path) -> list[int]:
@@ -355,7 +356,8 @@ def report() -> tuple[list[Taken], dict[str, float]]:
             f"| {medians[kind] / medians['echo']:.2f} | {promises.get(kind, '–')} |"
         )
     print("\n".join(lines))
-    measured.write("agent.md", "An agent's cost and latency", "python -m tests.benchmarks.bench_agent", lines)
+    command = "python -m tests.benchmarks.bench_agent"
+    benchmark_record.write("agent.md", "An agent's cost and latency", command, lines)
     return taken, medians
 
 

@@ -7,7 +7,7 @@ from time import process_time
 from onboard.core.math.vectors import Vec
 from onboard.game.scenario import Kind
 from onboard.wire.mavlink.dialect import DialectSender, dialect
-from tests.support.flown import Flown
+from tests.support.flown_autopilot import FlownAutopilot
 
 SECONDS = 10
 TICKS_A_SECOND = 100
@@ -17,7 +17,7 @@ RATES = ((33, 20), (32, 20), (30, 10), (74, 5), (1, 2))  # message number, Hz: w
 def test_six_autopilots_and_airframes_beside_bare_encoding_of_what_they_send() -> None:
     """Their share must leave most of a core to the agents at ten times real time."""
     for kind in Kind:
-        flown = Flown(kind, tick_s=1.0 / TICKS_A_SECOND)
+        flown = FlownAutopilot(kind, tick_s=1.0 / TICKS_A_SECOND)
         for number, hz in RATES:
             assert flown.command(511, number, 1e6 / hz) == 0
         autopilot, airframe, air = flown.autopilot, flown.airframe, flown.air

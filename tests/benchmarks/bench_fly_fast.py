@@ -20,8 +20,8 @@ from onboard.game.scenario import load
 from onboard.pilot.predictor_choice import Predicting
 from onboard.runtime.loop import run_virtual, virtual_clock
 from onboard.runtime.resources import configs
-from sim_bridge.rehearsal import Rehearsal
-from tests.support import measured
+from sim_bridge.rehearsal import Options, Rehearsal
+from tests.support import benchmark_record
 
 PROMISES = {Predicting.CONSTANT_VELOCITY: 10.0, Predicting.NETWORK: 4.0}
 RUNS = 3
@@ -49,7 +49,7 @@ def play(predicting: Predicting, folder: Path) -> Played:
 
     async def game() -> Played:
         clock = virtual_clock()
-        async with Rehearsal(scenario, clock, folder=folder) as rehearsal:
+        async with Rehearsal(scenario, clock, Options(folder=folder)) as rehearsal:
             outcome = await rehearsal.until_ended()
             await rehearsal.land_agents()
             return Played(clock.monotonic_ns() / 1e9, 0.0, f"{outcome.verdict} after {outcome.time:.1f} s")
@@ -75,7 +75,7 @@ def shares(predicting: Predicting) -> dict[str, float]:
         profile.enable()
         play(predicting, Path(folder))
         profile.disable()
-    seconds = measured.rooms(pstats.Stats(profile))
+    seconds = benchmark_record.rooms(pstats.Stats(profile))
     whole = sum(seconds.values())
     return {room: part / whole for room, part in seconds.items()}
 
@@ -107,7 +107,8 @@ def report() -> dict[Predicting, Played]:
             row = " | ".join(f"{100 * part.get(name, 0.0):.1f} %" for part in parts.values())
             lines.append(f"| {name} | {row} |")
     print("\n".join(lines))
-    measured.write("fly-fast.md", "Play in one process", "python -m tests.benchmarks.bench_fly_fast", lines)
+    command = "python -m tests.benchmarks.bench_fly_fast"
+    benchmark_record.write("fly-fast.md", "Play in one process", command, lines)
     return played
 
 

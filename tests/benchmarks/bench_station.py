@@ -24,9 +24,9 @@ from gcs.session import on_air
 from gcs.settings import BusSettings, RecordingSettings, Settings
 from onboard.runtime.bus_zenoh import open_zenoh
 from onboard.wire.bus import topics
-from tests.support.buses import free_port
-from tests.support.radio import GAME, decision, health, on_bus, state, track
-from tests.support.waiting import until
+from tests.support.bus_stages import free_port
+from tests.support.real_time import until
+from tests.support.sample_messages import GAME, decision, health, on_bus, state, track
 
 SECONDS = 10.0
 RATE_HZ = 20
@@ -100,7 +100,7 @@ async def measure(load: Load) -> Measured:
             async with app.run_test(size=(160, 50)):
                 await until(session.bus.connected)
                 ours.send("go")
-                fleet_heard = session.station.watch.fleet
+                fleet_heard = session.station.reducer.fleet
                 await until(lambda: fleet_heard.received > 2 * load.vehicles)
                 shown = _counted(app)
                 cpu, begun = time.process_time(), time.monotonic()

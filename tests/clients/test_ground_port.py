@@ -12,8 +12,8 @@ from onboard.game.scenario import Kind
 from onboard.runtime.links import open_udp
 from onboard.wire.mavlink.dialect import DialectSender, dialect
 from onboard.wire.mavlink.frames import Framer
+from tests.support.real_time import until
 from tests.support.udp_fleet import HOST, fleet
-from tests.support.waiting import until
 
 pytestmark = [pytest.mark.real, pytest.mark.timeout(60)]
 KINDS = pytest.mark.parametrize("kind", list(Kind), ids=lambda kind: kind.value)

@@ -17,12 +17,12 @@ import pytest
 from onboard.game.scenario import Kind
 from onboard.wire.mavlink.tlog import read_tlog
 from tests.support.paths import ROOT
+from tests.support.real_time import patience, until
 from tests.support.udp_fleet import HOST, fleet, free_port
-from tests.support.waiting import until
 
 PROGRAM = ROOT / ".venv-mavproxy" / "bin" / "mavproxy.py"
 KINDS = pytest.mark.parametrize("kind", list(Kind), ids=lambda kind: kind.value)
-DEADLINE_S = 30.0
+PLAYED_S = 30.0  # the longest of these stories on a quiet machine
 pytestmark = [
     pytest.mark.real,
     pytest.mark.timeout(60),
@@ -84,7 +84,7 @@ async def mavproxy(port: int, folder: Path) -> AsyncIterator[Console]:
     try:
         yield console
         console.leave()
-        await asyncio.wait_for(process.wait(), 5.0)
+        await asyncio.wait_for(process.wait(), patience(5.0))
     except TimeoutError:
         pytest.fail(f"MAVProxy said:\n{console.said}")
     finally:
@@ -101,7 +101,7 @@ async def test_it_fetches_parameters_changes_the_mode_and_arms(kind: Kind, tmp_p
     async with fleet(kind, [[port], []], ground=True) as vehicles:
         autopilot = vehicles.autopilot(1)
         try:
-            async with asyncio.timeout(DEADLINE_S), mavproxy(port, tmp_path) as console:
+            async with asyncio.timeout(patience(PLAYED_S)), mavproxy(port, tmp_path) as console:
                 received = f"Received {len(autopilot.parameters)} parameters"
                 await until(lambda: received in console.said)
                 console.type(f"param set {PARAMETER[kind]} 1")

@@ -17,7 +17,7 @@ from onboard.wire.mavlink.dialect import dialect
 from onboard.wire.mavlink.frames import Framer
 from tests.fuzz import campaign
 from tests.fuzz.frames import EXTRA, befallen
-from tests.support.flown import Flown
+from tests.support.flown_autopilot import FlownAutopilot
 
 STEP = 20  # frames between two ticks of the autopilot
 SPEED = 200.0  # [m/s] that no vehicle exceeds
@@ -28,11 +28,11 @@ WIDTH = {"char": 1, "uint8_t": 1, "int8_t": 1, "uint16_t": 2, "int16_t": 2, "uin
 WIDTH |= {"float": 4, "uint64_t": 8, "int64_t": 8, "double": 8}
 
 
-def aimed(rng: np.random.Generator, flown: Flown) -> bytes:
+def aimed(rng: np.random.Generator, flown: FlownAutopilot) -> bytes:
     """A sound frame of a kind that the autopilot acts on, addressed to it: any payload, but with numbers
     likely to matter, and commands that it knows."""
-    handled = sorted(flown.autopilot._handlers)
-    known = sorted(flown.autopilot._commands)
+    handled = sorted(flown.autopilot.handlers)
+    known = sorted(flown.autopilot.commands)
     kind = dialect.mavlink_map[handled[int(rng.integers(len(handled)))]]
     if rng.random() < 0.3:
         long, integer = dialect.MAVLink_command_long_message, dialect.MAVLink_command_int_message
@@ -62,7 +62,7 @@ def aimed(rng: np.random.Generator, flown: Flown) -> bytes:
 def play(rng: np.random.Generator, count: int, totals: Counter[str]) -> None:
     """`count` frames into one autopilot of each kind in turn."""
     for kind in Kind:
-        flown, framer = Flown(kind), Framer()
+        flown, framer = FlownAutopilot(kind), Framer()
         for k in range(count // len(Kind)):
             data, fate = befallen(rng)
             if fate == "good":
@@ -73,7 +73,7 @@ def play(rng: np.random.Generator, count: int, totals: Counter[str]) -> None:
             if k % STEP == 0:
                 flown.heard.clear()
                 flown.frames.clear()
-                flown.fly(0.02)
+                flown.forward(0.02)
                 for frame in flown.frames:
                     assert len(framer.feed(frame)) == 1
                 totals["answers"] += len(flown.frames)

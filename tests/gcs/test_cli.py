@@ -15,28 +15,28 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from gcs import cli, settings
-from gcs.console.plain_lines import Plain
+from gcs import cli, options, settings
+from gcs.console.plain_lines import PlainLines
 from gcs.picture.alert_rules import Thresholds
-from gcs.picture.plain_data import document
+from gcs.picture.json_document import document
 from onboard.config import strict as config
 from onboard.runtime.bus_zenoh import open_zenoh
 from onboard.runtime.clock import RealClock
 from onboard.runtime.resources import configs
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import CommandKind, Phase
-from tests.support.crews import Crew
-from tests.support.radio import GAME, START_NS, Tower, on_bus, phase, setup
+from tests.support.answering_agents import AnsweringAgent
+from tests.support.real_time import patience
+from tests.support.sample_messages import GAME, START_NS, Tower, on_bus, phase, setup
 
 ROOT = Path(cli.__file__).parent.parent
-PATIENCE_S = 30.0
 
 
 def gcs(*arguments: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
     """Run the program to its end."""
     return subprocess.run(
         [sys.executable, "-m", "gcs.cli", *arguments],
-        capture_output=True, text=True, timeout=PATIENCE_S, cwd=cwd, env=environment(), check=False,
+        capture_output=True, text=True, timeout=patience(20.0), cwd=cwd, env=environment(), check=False,
         stdin=subprocess.DEVNULL,
     )  # fmt: skip
 
@@ -77,7 +77,7 @@ def test_a_mistake_is_one_line_and_exit_code_2(tmp_path, arguments, message):
 def test_the_help_loads_no_console_no_recorder_and_no_bus():
     done = subprocess.run(
         [sys.executable, "-c", "import gcs.cli, sys; print(sorted(sys.modules))"],
-        capture_output=True, text=True, timeout=PATIENCE_S, env=environment(), check=True,
+        capture_output=True, text=True, timeout=patience(20.0), env=environment(), check=True,
     )  # fmt: skip
     for heavy in ("textual", "rich.console", "mcap", "plotly", "matplotlib", "zenoh", "scipy", "numba"):
         assert f"'{heavy}'" not in done.stdout
@@ -115,7 +115,7 @@ async def field(endpoint: str, count: int = 3, deaf: int = 0):
     """`count` vehicles on a bus that listens, and `deaf` more in the game that are not there."""
     bus = await open_zenoh(endpoint, listen=True)
     clock = RealClock()
-    crews = [Crew(bus, clock, i) for i in range(1, count + 1)]
+    crews = [AnsweringAgent(bus, clock, i) for i in range(1, count + 1)]
     bus.publish(*on_bus(setup(count + deaf)), topics.SETUP.delivery)
     bus.publish(*on_bus(phase(Phase.STAGING)), topics.PHASE.delivery)
 
@@ -141,7 +141,7 @@ async def shell(*arguments: str, endpoint: str) -> tuple[int, str, str]:
         stdin=asyncio.subprocess.DEVNULL, stdout=asyncio.subprocess.PIPE, stderr=asyncio.subprocess.PIPE,
         env=environment(),
     )  # fmt: skip
-    async with asyncio.timeout(PATIENCE_S):
+    async with asyncio.timeout(patience(20.0)):
         out, err = await process.communicate()
     assert process.returncode is not None
     return process.returncode, out.decode(), err.decode()
@@ -153,13 +153,13 @@ async def test_status_prints_the_picture_once_as_json(free_endpoint):
         code, out, err = await shell("status", "--json", endpoint=free_endpoint)
     assert (code, err) == (0, "")
     picture = json.loads(out)
-    assert picture["format"] == 1
+    assert picture["format"] == 2
     assert [v["id"] for v in picture["vehicles"]] == [1, 2, 3]
     assert picture["vehicles"][1]["presence"] == "present"
     assert picture["vehicles"][1]["state"]["mode"] == "GUIDED"
     assert picture["game"]["setup"]["scenario"] == "meeting"
     assert picture["game"]["phase"] == "staging"
-    assert "lambda" in picture["game"]["setup"]
+    assert picture["game"]["setup"]["rules"]["lambda"] == setup(3).rules.lambda_
 
 
 @pytest.mark.real
@@ -204,7 +204,7 @@ async def test_lines_for_logs_and_a_recording_until_it_is_told_to_stop(free_endp
         )  # fmt: skip
         assert process.stdout is not None
         seen = []
-        async with asyncio.timeout(PATIENCE_S):
+        async with asyncio.timeout(patience(20.0)):
             while not any("STATUS vehicle 3" in line for line in seen):
                 seen.append((await process.stdout.readline()).decode())
             process.send_signal(signal.SIGTERM)
@@ -219,7 +219,7 @@ async def test_lines_for_logs_and_a_recording_until_it_is_told_to_stop(free_endp
 
 def test_lines_say_each_event_once_and_how_all_are_every_five_seconds():
     tower = Tower()
-    lines = Plain()
+    lines = PlainLines()
     tower.hear(setup(2))
     tower.fly(1.0, 1, 2)
     first = lines.lines(tower.picture)
@@ -243,3 +243,70 @@ def test_the_document_has_a_name_for_every_field_and_no_infinity():
     assert msgspec.json.decode(msgspec.json.encode(told)) == told
     assert told["vehicles"][0]["age_s"] is None
     assert told["now_ns"] == START_NS
+
+
+SHARED = {  # option → its value on the command line, and what the settings or options then hold
+    "config": ("other.toml", lambda o: o.settings().operator == "from the file"),
+    "game": ("chase", lambda o: o.settings().game == "chase"),
+    "bus": ("tcp/127.0.0.1:5555", lambda o: o.settings().bus.endpoint == "tcp/127.0.0.1:5555"),
+    "zenoh": ("tls.json5", lambda o: o.settings().bus.zenoh == "tls.json5"),
+    "operator": ("ann", lambda o: o.settings().operator == "ann"),
+    "runs": ("elsewhere", lambda o: o.settings().recording.folder == "elsewhere"),
+    "no-record": (None, lambda o: not o.settings().recording.enabled),
+    "plain": (None, lambda o: o.plain is True),
+}
+BUS_OPTIONS = ("config", "game", "bus", "zenoh")
+SUBCOMMANDS = {  # subcommand → what it is called with, and the shared options that it uses
+    "status": ((), BUS_OPTIONS),
+    "command": (("abort", "--all"), (*BUS_OPTIONS, "operator")),
+    "record": ((), (*BUS_OPTIONS, "runs")),
+    "replay": (("RUN",), ("config", "plain")),
+    "report": (("RUN",), ("config",)),
+    "game run": (("field.toml",), tuple(SHARED)),
+}
+
+
+class ReachedError(Exception):
+    """A subcommand was about to begin its work with these options."""
+
+
+@pytest.fixture
+def received(monkeypatch, tmp_path):
+    """Call `gcs` in this process; the shared options that its subcommand would have begun to work with."""
+    (tmp_path / "other.toml").write_text('operator = "from the file"\n')
+    monkeypatch.chdir(tmp_path)
+
+    def stop(given: options.Options) -> settings.Settings:
+        raise ReachedError(given)
+
+    def call(*arguments: str) -> options.Options:
+        with monkeypatch.context() as patched:
+            patched.setattr(options.Options, "settings", stop)
+            with pytest.raises(ReachedError) as reached:
+                cli.app(list(arguments), standalone_mode=False, prog_name="gcs")
+        return reached.value.args[0]
+
+    return call
+
+
+@pytest.mark.parametrize("subcommand", SUBCOMMANDS)
+@pytest.mark.parametrize("option", SHARED)
+def test_a_shared_option_holds_before_and_after_the_subcommand(received, subcommand, option):
+    arguments, used = SUBCOMMANDS[subcommand]
+    value, holds = SHARED[option]
+    typed = (f"--{option}",) if value is None else (f"--{option}", value)
+    before, after = (*typed, *subcommand.split(), *arguments), (*subcommand.split(), *arguments, *typed)
+    if option in used:
+        assert holds(received(*before)), "before the subcommand"
+        assert holds(received(*after)), "after the subcommand"
+        assert not holds(received(*subcommand.split(), *arguments)), "without it the default holds"
+        return
+    done = gcs(*before)
+    name = option.removeprefix("no-")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == f"gcs: --{name}: found before {subcommand}, which does not use it\n"
+
+
+def test_an_option_after_the_subcommand_outranks_the_same_one_before_it(received):
+    given = received("--bus", "tcp/10.0.0.1:1", "--game", "early", "status", "--bus", "tcp/10.0.0.2:2")
+    assert (given.bus, given.game) == ("tcp/10.0.0.2:2", "early")

@@ -9,17 +9,16 @@ import pytest
 
 from gcs.master import FieldMaster
 from gcs.picture.values import Presence
-from gcs.station import Station
-from onboard.agent.core import game_player
+from gcs.station import Station, StationSetup
 from onboard.game.master import Standing
 from onboard.game.scenario import load
 from onboard.runtime.impairment import CLEAR, CUT
 from onboard.runtime.loop import virtual_clock
 from onboard.runtime.resources import configs
 from onboard.wire.bus.messages import CommandKind, Phase
-from sim_bridge.rehearsal import Rehearsal
-from tests.support.aborts import CHASE, WITHIN_S, trials
-from tests.support.virtual import virtual
+from tests.support.abort_trials import CHASE, WITHIN_S, trials
+from tests.support.virtual_time import virtual
+from tests.support.whole_games import WholeGame, at_phase
 
 pytestmark = pytest.mark.game
 
@@ -27,22 +26,16 @@ pytestmark = pytest.mark.game
 @asynccontextmanager
 async def game_of_six():
     """A game that runs, and a station that watches it."""
-    async with Rehearsal(CHASE, virtual_clock()) as game:
-        station = Station(game.broker.connect("gcs"), game.clock, game.game, operator="anna")
+    async with WholeGame(CHASE, virtual_clock()) as game:
+        station = Station(game.broker.connect("gcs"), game.clock, StationSetup(game.game, "anna"))
         task = asyncio.create_task(station.run())
         try:
-            assert await game.until(lambda: game.phase is Phase.RUNNING, 60.0)
-            await asyncio.sleep(2.0)
+            await at_phase(game, Phase.RUNNING)
+            await game.forward(2.0)
             yield game, station
         finally:
             task.cancel()
             await asyncio.gather(task, return_exceptions=True)
-
-
-@pytest.fixture(autouse=True)
-def untrained(monkeypatch):
-    """Predictors have no part in these stories, and take most of the time."""
-    monkeypatch.setattr(game_player, "TRAINING_SLICES", 0)
 
 
 def presence(station: Station, i: int) -> Presence:
@@ -78,28 +71,28 @@ def test_an_agent_that_falls_silent_is_lost_after_one_second_and_seen_within_one
     @virtual
     async def story() -> None:
         async with game_of_six() as (game, station):
+            game.expects(4, "supervisor_end")
             bus = game.agents[4].bus
             if how == "killed":
                 game.kill_agent(4)  # token and all
-                await bus.close()
             elif how == "silent":
-                bus.publish = lambda *_: None  # the process is stopped; its token stays
+                bus.stopped = True
             else:
-                bus._online = False  # the radio is out of reach
-            await asyncio.sleep(0.9)
+                bus.cut()  # the radio is out of reach
+            await game.forward(0.9)
             assert presence(station, 4) is Presence.PRESENT
-            await asyncio.sleep(0.6)
+            await game.forward(0.6)
             assert presence(station, 4) is Presence.LOST
             assert "lost:4" in names(station)
             assert [presence(station, i) for i in (1, 2, 3, 5, 6)] == [Presence.PRESENT] * 5
-            await asyncio.sleep(5.0)
+            await game.forward(5.0)
             if how == "killed":
                 game.start_agent(4)
             elif how == "silent":
-                del bus.publish
+                bus.stopped = False
             else:
-                bus._online = True
-            await asyncio.sleep(2.0)
+                bus.mend()
+            await game.forward(2.0)
             assert presence(station, 4) is Presence.PRESENT
             assert "lost:4" not in names(station)
 
@@ -110,12 +103,12 @@ def test_an_agent_that_falls_silent_is_lost_after_one_second_and_seen_within_one
 async def test_a_cut_link_to_the_autopilot_is_not_a_lost_vehicle():
     async with game_of_six() as (game, station):
         game.impair(3, CUT)
-        await asyncio.sleep(3.0)
+        await game.forward(3.0)
         assert presence(station, 3) is Presence.PRESENT
         assert "autopilot_silent:3" in names(station)
         assert "lost:3" not in names(station)
         game.impair(3, CLEAR)
-        await asyncio.sleep(4.0)
+        await game.forward(4.0)
         assert "autopilot_silent:3" not in names(station)
 
 
@@ -125,8 +118,8 @@ async def test_hold_resume_and_return_are_confirmed_by_what_the_autopilots_repor
         orders = {CommandKind.HOLD: "LOITER", CommandKind.RESUME: "GUIDED", CommandKind.RETURN: "RTL"}
         for kind, mode in orders.items():
             command = station.command(kind, (2, 3))
-            assert await game.until(lambda c=command: done(station, c), 5.0)
-            await asyncio.sleep(1.5)
+            await game.forward(5.0, until=lambda c=command: done(station, c))
+            await game.forward(1.5)
             assert [station.picture().vehicle(i).mode for i in (2, 3)] == [mode, mode]
             assert station.picture().vehicle(4).mode == "GUIDED"
             assert names(station) == set()
@@ -136,7 +129,7 @@ async def test_hold_resume_and_return_are_confirmed_by_what_the_autopilots_repor
 async def test_a_pilot_who_takes_over_is_told_to_the_ground():
     async with game_of_six() as (game, station):
         game.bridge.world.vehicles[5].autopilot.pilot_mode(game.clock.monotonic_ns(), "STABILIZE")
-        await asyncio.sleep(2.0)
+        await game.forward(2.0)
         assert "handed_over:5" in names(station)
         assert any("not by this agent: hands off" in line.text for line in station.picture().log)
 
@@ -153,15 +146,15 @@ async def test_the_ground_station_runs_a_whole_game_and_the_bridges_master_yield
 
 async def ended(scenario, *, by_ground: bool):
     """The outcome, as everybody is told it."""
-    game = Rehearsal(scenario, virtual_clock())
-    station = Station(game.broker.connect("gcs"), game.clock, game.game)
+    game = WholeGame(scenario, virtual_clock())
+    station = Station(game.broker.connect("gcs"), game.clock, StationSetup(game.game))
     tasks = [asyncio.create_task(station.run())]
     master = FieldMaster(station, scenario, nonce=7)
     if by_ground:
         tasks.append(asyncio.create_task(master.run()))
         await asyncio.sleep(2.0)
     async with game:
-        assert await game.until(lambda: station.picture().game.outcome is not None, 120.0)
+        await game.forward(120.0, until=lambda: station.picture().game.outcome is not None)
         outcome = station.picture().game.outcome
         assert (game.master.standing is Standing.YIELDED) is by_ground
         assert (master.exit_code == 0) is by_ground
@@ -172,7 +165,7 @@ async def ended(scenario, *, by_ground: bool):
 
 
 def done(station: Station, command: str) -> bool:
-    view = station.watch.book.view(command, station.now_ns())
+    view = station.reducer.book.view(command, station.now_ns())
     return view is not None and view.confirmed
 
 

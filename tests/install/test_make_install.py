@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support import wheels
+from tests.support import real_time, wheels
 
 ROOT = Path(__file__).parents[2]
 PROJECT = """
@@ -26,6 +26,7 @@ version = "0"
 BACKEND = """
 from pathlib import Path
 from wheels import write_wheel
+from tests.support.real_time import patience
 def build_editable(folder, settings=None, metadata=None):
     return write_wheel(Path(folder), "apollonius", "0").name
 """
@@ -58,7 +59,8 @@ def make(
     }
     done = subprocess.run(
         ["make", *(words or ("install",)), f"PYTHON={python}"], cwd=tree, capture_output=True, text=True,
-        timeout=110, check=False, env=clean | {name: str(value) for name, value in settings.items()},
+        timeout=real_time.patience(40.0), check=False,
+        env=clean | {name: str(value) for name, value in settings.items()},
     )  # fmt: skip
     return done.returncode, done.stderr.splitlines(), done.stdout
 

@@ -100,10 +100,10 @@ def killed(game: Rehearsal, id: int, rng: Rng) -> Undo:
 
 def blind(game: Rehearsal, id: int, rng: Rng) -> Undo:
     """The sensor sees nobody."""
-    game.bridge.sensor.step = lambda wall_ns, motions: []  # type: ignore[method-assign]
+    game.bridge.sensor.blind = True
 
     def undo() -> None:
-        game.bridge.sensor.__dict__.pop("step", None)
+        game.bridge.sensor.blind = False
 
     return undo
 

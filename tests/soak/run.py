@@ -15,7 +15,7 @@ import json
 import os
 import sys
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from pathlib import Path
 
 for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
@@ -26,13 +26,11 @@ import psutil  # noqa: E402
 
 from onboard.game.scenario import Flight, ImpairmentSpec, Kind, Parameters, Scenario, VehicleSpec  # noqa: E402
 from onboard.pilot.predictor_choice import Predicting  # noqa: E402
-from onboard.runtime.loop import run_virtual, virtual_clock  # noqa: E402
-from onboard.wire.bus import messages as swarm  # noqa: E402
+from onboard.runtime.loop import run_virtual  # noqa: E402
 from onboard.wire.bus.messages import Command, CommandKind, Phase  # noqa: E402
-from onboard.wire.bus.topics import COMMAND, key  # noqa: E402
-from sim_bridge.rehearsal import Rehearsal  # noqa: E402
+from onboard.wire.bus.topics import COMMAND  # noqa: E402
 from tests.soak.faults import NAMES, OF_ALL, OF_ONE, Rng, Undo  # noqa: E402
-from tests.support.flights import flies  # noqa: E402
+from tests.support.whole_games import WholeGame, flies, game_of  # noqa: E402
 
 GAME_S = 600.0
 LOOK_S = 0.1
@@ -83,10 +81,13 @@ class Vehicle:
 class Soak:
     """One game and its faults."""
 
-    def __init__(self, game: Rehearsal, rng: Rng, totals: Counter[str]) -> None:
+    def __init__(
+        self, game: WholeGame, rng: Rng, totals: Counter[str], explains: Collection[str] = EXPLAINS
+    ) -> None:
         self.game = game
         self.rng = rng
         self.totals = totals
+        self.explains = explains
         self.vehicles = {id: Vehicle() for id in game.scenario.ids}
         self._due: list[tuple[float, int, Undo, tuple[int, ...]]] = []
         self._in_force: set[str] = set()
@@ -99,7 +100,7 @@ class Soak:
     async def play(self, seconds: float) -> None:
         """Strike and watch for so long, then let all faults pass and demand that everybody flies."""
         game = self.game
-        assert await game.until(self.all_fly, 60.0), game.told[-9:]
+        await game.forward(60.0, until=self.all_fly)
         end, next_at = self.now + seconds, self.now + 2.0
         while self.now < end or any(v.active for v in self.vehicles.values()) or not self.all_fly():
             if game.phase is not Phase.RUNNING:
@@ -109,7 +110,7 @@ class Soak:
                 self.strike()
                 next_at = self.now + float(self.rng.uniform(*CALM_S))
             self.heal()
-            await game.until(lambda: False, LOOK_S)
+            await game.forward(LOOK_S)
             self.watch()
             await self.operate()
 
@@ -155,7 +156,7 @@ class Soak:
             alive = f"killed {id}" not in self._in_force
             flying = alive and flies(agent)
             kinds = agent.core.journal.kinds
-            explained = sum(kinds.get(kind, 0) for kind in EXPLAINS) + agent.core.journal.suppressed
+            explained = sum(kinds.get(kind, 0) for kind in self.explains) + agent.core.journal.suppressed
             if flying or not alive:
                 vehicle.stopped_at, vehicle.explained = -1.0, explained
             elif vehicle.flew:
@@ -182,8 +183,8 @@ class Soak:
                 self._orders += 1
                 self.totals["resumes"] += 1
                 order = Command(f"soak-{self._orders}", CommandKind.RESUME, "operator", 0)
-                where = key(self.game.game, COMMAND, id)
-                await self.game.bus.request(where, swarm.COMMAND.encode(order), 0.5)
+                where = COMMAND.key(self.game.game, id)
+                await self.game.bus.request(where, COMMAND.encode(order), 0.5)
 
     def story(self, id: int, what: str) -> str:
         """What a person needs to know of a failure."""
@@ -199,15 +200,24 @@ class Soak:
         )
 
 
-def play(number: int, seed: int, totals: Counter[str], seconds: float = GAME_S) -> None:
-    """Game `number` of a seed. Raises AssertionError with the story of what went wrong."""
+def play(
+    number: int,
+    seed: int,
+    totals: Counter[str],
+    seconds: float = GAME_S,
+    explains: Collection[str] = EXPLAINS,
+) -> None:
+    """Game `number` of a seed. Raises AssertionError with the story of what went wrong.
+
+    `explains`: the kinds of events that explain why a vehicle has stopped.
+    """
 
     async def game_on() -> None:
         rng = np.random.default_rng((seed, number))
         kind = list(Kind)[number % len(Kind)]
         chase = scenario(kind, seed)
-        async with Rehearsal(chase, virtual_clock(), seed=seed + number, battery_s=1e9) as game:
-            soak = Soak(game, rng, totals)
+        async with game_of(chase, seed=seed + number, battery_s=1e9, any_error=True) as game:
+            soak = Soak(game, rng, totals, explains)
             await soak.play(seconds)
             totals["simulated_s"] += round(soak.now)
 

@@ -34,9 +34,6 @@ def test_a_soak_continues_where_it_stopped_and_repeats_to_the_last_fault(tmp_pat
     assert len(said) == 2
 
 
-def test_a_stop_without_a_word_or_a_vehicle_that_stays_down_ends_the_soak(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(run, "EXPLAINS", ())
+def test_a_stop_without_a_word_or_a_vehicle_that_stays_down_ends_the_soak() -> None:
     with pytest.raises(AssertionError, match="stopped without a word at"):
-        run.play(2, 1, Counter(), 30.0)
+        run.play(2, 1, Counter(), 30.0, explains=())

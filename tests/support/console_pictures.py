@@ -14,12 +14,12 @@ from pathlib import Path
 from gcs.console.app import Console
 from gcs.console.source import Key
 from gcs.picture.values import Picture
-from gcs.station import Station
+from gcs.station import Station, StationSetup
 from onboard.game.scenario import load
-from onboard.runtime.loop import run_virtual, virtual_clock
+from onboard.runtime.loop import run_virtual
 from onboard.runtime.resources import configs
 from onboard.wire.bus.messages import CommandKind, Phase
-from sim_bridge.rehearsal import Rehearsal
+from tests.support.whole_games import at_phase, game_of
 
 DEMO = configs() / "scenarios" / "flight" / "demo.toml"
 
@@ -51,17 +51,17 @@ class Still:
 
 async def _play() -> tuple[Picture, Picture]:
     """The demo under way, and just after an abort that vehicle 4, whose agent was killed, cannot confirm."""
-    async with Rehearsal(load(DEMO), virtual_clock()) as game:
-        station = Station(game.broker.connect("gcs"), game.clock, game.game, operator="gcs/anna")
+    async with game_of(load(DEMO)) as game:
+        station = Station(game.broker.connect("gcs"), game.clock, StationSetup(game.game, "gcs/anna"))
         task = asyncio.create_task(station.run())
-        await game.until(lambda: game.phase is Phase.RUNNING, 60.0)
-        await asyncio.sleep(14.0)
+        await at_phase(game, Phase.RUNNING)
+        await game.forward(14.0)
         running = station.picture()
         game.kill_agent(4)
-        game.agents[4].bus._online = False
-        await asyncio.sleep(4.0)
+        game.agents[4].bus.cut()
+        await game.forward(4.0)
         station.command(CommandKind.ABORT, station.ids())
-        await asyncio.sleep(3.0)
+        await game.forward(3.0)
         aborted = station.picture()
         task.cancel()
         await asyncio.gather(task, return_exceptions=True)

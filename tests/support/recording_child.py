@@ -8,7 +8,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from gcs.recording.recorder import Recorder
-from tests.support.chase import chase
+from tests.support.chase_messages import chase
 
 
 def main() -> None:

@@ -85,7 +85,9 @@ async def fleet(kind: Kind, ports: Sequence[Sequence[int]], *, ground: bool = Fa
     world = World(what, RealClock(), {id: [radio] for id, radio in radios.items()})
     for vehicle in world.vehicles.values():
         autopilot = vehicle.autopilot
-        autopilot.setup = autopilot.setup._replace(ready_s=READY_S, healthy_s=READY_S)
+        autopilot.setup = autopilot.setup._replace(
+            options=autopilot.setup.options._replace(ready_s=READY_S, healthy_share=1.0)
+        )
 
     async def run() -> None:
         while True:

@@ -7,7 +7,7 @@ the evader's brief only as the evader. Nothing that arrives raises; what is wron
 from __future__ import annotations
 
 from collections import Counter, OrderedDict
-from collections.abc import Callable
+from typing import Any
 
 from onboard.agent.config import AgentConfig
 from onboard.agent.core.clocks import MasterClock
@@ -16,7 +16,6 @@ from onboard.agent.core.journal import Journal
 from onboard.core.math.constants import NEVER
 from onboard.core.math.states import Mate, MateState, carried
 from onboard.core.math.vectors import Vec
-from onboard.wire.bus import messages as swarm
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import (
     EvaderBrief,
@@ -63,26 +62,30 @@ class BusView:
         self._obeyed: tuple[str, int] | None = None
         self._said: dict[str, float] = {}
         self._followed: list[int] = []
-        self._takers: dict[topics.Topic, Callable[[str, bytes, Instant], Track | None]] = {
-            topics.SETUP: self._take_setup,
-            topics.PHASE: self._take_phase,
-            topics.OUTCOME: self._take_outcome,
-            topics.MASTER: self._take_master,
-            topics.TRACK: self._take_track,
-            topics.STATE: self._take_mate,
-            topics.HEALTH: self._take_own_health,
-        }
-        if self._role is Role.EVADER:
-            self._takers[topics.EVADER_BRIEF] = self._take_brief
+        self._own_track = topics.TRACK.key(self._game, self._id)
+        self._now = Instant(NEVER, 0)  # of the message that is being taken
+        self._track: Track | None = None  # that it brought
+        self._hear = (
+            topics.Dispatcher(self.drops)
+            .on(topics.SETUP, self._take_setup)
+            .on(topics.PHASE, self._take_phase)
+            .on(topics.OUTCOME, self._take_outcome)
+            .on(topics.EVADER_BRIEF, self._take_brief)
+            .on(topics.MASTER, self._take_master)
+            .on(topics.TRACK, self._take_track)
+            .on(topics.STATE, self._take_mate)
+            .on(topics.HEALTH, self._take_own_health)
+        )
 
     def keys(self) -> tuple[str, ...]:
         """Every key and pattern that this agent listens to now."""
-        fixed = [topics.SETUP, topics.PHASE, topics.OUTCOME, topics.MASTER, topics.TRACK]
+        fixed: list[topics.Topic[Any]] = [topics.SETUP, topics.PHASE, topics.OUTCOME, topics.MASTER]
+        fixed.append(topics.TRACK)
         if self._role is Role.EVADER:
             fixed.append(topics.EVADER_BRIEF)
-        keys = [topics.key(self._game, topic) for topic in fixed]
-        keys.append(topics.key(self._game, topics.HEALTH, self._id))
-        keys += [topics.key(self._game, topics.STATE, mate) for mate in sorted(self._followed)]
+        keys = [topic.key(self._game) for topic in fixed]
+        keys.append(topics.HEALTH.key(self._game, self._id))
+        keys += [topics.STATE.key(self._game, mate) for mate in sorted(self._followed)]
         return tuple(keys)
 
     def open(self) -> None:
@@ -92,23 +95,22 @@ class BusView:
 
     def take(self, key: str, payload: bytes, now: Instant) -> Track | None:
         """Take a message that arrived; a good measurement of another vehicle is given back."""
-        topic = topics.topic_of(key)
-        taker = self._takers.get(topic) if topic is not None else None
-        if taker is None:
-            self.drops["foreign_key"] += 1
+        if key == self._own_track:
             return None
-        return taker(key, payload, now)
+        self._now, self._track = now, None
+        self._hear((key, payload))
+        return self._track
 
     def follow(self, mates: tuple[int, ...]) -> None:
         """Listen to these team mates' states, and to nobody else's."""
         for id in [id for id in self._followed if id not in mates]:
             self._followed.remove(id)
-            self._out.put(Unsubscribe(topics.key(self._game, topics.STATE, id)))
+            self._out.put(Unsubscribe(topics.STATE.key(self._game, id)))
             self.mates.pop(id, None)
         for id in mates:
             if id not in self._followed and id != self._id:
                 self._followed.append(id)
-                self._out.put(Subscribe(topics.key(self._game, topics.STATE, id)))
+                self._out.put(Subscribe(topics.STATE.key(self._game, id)))
 
     def mates_at(self, now: float) -> tuple[Mate, ...]:
         """The team mates where they are at `now` [s, monotonic], carried forward from when they were heard.
@@ -119,83 +121,54 @@ class BusView:
             for id, heard in self.mates.items()
         )
 
-    def _take_setup(self, key: str, payload: bytes, now: Instant) -> Track | None:
-        setup = swarm.SETUP.decode(payload, self.drops)
-        if setup is None or setup == self.setup:
-            return None
+    def _take_setup(self, setup: Setup) -> None:
+        if setup == self.setup:
+            return
         holder = self._obeyed
-        if holder is not None and self._masters.get(holder, NEVER) >= now.s and setup.master != holder[0]:
+        leased = holder is not None and self._masters.get(holder, NEVER) >= self._now.s
+        if holder is not None and leased and setup.master != holder[0]:
             text = f"setup from {setup.master}, but {holder[0]} is the master: ignored"
-            self._trouble(now, "two_masters", text)
-            return None
+            self._trouble("two_masters", text)
+            return
         self.setup = setup
         self.setup_number += 1
-        return None
 
-    def _take_phase(self, key: str, payload: bytes, now: Instant) -> Track | None:
-        phase = swarm.PHASE.decode(payload, self.drops)
-        if phase is None:
-            return None
+    def _take_phase(self, phase: PhaseChange) -> None:
         if self.phase is not None and phase.stamp_ns < self.phase.stamp_ns:
             self.drops["old_phase"] += 1
-            return None
+            return
         self.phase = phase
-        return None
 
-    def _take_outcome(self, key: str, payload: bytes, now: Instant) -> Track | None:
-        outcome = swarm.OUTCOME.decode(payload, self.drops)
-        if outcome is not None:
-            self.outcome = outcome
-        return None
+    def _take_outcome(self, outcome: Outcome) -> None:
+        self.outcome = outcome
 
-    def _take_brief(self, key: str, payload: bytes, now: Instant) -> Track | None:
-        brief: EvaderBrief | None = swarm.EVADER_BRIEF.decode(payload, self.drops)
-        if brief is not None:
+    def _take_brief(self, brief: EvaderBrief) -> None:
+        if self._role is Role.EVADER:  # nobody else asks for it
             self.target = None if brief.target is None else Vec(*brief.target)
             self.briefed = True
-        return None
 
-    def _take_track(self, key: str, payload: bytes, now: Instant) -> Track | None:
-        id = topics.vehicle_of(key)
-        if id == self._id:
-            return None
-        track = swarm.TRACK.decode(payload, self.drops)
-        if track is None:
-            return None
-        if track.id != id:
-            self.drops["wrong_id"] += 1
-            return None
-        if id in self._followed:  # team mates tell of themselves
-            return None
-        return track
+    def _take_track(self, track: Track) -> None:
+        if track.id not in self._followed:  # team mates tell of themselves
+            self._track = track
 
-    def _take_mate(self, key: str, payload: bytes, now: Instant) -> Track | None:
-        state = swarm.STATE.decode(payload, self.drops)
-        if state is None:
-            return None
-        if state.id != topics.vehicle_of(key):
-            self.drops["wrong_id"] += 1
-            return None
+    def _take_mate(self, state: State) -> None:
         if state.id in self._followed:
-            self.mates[state.id] = Heard(state, now.s)
-        return None
+            self.mates[state.id] = Heard(state, self._now.s)
 
-    def _take_master(self, key: str, payload: bytes, now: Instant) -> Track | None:
-        master: Master | None = swarm.MASTER.decode(payload, self.drops)
-        if master is None:
-            return None
+    def _take_master(self, master: Master) -> None:
+        now = self._now
         who = (master.name, master.nonce)
         lease = min(max(master.lease_s, 0.1), 60.0)
         for other in [other for other, until in self._masters.items() if until < now.s]:
             del self._masters[other]
         if who not in self._masters and len(self._masters) >= MASTERS_MAX:
             self.drops["masters_overflow"] += 1
-            return None
+            return
         first = next(iter(self._masters), who)
         self._masters[who] = now.s + lease
         if first != who:  # the one whose lease is older is obeyed; its clock counts
-            self._trouble(now, "two_masters", f"{first[0]} and {master.name} both say they are the master")
-            return None
+            self._trouble("two_masters", f"{first[0]} and {master.name} both say they are the master")
+            return
         if who != self._obeyed:
             self._obeyed = who
             self.clock.restart()
@@ -207,16 +180,14 @@ class BusView:
                 self._journal.warning("clock_offset", f"{offset}: check the time service")
             else:
                 self._journal.info("clock_offset", f"{offset}: in order again")
-        return None
 
-    def _take_own_health(self, key: str, payload: bytes, now: Instant) -> Track | None:
-        health: Health | None = swarm.HEALTH.decode(payload, self.drops)
-        if health is not None and health.nonce != self._nonce:
+    def _take_own_health(self, health: Health) -> None:
+        if health.nonce != self._nonce:
             text = f"another agent with id {self._id} is on the bus ({health.role.value})"
-            self._trouble(now, "double_id", text)
-        return None
+            self._trouble("double_id", text)
 
-    def _trouble(self, now: Instant, kind: str, text: str) -> None:
+    def _trouble(self, kind: str, text: str) -> None:
+        now = self._now
         if now.s - self._said.get(kind, NEVER) >= SAY_AGAIN_S:
             self._said[kind] = now.s
             self._journal.error(kind, text)

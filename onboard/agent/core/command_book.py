@@ -3,22 +3,12 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from enum import Enum
 
 from onboard.autopilot.base import Stage
 from onboard.core.safety.policy import Action
-from onboard.wire.bus.messages import Command, CommandKind
+from onboard.wire.bus.messages import Command, CommandKind, CommandState
 
 KEPT = 64  # commands remembered
-
-
-class CommandState(Enum):
-    """State of a command, as the reply says it."""
-
-    PENDING = "pending"
-    CONFIRMED = "confirmed"
-    REFUSED = "refused"
-    SUPERSEDED = "superseded"
 
 
 class Entry:

@@ -7,9 +7,8 @@ from typing import NamedTuple
 
 from onboard.agent.core.events import Instant, Note, Outbox, Publish
 from onboard.core.math.constants import NS_PER_S
-from onboard.wire.bus import messages as swarm
-from onboard.wire.bus.messages import Event, Severity
-from onboard.wire.bus.topics import EVENTS, key
+from onboard.wire.bus.messages import DecisionLevel, DecisionModule, Event, Severity
+from onboard.wire.bus.topics import EVENTS
 
 BURST = 20  # events of one kind within `WINDOW_S` before the rest are only counted
 WINDOW_S = 10.0
@@ -30,7 +29,7 @@ class Journal:
 
     def __init__(self, id: int, game: str, nonce: int) -> None:
         self._id = id
-        self._key = key(game, EVENTS, id)
+        self._key = EVENTS.key(game, id)
         self._nonce = nonce
         self._number = 0
         self._recent: dict[str, list[float]] = {}
@@ -75,7 +74,8 @@ class Journal:
             self._number += 1
             event = Event(
                 id=self._id, number=self._number, stamp_ns=now.wall_ns, severity=entry.severity,
-                kind=entry.kind, text=entry.text, level=entry.level, module=entry.module, nonce=self._nonce,
+                kind=entry.kind, text=entry.text,
+                level=DecisionLevel(entry.level), module=DecisionModule(entry.module), nonce=self._nonce,
             )  # fmt: skip
             self._events.append(event)
         self._entries.clear()
@@ -83,7 +83,7 @@ class Journal:
     def tell(self, out: Outbox) -> None:
         """Publish and log what was stamped."""
         for event in self._events:
-            out.put(Publish(self._key, swarm.EVENT.encode(event), EVENTS.delivery))
+            out.put(Publish(self._key, EVENTS.encode(event), EVENTS.delivery))
             when = datetime.fromtimestamp(event.stamp_ns / NS_PER_S, UTC).strftime("%H:%M:%S.%f")[:-3]
             line = f"{when} {event.severity.value:7} vehicle {self._id} {event.kind}: {event.text}"
             out.put(Note(event.severity, line))

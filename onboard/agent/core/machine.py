@@ -53,9 +53,8 @@ from onboard.autopilot.base import ReleaseMode, Stage
 from onboard.core.math.constants import NEVER
 from onboard.core.safety.policy import Action
 from onboard.game.route_file import Route
-from onboard.wire.bus import messages as swarm
-from onboard.wire.bus.messages import CommandKind, CommandReply, Role, Severity
-from onboard.wire.bus.topics import ALIVE, COMMAND, DECISION, HEALTH, STATE, Topic, key
+from onboard.wire.bus.messages import AgentStage, CommandKind, CommandReply, CommandState, Role, Severity
+from onboard.wire.bus.topics import ALIVE, COMMAND, DECISION, HEALTH, STATE, Topic
 from onboard.wire.mavlink.frames import Packet
 from onboard.wire.mavlink.signing import Signing
 
@@ -102,7 +101,7 @@ class AgentCore:
         self.part = part
         self.flight = Flight(config, self.vehicle, self.bus, self.orders, self.journal, part)
         self.reports = Reports(config, facts.nonce, facts.version, self.vehicle, self.bus, self.flight)
-        self.stage = "waiting"
+        self.stage = AgentStage.WAITING
         self.lacks: tuple[str, ...] = ()
         self.steps = self.timer_steps = 0  # control steps; of them those that no position caused
         self._period = 1.0 / config.control_rate_hz
@@ -113,8 +112,8 @@ class AgentCore:
         self._leaving: Grid | None = None
         self._leave_until = NEVER
         self._stepped_wall: Instant | None = None  # of a control step that is not yet published
-        self._messages: list[tuple[Topic, bytes]] = []
-        self._keys = {topic: key(config.game, topic, config.id) for topic in (STATE, DECISION, HEALTH)}
+        self._messages: list[tuple[Topic[Any], bytes]] = []
+        self._keys = {topic: topic.key(config.game, config.id) for topic in (STATE, DECISION, HEALTH)}
         self._handlers: dict[type, Callable[[Any, Instant], None]] = {
             Started: self._start,
             LinkBytes: self._take_bytes,
@@ -178,8 +177,8 @@ class AgentCore:
         if self.game is not None:
             self.game.begin(now)
         self.bus.open()
-        self.out.put(Serve(key(config.game, COMMAND, config.id)))
-        self.out.put(Announce(key(config.game, ALIVE, config.id)))
+        self.out.put(Serve(COMMAND.key(config.game, config.id)))
+        self.out.put(Announce(ALIVE.key(config.game, config.id)))
         self._expect(now.s)
         for grid in (self._chores, self._heartbeat, self._health):
             grid.start(now.s)
@@ -242,7 +241,7 @@ class AgentCore:
     def _end(self, now: Instant) -> None:
         assert self._leaving is not None
         self._leaving.stop()
-        self.stage = "ended"
+        self.stage = AgentStage.ENDED
         self.out.put(Count())  # the last health report, and then `End`
 
     # ------------------------------------------------------------------ what arrives
@@ -292,10 +291,10 @@ class AgentCore:
 
     def _answer_request(self, event: Request, now: Instant) -> None:
         """Answer a request on `vehicles/<id>/command`; repeating one changes nothing."""
-        command = swarm.COMMAND.decode(event.payload, self.bus.drops)
+        command = COMMAND.decode(event.payload, self.bus.drops)
         if command is None:
-            bad = CommandReply("", self.config.id, "refused", "undecodable", "", now.wall_ns)
-            self.out.put(Reply(event.token, swarm.COMMAND_REPLY.encode(bad)))
+            bad = CommandReply("", self.config.id, CommandState.REFUSED, "undecodable", "", now.wall_ns)
+            self.out.put(Reply(event.token, COMMAND.encode_reply(bad)))
             return
         entry, new = self.orders.give(command, self._refusal(command.kind))
         if new:
@@ -309,13 +308,13 @@ class AgentCore:
         reply = CommandReply(
             command_id=command.command_id,
             id=self.config.id,
-            state=entry.state.value,
+            state=entry.state,
             reason=entry.reason,
             obeyed=self.orders.obeyed,
             stamp_ns=now.wall_ns,
             mode=self.vehicle.telemetry.mode,
         )
-        self.out.put(Reply(event.token, swarm.COMMAND_REPLY.encode(reply)))
+        self.out.put(Reply(event.token, COMMAND.encode_reply(reply)))
 
     def _refusal(self, kind: CommandKind) -> str:
         """Why a command cannot be obeyed; '' if it can."""
@@ -366,21 +365,21 @@ class AgentCore:
         if t.placed and now - self._state_at >= STATE_EVERY_S and now - t.position_at < 1.0:
             self._state_at = now
             self.out.put(
-                Publish(self._keys[STATE], swarm.STATE.encode(self.reports.state(wall_ns)), STATE.delivery)
+                Publish(self._keys[STATE], STATE.encode(self.reports.state(wall_ns)), STATE.delivery)
             )
         if now - self._decision_at >= DECISION_EVERY_S:
             report = self.reports.decision(wall_ns)
             if report is not None:
                 self._decision_at = now
-                payload = swarm.DECISION.encode(report)
+                payload = DECISION.encode(report)
                 self.out.put(Publish(self._keys[DECISION], payload, DECISION.delivery))
 
     def _report(self, event: Counted, now: Instant) -> None:
         """Health, and what is looked at twice a second; with the last report, the end."""
-        if self.stage != "ended" or self._leaving is None:
+        if self.stage is not AgentStage.ENDED or self._leaving is None:
             self._judge(now)
         health = self.reports.health(Standing(self.stage, self.lacks, self.counters(event)), now)
-        self._messages.append((HEALTH, swarm.HEALTH.encode(health)))
+        self._messages.append((HEALTH, HEALTH.encode(health)))
         if self._leaving is not None:
             self.out.put(End())
 
@@ -393,20 +392,20 @@ class AgentCore:
         stage = self._stage(over=state.over)
         if stage != self.stage:
             self.stage = stage
-            text = f": lacks {', '.join(self.lacks)}" if self.lacks and stage == "waiting" else ""
-            self.journal.info("stage", f"{stage}{text}")
+            text = f": lacks {', '.join(self.lacks)}" if self.lacks and stage is AgentStage.WAITING else ""
+            self.journal.info("stage", f"{stage.value}{text}")
 
-    def _stage(self, *, over: bool) -> str:
+    def _stage(self, *, over: bool) -> AgentStage:
         output = self.flight.output if self.flight.playing else None
         if self.vehicle.stage is Stage.TAKEN:
-            return "handed_over"
+            return AgentStage.HANDED_OVER
         if over:
-            return "ended"
+            return AgentStage.ENDED
         if self.orders.order is not Action.PASS or (output is not None and not output.stream):
-            return "held"
+            return AgentStage.HELD
         if output is not None and (self.vehicle.stage is Stage.ACTIVE or self.config.dry_run):
-            return "acting"
-        return "waiting" if self.lacks else "ready"
+            return AgentStage.ACTING
+        return AgentStage.WAITING if self.lacks else AgentStage.READY
 
     def counters(self, counted: Counted) -> dict[str, int]:
         """Everything that is counted, by cause; what is zero is left out."""

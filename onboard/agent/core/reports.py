@@ -14,7 +14,15 @@ from onboard.core.math.vectors import Vec
 from onboard.core.safety.policy import Action
 from onboard.core.safety.words import ACTIONS, CAUSES
 from onboard.pilot.pilot import drawing
-from onboard.wire.bus.messages import DecisionReport, Health, State
+from onboard.wire.bus.messages import (
+    AgentStage,
+    DecisionLevel,
+    DecisionModule,
+    DecisionReport,
+    Health,
+    State,
+    SupervisorAction,
+)
 
 UNSURE = 1e6  # stands for an error that is not known [m]
 
@@ -22,7 +30,7 @@ UNSURE = 1e6  # stands for an error that is not known [m]
 class Standing(NamedTuple):
     """How the agent as a whole stands."""
 
-    stage: str
+    stage: AgentStage
     lacks: tuple[str, ...]  # what is missing before it can play
     counters: dict[str, int]
 
@@ -74,8 +82,8 @@ class Reports:
             id=self._id,
             stamp_ns=stamp_ns,
             t=flight.part.time(stamp_ns),
-            level=decision.level,
-            module=decision.module,
+            level=DecisionLevel(decision.level),
+            module=DecisionModule(decision.module),
             strategy=decision.strategy,
             rule=decision.rule,
             velocity=_sound(decision.velocity),
@@ -84,7 +92,7 @@ class Reports:
             miss=_number(decision.miss),
             cones=tuple(cone for cone in cones if all(map(isfinite, cone))),
             circles=tuple(circle for circle in circles if all(map(isfinite, circle))),
-            supervisor=ACTIONS[output.action],
+            supervisor=SupervisorAction(ACTIONS[output.action]),
             reason=CAUSES[output.cause] if output.action != Action.PASS else ", ".join(decision.lacks),
             predictor=decision.predictor,
             predictor_sigma=min(_number(decision.sigma, UNSURE), UNSURE),
@@ -100,7 +108,7 @@ class Reports:
             stamp_ns=now.wall_ns,
             stage=standing.stage,
             lacks=standing.lacks,
-            autopilot=vehicle.adapter.kind.value if vehicle.adapter is not None else "",
+            autopilot=None if vehicle.adapter is None else vehicle.adapter.kind,
             mode=t.mode,
             armed=t.armed,
             battery=t.battery,
@@ -110,7 +118,7 @@ class Reports:
             clock_offset_s=self._bus.clock.offset_s,
             gps_fix=t.gps_fix,
             ekf_ok=t.ekf_ok,
-            supervisor=ACTIONS[output.action] if output is not None else "ok",
+            supervisor=SupervisorAction(ACTIONS[output.action if output is not None else Action.PASS]),
             version=self._version,
             counters=standing.counters,
             telemetry_age_s=min(now.s - t.position_at, 1e6),

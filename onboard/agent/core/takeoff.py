@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from onboard.agent.core.vehicle_link import VehicleLink
 from onboard.autopilot.base import Stage
-from onboard.core.math.constants import NEVER
 from onboard.wire.mavlink import commands
 from onboard.wire.mavlink.commands import CommandLong
 from onboard.wire.mavlink.modes import Kind, custom_mode
+from onboard.wire.retry import CommandRetry, RetryPolicy
 
-AGAIN_S = 2.0
+RETRY = RetryPolicy(2.0)  # [s]
 ON_GROUND = 1  # MAV_LANDED_STATE_ON_GROUND
 REACHED = 0.9  # of the height
 
@@ -20,15 +20,15 @@ class TakeOff:
     def __init__(self, height: float) -> None:
         self.height = height
         self.climbing = False
-        self._asked = NEVER
+        self._retry = CommandRetry(RETRY)
 
     def step(self, now: float, vehicle: VehicleLink) -> bool:
         """Do what is due at `now` [s]; True while the vehicle is on its way up (send it no setpoints)."""
         t, adapter = vehicle.telemetry, vehicle.adapter
         if adapter is None:
             return False
-        if t.landed_state == ON_GROUND:
-            self.climbing = True
+        if t.landed_state == ON_GROUND and not self.climbing:
+            self.climbing, self._retry = True, CommandRetry(RETRY)
         if self.climbing and t.landed_state != ON_GROUND and t.above_home_m >= REACHED * self.height:
             self.climbing = False
         if not self.climbing:
@@ -38,11 +38,9 @@ class TakeOff:
         armable = {Kind.ARDUPLANE: t.mode == "TAKEOFF", Kind.ARDUCOPTER: adapter.stage is Stage.ACTIVE}
         if not t.armed and armable.get(adapter.kind, True):
             adapter.arm(now)
-        if now - self._asked >= AGAIN_S:
-            message = self._next(vehicle)
-            if message is not None:
-                self._asked = now
-                vehicle.radio.send(message)
+        message = self._next(vehicle)
+        if message is not None and self._retry.due(now):
+            vehicle.radio.send(message._replace(confirmation=self._retry.tries - 1))
         return True
 
     def _next(self, vehicle: VehicleLink) -> CommandLong | None:

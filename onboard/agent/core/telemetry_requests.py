@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 
 from onboard.autopilot.parameters import WANTED
-from onboard.autopilot.stream_rates import NEEDS, Asking, Need, capacity_of
+from onboard.autopilot.stream_rates import NEEDS, Need, StreamRates, capacity_of
 from onboard.autopilot.timesync import TimesyncEstimator
 from onboard.core.math.constants import NEVER, NS_PER_S
 from onboard.wire.mavlink import commands
@@ -13,10 +13,10 @@ from onboard.wire.mavlink.commands import Outgoing, ParamRead, Target
 from onboard.wire.mavlink.ids import MessageId
 from onboard.wire.mavlink.modes import Kind
 from onboard.wire.mavlink.values import ParamValue
+from onboard.wire.retry import CommandRetry, RetryPolicy
 
 REVIEW_S = 1.0  # between two looks at the rates
-PARAM_AGAIN_S = 0.5
-PARAM_TRIES = 6
+PARAM_RETRY = RetryPolicy(0.5, most=6)  # [s]
 CLOCK_EVERY_S = 2.0
 FAST = ("GLOBAL_POSITION_INT", "ATTITUDE")  # follow the control rate above 20 Hz
 
@@ -44,7 +44,7 @@ class Requests:
         baud = baud_of(link)
         self.parameters: dict[str, float] = {}
         self.clock = TimesyncEstimator()
-        self._rates = Asking(
+        self._rates = StreamRates(
             kind,
             to,
             capacity_of(baud) if baud else None,
@@ -54,9 +54,9 @@ class Requests:
         self._to = to
         self._px4 = kind is Kind.PX4_MULTICOPTER
         self._arrived: Counter[str] = Counter()
-        self._reviewed = self._param_at = self._clock_at = NEVER
+        self._reviewed = self._clock_at = NEVER
         self._missing = list(WANTED.get(kind, ()))
-        self._tries = 0
+        self._params = CommandRetry(PARAM_RETRY)
         self._buffer_free = 1.0
 
     def arrived(self, message: str) -> None:
@@ -93,9 +93,7 @@ class Requests:
                 messages.append(commands.request_message(self._to, MessageId.HOME_POSITION))
             self._arrived.clear()
             self._reviewed = now
-        if self._missing and self._tries < PARAM_TRIES and now - self._param_at >= PARAM_AGAIN_S:
-            self._tries += 1
-            self._param_at = now
+        if self._missing and self._params.due(now):
             messages += [ParamRead(self._to, name) for name in self._missing]
         if now - self._clock_at >= CLOCK_EVERY_S:
             self._clock_at = now

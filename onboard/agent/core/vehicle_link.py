@@ -12,7 +12,7 @@ from onboard.agent.core.journal import Journal
 from onboard.agent.core.mavlink_radio import Radio
 from onboard.agent.core.telemetry_requests import Requests
 from onboard.autopilot.base import Adapter, Envelope, Refusal, Setpoint, Stage, Telemetry
-from onboard.autopilot.choose import adapter_for
+from onboard.autopilot.choose import AdapterOptions, adapter_for
 from onboard.autopilot.telemetry_state import Observer
 from onboard.core.math.constants import NEVER, NS_PER_S
 from onboard.wire.bus.messages import Severity
@@ -231,13 +231,15 @@ class VehicleLink:
         found = adapter_for(
             heartbeat,
             self.to,
-            scheme=self.config.autopilot.value,
-            envelope=self._envelope,
-            parameters=self.parameters,
-            may_arm=self.config.may_arm,
-            hold_mode=self.config.hold_mode,
-            mavsdk_url=self.config.mavsdk,
-            launch=self._child.launch,
+            AdapterOptions(
+                self.config.autopilot.value,
+                self.config.may_arm,
+                self.config.hold_mode,
+                self.config.mavsdk,
+                self._envelope,
+                self._child.launch,
+            ),
+            self.parameters,
         )
         if isinstance(found, Refusal):
             if found.reason != self.refusal:

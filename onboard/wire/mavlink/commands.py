@@ -31,7 +31,7 @@ class CommandLong(NamedTuple):
     to: Target
     command: int  # MAV_CMD
     params: tuple[float, ...] = ()  # up to seven, the rest is sent as 0
-    confirmation: int = 0  # how often this command was sent before
+    confirmation: int = 0  # how often this very command was sent before
 
 
 class CommandInt(NamedTuple):

@@ -56,7 +56,7 @@ def _heartbeat(_: OwnHeartbeat) -> MavMessage:
 def _command_long(m: CommandLong) -> MavMessage:
     params = (*m.params, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)[:7]
     kind = dialect.MAVLink_command_long_message
-    return _new(kind, m.to.system, m.to.component, m.command, m.confirmation & 0xFF, *params)
+    return _new(kind, m.to.system, m.to.component, m.command, min(m.confirmation, 255), *params)
 
 
 def _command_int(m: CommandInt) -> MavMessage:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 from onboard.wire.mavlink.commands import Outgoing
 from onboard.wire.mavlink.dialect import HEADER_1, HEADER_2, SIGNATURE, DialectSender, dialect, layout_of
 from onboard.wire.mavlink.encoding import encode
-from onboard.wire.mavlink.signing import Signing, Verdict
+from onboard.wire.mavlink.signing import SignatureCheck, Signing
 from onboard.wire.mavlink.telemetry import READ, decode
 from onboard.wire.mavlink.values import Value
 
@@ -29,7 +29,7 @@ CAUSES = (
     "incompatible",  # incompatibility flags that nobody has defined yet
     "garbage_bytes",  # bytes outside any frame
     "setup_signing",  # a key is never taken from the network
-    *(f"signature_{verdict.value}" for verdict in Verdict if verdict is not Verdict.GOOD),
+    *(f"signature_{verdict.value}" for verdict in SignatureCheck if verdict is not SignatureCheck.GOOD),
 )
 
 
@@ -47,7 +47,7 @@ class Packet(NamedTuple):
 
 
 class Framer:
-    """The framing state of one peer.
+    """Finds the frames in what one peer sends.
 
     A datagram link calls `feed(datagram, wall_ns)`: a frame never spans datagrams, so what a
     datagram leaves unfinished is `truncated`. A serial or TCP link is made with `stream=True`:
@@ -67,7 +67,10 @@ class Framer:
         self._blamed = 0  # bytes at the head of `_rest` that belong to a frame already counted as bad
 
     def feed(self, data: bytes, wall_ns: int = 0) -> list[Packet]:
-        """The good packets in `data` (plus what a stream left over). Never raises."""
+        """Return the good packets in `data` and in what a stream left over, heard at `wall_ns`.
+
+        Never raises: what is bad is counted in `causes`.
+        """
         blamed = self._blamed
         if self._rest:
             data = self._rest + data
@@ -106,7 +109,7 @@ class Framer:
         return packets
 
     def whole(self, raw: bytes, wall_ns: int = 0) -> Packet | None:
-        """The packet of exactly one frame, or None (uncounted but for the cause)."""
+        """Return the packet of exactly one frame, or None for anything else; a refused frame is counted."""
         if self.size_at(raw, 0) != len(raw):
             return None
         packet, cause = self._open(raw, wall_ns)
@@ -116,7 +119,7 @@ class Framer:
 
     @staticmethod
     def size_at(data: bytes, at: int) -> int:
-        """Length of the frame whose header starts at `at`; 0 where that is no header, or not all of one."""
+        """Return the length of the frame whose header starts at `at`, 0 for no header or only part of one."""
         left = len(data) - at
         if left >= HEADER_2 and data[at] == MAGIC_2:
             flags = data[at + 2]
@@ -155,7 +158,7 @@ class Framer:
             return None, "setup_signing"
         if self._signing is not None:
             verdict = self._signing.verify(raw, bool(flags & SIGNED), system, component, wall_ns)
-            if verdict is not Verdict.GOOD:
+            if verdict is not SignatureCheck.GOOD:
                 return None, f"signature_{verdict.value}"
         value = decode(layout.message(raw[start:end])) if number in READ else None
         signed = self._signing is not None
@@ -172,7 +175,7 @@ def _declared(data: bytes, at: int) -> int:
 
 
 class Sender:
-    """One MAVLink component of ours: values → frames, with the running sequence number.
+    """One MAVLink component of this program: values → frames, with the running sequence number.
 
     With `signing` every frame is signed for `link_id`, stamped by max(last + 1, clock).
     """

@@ -2,22 +2,8 @@
 
 from __future__ import annotations
 
-from enum import Enum
-
+from onboard.wire.autopilot_kind import Kind as Kind
 from onboard.wire.mavlink.dialect import dialect
-
-
-class Kind(Enum):
-    """What an autopilot's heartbeat says it is."""
-
-    PX4_MULTICOPTER = "PX4 multicopter"
-    PX4_PLANE = "PX4 fixed wing"
-    PX4_VTOL = "PX4 VTOL"
-    ARDUCOPTER = "ArduCopter"
-    ARDUPLANE = "ArduPlane"
-    ARDUPLANE_VTOL = "ArduPlane VTOL"
-    UNKNOWN = "unknown"
-
 
 _MULTICOPTERS = frozenset(
     (
@@ -34,7 +20,7 @@ _VTOLS = frozenset(range(19, 26))  # MAV_TYPE_VTOL_…: their names changed over
 
 
 def kind_of(autopilot: int, vehicle_type: int) -> Kind:
-    """The kind by HEARTBEAT.autopilot and HEARTBEAT.type."""
+    """Return the kind by HEARTBEAT.autopilot (MAV_AUTOPILOT) and HEARTBEAT.type (MAV_TYPE)."""
     if autopilot == dialect.MAV_AUTOPILOT_PX4:
         multicopter, plane, vtol = Kind.PX4_MULTICOPTER, Kind.PX4_PLANE, Kind.PX4_VTOL
     elif autopilot == dialect.MAV_AUTOPILOT_ARDUPILOTMEGA:
@@ -140,10 +126,10 @@ _NAMES = {kind: {number: name for name, number in table.items()} for kind, table
 
 
 def mode_name(kind: Kind, custom_mode: int) -> str:
-    """The mode in the autopilot's own words; `mode N` where it has none that we know."""
+    """Return the mode in the autopilot's own words; `mode N` for one that is not in the table."""
     return _NAMES[kind].get(custom_mode) or f"mode {custom_mode}"
 
 
 def custom_mode(kind: Kind, name: str) -> int | None:
-    """The number of a mode, or None where this kind has no mode of that name."""
+    """Return the number of a mode, None where this kind of autopilot has no mode of that name."""
     return MODES[kind].get(name)

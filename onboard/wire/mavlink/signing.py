@@ -1,4 +1,4 @@
-"""MAVLink 2 signing: our own verification and the clock of our own signatures.
+"""MAVLink 2 signing: verification of what arrives, and the time stamps of this program's signatures.
 
 A signature is the first 48 bits of SHA-256(key, frame up to the checksum, link id, time stamp); stamps
 count 10 µs since 2015-01-01 (https://mavlink.io/en/guide/message_signing.html). Order of checks: the
@@ -28,8 +28,8 @@ LAST_STAMP = (1 << 48) - 1
 Stream = tuple[int, int, int]  # link id, system, component
 
 
-class Verdict(Enum):
-    """What verification says of a frame."""
+class SignatureCheck(Enum):
+    """What verification finds of one frame."""
 
     GOOD = "good"
     UNSIGNED = "unsigned"
@@ -51,11 +51,11 @@ class StampStore(Protocol):
     """Where stamps outlive the process."""
 
     def load(self) -> Stamps:
-        """What was saved last; `Stamps(0, {})` at the very first start."""
+        """Return what was saved last; `Stamps(0, {})` at the very first start."""
         ...
 
     def save(self, stamps: Stamps) -> None:
-        """Keep it, atomically."""
+        """Keep the stamps, atomically."""
         ...
 
 
@@ -67,15 +67,17 @@ class MemoryStore:
         self.saves = 0
 
     def load(self) -> Stamps:
+        """Return what was saved last."""
         return self.stamps
 
     def save(self, stamps: Stamps) -> None:
+        """Keep it, and count how often."""
         self.stamps = stamps
         self.saves += 1
 
 
 def ticks(wall_ns: int) -> int:
-    """Signing time of a wall instant: 10 µs since 2015."""
+    """Return the signing time of a wall instant [ns since the epoch]: units of 10 µs since 2015."""
     return max(0, (wall_ns - EPOCH_NS) // TICK_NS)
 
 
@@ -94,35 +96,38 @@ class Signing:
         self._reserved = dict(saved.streams)
 
     def next_stamp(self, wall_ns: int) -> int:
-        """The stamp of our next signature: max(last + 1, clock)."""
+        """Return the stamp of the next signature: max(last + 1, `wall_ns` [ns since the epoch])."""
         self._own = min(LAST_STAMP, max(self._own + 1, ticks(wall_ns)))
         if self._own >= self._own_reserved:
             self._save()
         return self._own
 
-    def verify(self, frame: bytes, signed: bool, system: int, component: int, wall_ns: int) -> Verdict:
-        """Judge one whole frame with a good checksum. Only GOOD moves the state."""
+    def verify(self, frame: bytes, signed: bool, system: int, component: int, wall_ns: int) -> SignatureCheck:
+        """Judge one whole frame with a good checksum, heard at `wall_ns` [ns since the epoch].
+
+        Only a frame that is GOOD changes what is kept.
+        """
         if not signed:
-            return Verdict.UNSIGNED
+            return SignatureCheck.UNSIGNED
         if not compare_digest(sha256(self.key + frame[:-6]).digest()[:6], frame[-6:]):
-            return Verdict.WRONG
+            return SignatureCheck.WRONG
         stream = (frame[-13], system, component)
         stamp = int.from_bytes(frame[-12:-6], "little")
         now = max(ticks(wall_ns), self._own)
         last = self._streams.get(stream)
         if last is not None and stamp <= last:
-            return Verdict.REPLAYED
+            return SignatureCheck.REPLAYED
         if stamp > now + WINDOW:
-            return Verdict.FUTURE
+            return SignatureCheck.FUTURE
         if last is None:
             if stamp + WINDOW < now:
-                return Verdict.STALE
+                return SignatureCheck.STALE
             if len(self._streams) >= STREAMS:
-                return Verdict.CROWDED
+                return SignatureCheck.CROWDED
         self._streams[stream] = stamp
         if stamp >= self._reserved.get(stream, 0):
             self._save()
-        return Verdict.GOOD
+        return SignatureCheck.GOOD
 
     def _save(self) -> None:
         self._own_reserved = self._own + SAVE_EVERY

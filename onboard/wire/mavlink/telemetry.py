@@ -28,7 +28,6 @@ from onboard.wire.mavlink.values import (
     GpsFix,
     Heartbeat,
     Home,
-    LocalPosition,
     ParamValue,
     RadioStatus,
     StatusText,
@@ -41,7 +40,7 @@ from onboard.wire.mavlink.values import (
 
 
 def decode(message: MavMessage) -> Value | None:
-    """The value of a message that somebody reads; None for others and for one that is not sound."""
+    """Return the value of a message that somebody reads; None for others and for one that is not sound."""
     reader = _READERS.get(message.get_msgId())
     return reader(message) if reader is not None else None
 
@@ -65,12 +64,6 @@ def _global_position(m: Any) -> GlobalPosition | None:
     return GlobalPosition(
         m.time_boot_ms * 1e-3, m.lat * 1e-7, m.lon * 1e-7, m.alt * 1e-3, m.relative_alt * 1e-3, velocity
     )
-
-
-def _local_position(m: Any) -> LocalPosition | None:
-    if not all_finite((m.x, m.y, m.z, m.vx, m.vy, m.vz)):
-        return None
-    return LocalPosition(m.time_boot_ms * 1e-3, Vec(m.x, m.y, m.z), Vec(m.vx, m.vy, m.vz))
 
 
 def _attitude(m: Any) -> Attitude | None:
@@ -251,7 +244,6 @@ def _text(raw: str | bytes) -> str:
 _READERS: dict[int, Callable[[Any], Value | None]] = {
     dialect.MAVLINK_MSG_ID_HEARTBEAT: _heartbeat,
     dialect.MAVLINK_MSG_ID_GLOBAL_POSITION_INT: _global_position,
-    dialect.MAVLINK_MSG_ID_LOCAL_POSITION_NED: _local_position,
     dialect.MAVLINK_MSG_ID_ATTITUDE: _attitude,
     dialect.MAVLINK_MSG_ID_VFR_HUD: _air_data,
     dialect.MAVLINK_MSG_ID_WIND: _wind,

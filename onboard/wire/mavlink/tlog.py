@@ -34,7 +34,7 @@ class Entry(NamedTuple):
 
 
 def read_tlog(data: bytes, causes: Counter[str] | None = None) -> Iterator[Entry]:
-    """All frames of a log's bytes, in order. A cut or damaged stretch is skipped and counted in
+    """Yield all frames of a log's bytes, in order. A cut or damaged stretch is skipped and counted in
     `causes` (the causes of `Framer`), never an error; a log cut anywhere gives all that is whole."""
     counts: Counter[str] = Counter() if causes is None else causes
     framer = Framer(causes=counts)

@@ -33,14 +33,6 @@ class GlobalPosition(NamedTuple):
     velocity: Vec  # [m/s; ground, NED]
 
 
-class LocalPosition(NamedTuple):
-    """LOCAL_POSITION_NED: in the autopilot's own local frame, never another's."""
-
-    time_boot_s: float
-    position: Vec  # [m; NED]
-    velocity: Vec  # [m/s; ground, NED]
-
-
 class Attitude(NamedTuple):
     """ATTITUDE."""
 
@@ -192,7 +184,6 @@ class RadioStatus(NamedTuple):
 Value = (
     Heartbeat
     | GlobalPosition
-    | LocalPosition
     | Attitude
     | AirData
     | Wind

@@ -9,7 +9,6 @@ from onboard.core.math.vectors import ZERO, Vec, is_finite
 from onboard.wire.mavlink.dialect import DialectPacket, dialect
 from onboard.wire.mavlink.modes import ARDUCOPTER_MODES
 from sim_bridge.vehicle.autopilot import default_parameters as tables
-from sim_bridge.vehicle.autopilot import telemetry
 from sim_bridge.vehicle.autopilot.ardupilot import ABOVE_HOME, ABSOLUTE, ArduPilot
 from sim_bridge.vehicle.autopilot.command import ACCEPTED, DENIED, FAILED, Command
 from sim_bridge.vehicle.autopilot.multicopter import Leg, Multicopter, Speeds
@@ -29,18 +28,10 @@ POSITIONAL = frozenset(
 NOT_SIMULATED = frozenset(
     M[name]
     for name in (
-        "FLIP",
-        "AUTOTUNE",
-        "THROW",
-        "AVOID_ADSB",
-        "GUIDED_NOGPS",
-        "SMART_RTL",
-        "SYSTEMID",
-        "AUTOROTATE",
-        "AUTO_RTL",
-        "TURTLE",
+        "FLIP", "AUTOTUNE", "THROW", "AVOID_ADSB", "GUIDED_NOGPS", "SMART_RTL", "SYSTEMID", "AUTOROTATE",
+        "AUTO_RTL", "TURTLE",
     )
-)
+)  # fmt: skip
 NOT_ARMABLE = frozenset(M[name] for name in ("RTL", "LAND", "BRAKE", "AUTO", "CIRCLE", "DRIFT"))
 USER_TAKEOFF = frozenset(M[name] for name in ("GUIDED", "LOITER", "ALT_HOLD", "POSHOLD"))
 # type_mask: a set bit ignores the field; one bit of a group ignores the group
@@ -50,16 +41,17 @@ CONTINUE_PILOTED = 16  # FS_OPTIONS: the ground station's silence does not end a
 
 
 class ArduCopter(Multicopter, ArduPilot):
-    """ArduCopter 4.5."""
+    """ArduCopter 4.5 on a quadrotor: modes, failsafes, targets and commands."""
 
     modes = M
     banner = ("ArduCopter V4.5.6 (simulated)", "Frame: QUAD/PLUS")
     starts_by_velocity = False
+    armed_text = "Arming motors"
     _target_ns = 0  # of the last velocity target
 
     def _new_parameters(self) -> Parameters:
         own = {"SYSID_THISMAV": self.system, "SCHED_LOOP_RATE": 400}
-        return Parameters(tables.ARDUCOPTER, own | dict(self.setup.parameters), bytewise=False)
+        return Parameters(tables.ARDUCOPTER, own | dict(self.setup.options.parameters), bytewise=False)
 
     def _message_handlers(self) -> dict[int, Callable[[int, DialectPacket], None]]:
         return super()._message_handlers() | {
@@ -111,10 +103,7 @@ class ArduCopter(Multicopter, ArduPilot):
             self.fly(Leg.HOLD, now_ns)
 
     def taken_off(self, now_ns: int) -> None:
-        """GUIDED keeps the place."""
-
-    def touched(self, now_ns: int) -> None:
-        self.disarm(now_ns)
+        """GUIDED keeps the place that the take-off has reached."""
 
     def why_not_armable(self, now_ns: int) -> str:
         if not self.positioned(now_ns) or not self.healthy(now_ns):
@@ -122,12 +111,6 @@ class ArduCopter(Multicopter, ArduPilot):
         if self.health.battery <= 0.0:
             return "Arm: Battery 1 low voltage failsafe"
         return f"Arm: {self.mode_name} mode not armable" if self.mode in NOT_ARMABLE else ""
-
-    def on_armed(self, now_ns: int) -> None:
-        if self.landed:
-            self.home = self.place
-            self.emit(telemetry.home_position(self, now_ns))
-        self.say(dialect.MAV_SEVERITY_INFO, "Arming motors")
 
     # ------------------------------------------------------------------ failsafes
 
@@ -148,21 +131,16 @@ class ArduCopter(Multicopter, ArduPilot):
         action = int(self.parameters["FS_GCS_ENABLE"])
         if action == 2 and self.is_mode("AUTO"):
             return
-        self._flee(now_ns, {5: "LAND", 7: "BRAKE"}.get(action, "RTL"))
+        self.escape(now_ns, {5: "LAND", 7: "BRAKE"}.get(action, "RTL"))
 
     def on_lost_position(self, now_ns: int) -> None:
         if self.mode in POSITIONAL and self.parameters["FS_EKF_ACTION"]:
             self.say(dialect.MAV_SEVERITY_CRITICAL, "EKF Failsafe: changed to LAND Mode")
-            self._flee(now_ns, "LAND")
+            self.escape(now_ns, "LAND")
 
     def on_low_battery(self, now_ns: int, action: int) -> None:
         if action in (1, 2, 3, 4):
-            self._flee(now_ns, "LAND" if action == 1 else "RTL")
-
-    def _flee(self, now_ns: int, name: str) -> None:
-        """Enter a failsafe's mode; land where it cannot be entered."""
-        if not self.is_mode("LAND") and self.request_mode(now_ns, M[name]):
-            self.request_mode(now_ns, M["LAND"])
+            self.escape(now_ns, "LAND" if action == 1 else "RTL")
 
     # ------------------------------------------------------------------ setpoints
 

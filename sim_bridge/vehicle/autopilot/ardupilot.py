@@ -43,7 +43,7 @@ class Place(NamedTuple):
 
 
 class ArduPilot(Autopilot):
-    """The family's rules."""
+    """What ArduCopter and ArduPlane do alike: modes by number, the watched ground station, failsafes."""
 
     autopilot_type = dialect.MAV_AUTOPILOT_ARDUPILOTMEGA
     version = VERSION
@@ -98,7 +98,7 @@ class ArduPilot(Autopilot):
         return None
 
     def game_of(self, place: Place) -> Vec:
-        """Into the frame of motion [m; NED]."""
+        """A place in the frame of motion [m; NED]."""
         return self.game_position(*place)
 
     def watch(self, now_ns: int) -> None:
@@ -116,7 +116,7 @@ class ArduPilot(Autopilot):
 
     @abstractmethod
     def silence_limit_s(self) -> float:
-        """How long it may be silent; 0 = for ever."""
+        """Time for which the watched ground station may be silent [s]; 0 = for ever."""
 
     @abstractmethod
     def on_lost_position(self, now_ns: int) -> None:
@@ -124,13 +124,13 @@ class ArduPilot(Autopilot):
 
     @abstractmethod
     def on_low_battery(self, now_ns: int, action: int) -> None:
-        """BATT_FS_LOW_ACT."""
+        """Act on a low battery as the parameter BATT_FS_LOW_ACT, `action`, says."""
 
     def _by_command(self, now_ns: int, name: str) -> int:
         return FAILED if self.request_mode(now_ns, self.modes[name]) else ACCEPTED
 
     def _watch_prearm(self, now_ns: int) -> None:
-        if self.armed or self.up_s(now_ns) < 0.5 * self.setup.ready_s:
+        if self.armed or self.up_s(now_ns) < 0.5 * self.setup.options.ready_s:
             return
         reason = self.why_not_armable(now_ns)
         if reason and (self._prearm_ns < 0 or (now_ns - self._prearm_ns) * 1e-9 >= PREARM_EVERY_S):

@@ -36,7 +36,7 @@ ALTITUDE_ONLY = 0xFFFB  # bits of a type_mask beside the altitude's
 
 
 class ArduPlane(ArduPilot):
-    """ArduPlane 4.5."""
+    """ArduPlane 4.5: modes, failsafes, guided roll, course, altitude and airspeed."""
 
     vehicle_type = dialect.MAV_TYPE_FIXED_WING
     modes = M
@@ -75,7 +75,7 @@ class ArduPlane(ArduPilot):
             "TECS_SINK_MAX": max(5.0, s.speed_cruise * sin(radians(-s.pitch_min_deg))),
             "WP_LOITER_RAD": float(ceil(max(60.0, radius))),
         }
-        return Parameters(tables.ARDUPLANE, own | dict(s.parameters), bytewise=False)
+        return Parameters(tables.ARDUPLANE, own | dict(s.options.parameters), bytewise=False)
 
     def _message_handlers(self) -> dict[int, Callable[[int, DialectPacket], None]]:
         return super()._message_handlers() | {

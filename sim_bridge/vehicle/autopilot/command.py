@@ -30,36 +30,18 @@ class Command(NamedTuple):
 
 
 def from_long(packet: DialectPacket) -> Command:
-    """Of a COMMAND_LONG."""
+    """The command of a COMMAND_LONG; its params 5 and 6 are taken for a place in degrees."""
     m = packet.message
     return Command(
-        m.command,
-        m.param1,
-        m.param2,
-        m.param3,
-        m.param4,
-        m.param5,
-        m.param6,
-        m.param7,
-        -1,
-        packet.system,
-        packet.component,
-    )
+        m.command, m.param1, m.param2, m.param3, m.param4, m.param5, m.param6, m.param7, -1,
+        packet.system, packet.component,
+    )  # fmt: skip
 
 
 def from_int(packet: DialectPacket) -> Command:
-    """Of a COMMAND_INT."""
+    """The command of a COMMAND_INT, whose place is in 1e-7 degrees."""
     m = packet.message
     return Command(
-        m.command,
-        m.param1,
-        m.param2,
-        m.param3,
-        m.param4,
-        m.x * 1e-7,
-        m.y * 1e-7,
-        m.z,
-        m.frame,
-        packet.system,
-        packet.component,
-    )
+        m.command, m.param1, m.param2, m.param3, m.param4, m.x * 1e-7, m.y * 1e-7, m.z, m.frame,
+        packet.system, packet.component,
+    )  # fmt: skip

@@ -48,7 +48,7 @@ class Fault(Enum):
 
 
 class Health:
-    """State of one vehicle's supplies and senses."""
+    """Battery and failures of one vehicle's sensors."""
 
     def __init__(self, battery_s: float) -> None:
         self.battery = 1.0  # of the charge
@@ -62,7 +62,7 @@ class Health:
 
     @property
     def voltage(self) -> float:
-        """Of the pack [V]."""
+        """Voltage of the battery pack [V]."""
         return CELLS * (CELL_EMPTY + (CELL_FULL - CELL_EMPTY) * self.battery)
 
     @property
@@ -81,6 +81,6 @@ class Health:
         return flags
 
     def sensor_health(self, gps: bool, positioned: bool, prearm: bool) -> int:
-        """SYS_STATUS.onboard_control_sensors_health."""
+        """Bits of the healthy sensors, as SYS_STATUS.onboard_control_sensors_health has them."""
         bad = (0 if gps else SENSOR_GPS) | (0 if positioned else SENSOR_AHRS) | (0 if prearm else PREARM)
         return SENSORS & ~bad & ~(SENSOR_BATTERY if self.battery <= 0.0 else 0)

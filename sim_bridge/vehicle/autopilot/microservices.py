@@ -6,49 +6,53 @@ One function a message.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 from onboard.wire.mavlink.dialect import DialectPacket, dialect
 from sim_bridge.vehicle.autopilot import telemetry
 from sim_bridge.vehicle.autopilot.files import refusal
-
-if TYPE_CHECKING:
-    from sim_bridge.vehicle.autopilot.autopilot import Autopilot
+from sim_bridge.vehicle.autopilot.state import AutopilotState
 
 
-def param_list(ap: Autopilot, now_ns: int, packet: DialectPacket) -> None:
+def param_list(ap: AutopilotState, now_ns: int, packet: DialectPacket) -> None:
+    """PARAM_REQUEST_LIST: begin to send all parameters, and say the banner."""
     ap.parameters.list_all()
     for line in ap.banner:
         ap.say(dialect.MAV_SEVERITY_INFO, line)
 
 
-def param_read(ap: Autopilot, now_ns: int, packet: DialectPacket) -> None:
+def param_read(ap: AutopilotState, now_ns: int, packet: DialectPacket) -> None:
+    """PARAM_REQUEST_READ: send one parameter, by name or by number."""
     ap.emit(ap.parameters.read(packet.message.param_id, packet.message.param_index))
 
 
-def param_set(ap: Autopilot, now_ns: int, packet: DialectPacket) -> None:
+def param_set(ap: AutopilotState, now_ns: int, packet: DialectPacket) -> None:
+    """PARAM_SET: change a parameter and send the value that it has now."""
     ap.emit(ap.parameters.write(packet.message.param_id, packet.message.param_value))
 
 
-def mission_list(ap: Autopilot, now_ns: int, packet: DialectPacket) -> None:
+def mission_list(ap: AutopilotState, now_ns: int, packet: DialectPacket) -> None:
+    """MISSION_REQUEST_LIST: there are no items."""
     ap.emit(
         dialect.MAVLink_mission_count_message(packet.system, packet.component, 0, packet.message.mission_type)
     )
 
 
-def mission_request(ap: Autopilot, now_ns: int, packet: DialectPacket) -> None:
+def mission_request(ap: AutopilotState, now_ns: int, packet: DialectPacket) -> None:
+    """MISSION_REQUEST and MISSION_REQUEST_INT: there is no such item."""
     _mission_ack(ap, packet, dialect.MAV_MISSION_INVALID_SEQUENCE)
 
 
-def mission_upload(ap: Autopilot, now_ns: int, packet: DialectPacket) -> None:
+def mission_upload(ap: AutopilotState, now_ns: int, packet: DialectPacket) -> None:
+    """MISSION_COUNT: no mission is taken, for there is no room for it."""
     _mission_ack(ap, packet, dialect.MAV_MISSION_NO_SPACE)
 
 
-def mission_clear(ap: Autopilot, now_ns: int, packet: DialectPacket) -> None:
+def mission_clear(ap: AutopilotState, now_ns: int, packet: DialectPacket) -> None:
+    """MISSION_CLEAR_ALL: accepted, for there is nothing to clear."""
     _mission_ack(ap, packet, dialect.MAV_MISSION_ACCEPTED)
 
 
-def _mission_ack(ap: Autopilot, packet: DialectPacket, result: int) -> None:
+def _mission_ack(ap: AutopilotState, packet: DialectPacket, result: int) -> None:
     ap.emit(
         dialect.MAVLink_mission_ack_message(
             packet.system, packet.component, result, packet.message.mission_type
@@ -56,23 +60,27 @@ def _mission_ack(ap: Autopilot, packet: DialectPacket, result: int) -> None:
     )
 
 
-def file_transfer(ap: Autopilot, now_ns: int, packet: DialectPacket) -> None:
+def file_transfer(ap: AutopilotState, now_ns: int, packet: DialectPacket) -> None:
+    """FILE_TRANSFER_PROTOCOL: refused, so that clients fall back to the parameter protocol."""
     payload = refusal(bytes(packet.message.payload))
     ap.emit(dialect.MAVLink_file_transfer_protocol_message(0, packet.system, packet.component, payload))
 
 
-def timesync(ap: Autopilot, now_ns: int, packet: DialectPacket) -> None:
+def timesync(ap: AutopilotState, now_ns: int, packet: DialectPacket) -> None:
+    """TIMESYNC: answer a request with the time since boot [ns]."""
     if packet.message.tc1 == 0:
         ap.emit(dialect.MAVLink_timesync_message(ap.boot_elapsed_ns(now_ns), packet.message.ts1))
 
 
-def ping(ap: Autopilot, now_ns: int, packet: DialectPacket) -> None:
+def ping(ap: AutopilotState, now_ns: int, packet: DialectPacket) -> None:
+    """PING: answer a ping to everybody."""
     m = packet.message
     if m.target_system == 0 and m.target_component == 0:
         ap.emit(dialect.MAVLink_ping_message(m.time_usec, m.seq, packet.system, packet.component))
 
 
-def data_stream(ap: Autopilot, now_ns: int, packet: DialectPacket) -> None:
+def data_stream(ap: AutopilotState, now_ns: int, packet: DialectPacket) -> None:
+    """REQUEST_DATA_STREAM: set the rate of a group of messages."""
     m = packet.message
     for number in telemetry.DATA_STREAMS.get(m.req_stream_id, ()):
         if telemetry.can_build(ap, number):
@@ -80,7 +88,7 @@ def data_stream(ap: Autopilot, now_ns: int, packet: DialectPacket) -> None:
             ap.streams.set(number, 1e6 / hz if hz else -1, now_ns)
 
 
-Service = Callable[["Autopilot", int, DialectPacket], None]
+Service = Callable[[AutopilotState, int, DialectPacket], None]
 
 SERVICES: dict[int, Service] = {
     dialect.MAVLINK_MSG_ID_PARAM_REQUEST_LIST: param_list,

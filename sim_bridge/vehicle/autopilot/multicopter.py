@@ -12,6 +12,7 @@ from typing import ClassVar, NamedTuple
 
 from onboard.core.math.vectors import ZERO, Vec, norm, sub
 from onboard.wire.mavlink.dialect import dialect
+from sim_bridge.vehicle.autopilot import telemetry
 from sim_bridge.vehicle.autopilot.autopilot import Autopilot
 from sim_bridge.vehicle.autopilot.setup import Setup
 from sim_bridge.vehicle.motion import Demand, Lateral
@@ -26,7 +27,7 @@ LOW = 10.0  # [m] above the ground: the last part of a landing is slow
 
 
 class Leg(Enum):
-    """What is flown now."""
+    """Parts of a multicopter's flight, of which it flies one at a time."""
 
     HOLD = "hold"  # stop, then keep the place
     VELOCITY = "velocity"
@@ -39,7 +40,7 @@ class Leg(Enum):
 
 
 class Speeds(NamedTuple):
-    """Of what the autopilot flies by itself [m/s]."""
+    """Speeds with which an autopilot flies a leg by itself [m/s]."""
 
     level: float
     up: float
@@ -69,6 +70,7 @@ class Multicopter(Autopilot):
 
     vehicle_type = dialect.MAV_TYPE_QUADROTOR
     starts_by_velocity: ClassVar[bool]  # whether an upward velocity target takes it off the ground
+    armed_text: ClassVar[str]  # the STATUSTEXT that tells of an arming
 
     def __init__(self, setup: Setup, now_ns: int) -> None:
         self.leg = Leg.HOLD
@@ -85,30 +87,38 @@ class Multicopter(Autopilot):
     @property
     @abstractmethod
     def speeds(self) -> Speeds:
-        """From its parameters."""
+        """Speeds of flying by itself, from the parameters [m/s]."""
 
     @property
     @abstractmethod
     def linger_s(self) -> float:
-        """Above home before it lands [s]."""
+        """Time above home before a return lands [s]."""
 
     @property
     @abstractmethod
     def idle_disarm_s(self) -> float:
-        """Armed on the ground for so long, it disarms itself; 0 = never."""
+        """Time armed on the ground after which it disarms itself [s]; 0 = never."""
 
     @abstractmethod
     def taken_off(self, now_ns: int) -> None:
         """The height of take-off is reached."""
 
-    @abstractmethod
-    def touched(self, now_ns: int) -> None:
-        """It has landed by itself."""
+    def on_armed(self, now_ns: int) -> None:
+        """Make the place of arming home where it stands on the ground, and say that it is armed."""
+        if self.landed:
+            self.home = self.place
+            self.emit(telemetry.home_position(self, now_ns))
+        self.say(dialect.MAV_SEVERITY_INFO, self.armed_text)
+
+    def escape(self, now_ns: int, name: str) -> None:
+        """Enter the mode that a failsafe wants; land where that mode cannot be entered."""
+        if not self.is_mode("LAND") and self.request_mode(now_ns, self.modes[name]):
+            self.request_mode(now_ns, self.modes["LAND"])
 
     # ------------------------------------------------------------------ legs
 
     def fly(self, leg: Leg, now_ns: int, target: Vec = ZERO) -> None:
-        """Begin a leg."""
+        """Begin a leg to `target` [m; NED, frame of motion]."""
         self.leg = leg
         self.target = target
         self.feed_forward = ZERO
@@ -116,7 +126,7 @@ class Multicopter(Autopilot):
         self._since_ns = now_ns
 
     def fly_velocity(self, velocity: Vec, now_ns: int) -> None:
-        """Follow a ground velocity."""
+        """Follow a velocity over ground [m/s; NED]."""
         self.leg = Leg.VELOCITY
         self.velocity = velocity
         self._since_ns = now_ns
@@ -182,7 +192,7 @@ class Multicopter(Autopilot):
         if above <= TOUCHED:
             self.touch_down()
             self.fly(Leg.HOLD, now_ns)
-            self.touched(now_ns)
+            self.disarm(now_ns)
             return REST
         speeds = self.speeds
         flat = towards(self.motion.position, self.target, speeds)

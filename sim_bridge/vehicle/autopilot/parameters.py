@@ -22,7 +22,7 @@ RANGES = {INT8: (-(2**7), 2**7 - 1), INT16: (-(2**15), 2**15 - 1), INT32: (-(2**
 
 
 class Parameter(NamedTuple):
-    """One parameter as delivered."""
+    """One parameter: name, value as delivered and type on the wire."""
 
     name: str
     default: float

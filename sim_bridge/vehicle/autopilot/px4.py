@@ -46,6 +46,7 @@ class Px4Multicopter(Multicopter):
     unknown_message = DENIED
     unknown_interval = FAILED
     starts_by_velocity = True
+    armed_text = "Armed by external command"
     _stream_ns = -1  # since when setpoints stream; −1: they do not
     _setpoint_ns = -1  # of the last one
     _setpoint: tuple[Leg, Vec, Vec] = (Leg.HOLD, ZERO, ZERO)
@@ -61,7 +62,7 @@ class Px4Multicopter(Multicopter):
             "MPC_Z_VEL_MAX_UP": max(3.0, fast),
             "MPC_Z_VEL_MAX_DN": max(1.5, fast),
         }
-        return Parameters(tables.PX4, own | dict(self.setup.parameters), bytewise=True)
+        return Parameters(tables.PX4, own | dict(self.setup.options.parameters), bytewise=True)
 
     def _message_handlers(self) -> dict[int, Callable[[int, DialectPacket], None]]:
         return super()._message_handlers() | {
@@ -147,19 +148,10 @@ class Px4Multicopter(Multicopter):
         self.request_mode(now_ns, M["HOLD"])
         self.target = place
 
-    def touched(self, now_ns: int) -> None:
-        self.disarm(now_ns)
-
     def why_not_armable(self, now_ns: int) -> str:
         if not self.positioned(now_ns) or not self.healthy(now_ns):
             return "Arming denied: Resolve system health failures first"[:50]
         return "Arming denied: low battery" if self.health.battery <= 0.0 else ""
-
-    def on_armed(self, now_ns: int) -> None:
-        if self.landed:
-            self.home = self.place
-            self.emit(telemetry.home_position(self, now_ns))
-        self.say(dialect.MAV_SEVERITY_INFO, "Armed by external command")
 
     def guide(self, now_ns: int, dt: float) -> Demand:
         if self.is_mode("OFFBOARD"):
@@ -177,7 +169,7 @@ class Px4Multicopter(Multicopter):
         if self.is_mode("OFFBOARD") and not self._setpoints_fresh(now_ns):
             self.say(dialect.MAV_SEVERITY_CRITICAL, "Failsafe: Offboard signal lost")
             action = int(self.parameters["COM_OBL_RC_ACT"])
-            self._flee(now_ns, {3: "RTL", 4: "LAND", 0: "POSCTL"}.get(action, "HOLD"))
+            self.escape(now_ns, {3: "RTL", 4: "LAND", 0: "POSCTL"}.get(action, "HOLD"))
         if not self.armed or self.landed:
             self._link_lost = False
             return
@@ -191,7 +183,7 @@ class Px4Multicopter(Multicopter):
             self.say(dialect.MAV_SEVERITY_CRITICAL, "Connection to ground station lost")
             name = {1: "HOLD", 2: "RTL", 3: "LAND"}.get(int(self.parameters["NAV_DLL_ACT"]))
             if name is not None:
-                self._flee(now_ns, name)
+                self.escape(now_ns, name)
         self._link_lost = lost
 
     def _watch_position(self, now_ns: int) -> None:
@@ -201,7 +193,7 @@ class Px4Multicopter(Multicopter):
             self._blind_ns = now_ns
         elif (now_ns - self._blind_ns) * 1e-9 >= LOST_POSITION_S and self.mode in POSITIONAL:
             self.say(dialect.MAV_SEVERITY_CRITICAL, "Failsafe: position lost, landing")
-            self._flee(now_ns, "LAND")
+            self.escape(now_ns, "LAND")
 
     def _watch_battery(self, now_ns: int) -> None:
         if self.health.battery > self.parameters["BAT_CRIT_THR"]:
@@ -211,12 +203,7 @@ class Px4Multicopter(Multicopter):
             self.say(dialect.MAV_SEVERITY_CRITICAL, "Critical battery level")
             name = {2: "LAND", 3: "RTL"}.get(int(self.parameters["COM_LOW_BAT_ACT"]))
             if name is not None:
-                self._flee(now_ns, name)
-
-    def _flee(self, now_ns: int, name: str) -> None:
-        """Enter a failsafe's mode; land where it cannot be entered."""
-        if not self.is_mode("LAND") and self.request_mode(now_ns, M[name]):
-            self.request_mode(now_ns, M["LAND"])
+                self.escape(now_ns, name)
 
     # ------------------------------------------------------------------ setpoints
 

@@ -11,6 +11,23 @@ from onboard.wire.mavlink.signing import Signing
 from sim_bridge.vehicle.motion import Motion
 
 
+class Options(NamedTuple):
+    """What may be chosen about an autopilot whatever vehicle it flies."""
+
+    airborne: bool = True  # whether it starts flying and armed, in LOITER or HOLD
+    epoch_ns: int = 0  # wall instant at now_ns = 0
+    ready_s: float = 12.0  # a ground start's time from boot until arming is accepted [s]
+    battery_s: float = 1200.0  # from full to empty in flight [s]
+    parameters: Mapping[str, float] = {}  # in place of the defaults
+    signing: Signing | None = None  # of all frames sent; None: frames are not signed
+    healthy_share: float = 0.6  # of `ready_s`, after which the pre-arm bit is set: before arming is accepted
+
+    @property
+    def healthy_s(self) -> float:
+        """A ground start's time from boot until the pre-arm bit says healthy [s]."""
+        return self.healthy_share * self.ready_s
+
+
 class Setup(NamedTuple):
     """One vehicle, as its autopilot is delivered.
 
@@ -24,16 +41,10 @@ class Setup(NamedTuple):
     start: Motion
     home: Geodetic  # where RTL leads
     origin: Geodetic  # of LOCAL_POSITION_NED
-    epoch_ns: int  # wall instant at now_ns = 0
-    airborne: bool  # whether it starts flying and armed, in LOITER or HOLD
     speed_min: float  # [m/s; air] of planes: AIRSPEED_MIN
     speed_max: float  # [m/s; air]
     speed_cruise: float  # [m/s; air] flown when nothing else is asked
     bank_max_deg: float  # of planes: ROLL_LIMIT_DEG
     pitch_min_deg: float  # of planes: PTCH_LIM_MIN_DEG
     pitch_max_deg: float
-    ready_s: float = 12.0  # a ground start's time from boot until arming is accepted [s]
-    healthy_s: float = 7.0  # … until the pre-arm bit says healthy: real ones say it too early [s]
-    battery_s: float = 1200.0  # from full to empty in flight [s]
-    parameters: Mapping[str, float] = {}  # in place of the defaults
-    signing: Signing | None = None
+    options: Options

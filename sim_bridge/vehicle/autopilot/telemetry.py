@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import atan2, cos, degrees, nan, sin, sqrt
-from typing import TYPE_CHECKING
 
 from onboard.core.math.vectors import Vec, clamp
 from onboard.wire.mavlink.dialect import MavMessage, dialect
 from sim_bridge.vehicle.autopilot import health
-
-if TYPE_CHECKING:
-    from sim_bridge.vehicle.autopilot.autopilot import Autopilot
+from sim_bridge.vehicle.autopilot.state import AutopilotState
 
 PX4: int = dialect.MAV_AUTOPILOT_PX4
 MAVLINK_VERSION = 3
@@ -34,7 +31,8 @@ def _e7(angle_deg: float) -> int:
     return _i32(angle_deg * 1e7)
 
 
-def heartbeat(ap: Autopilot, now_ns: int) -> MavMessage:
+def heartbeat(ap: AutopilotState, now_ns: int) -> MavMessage:
+    """HEARTBEAT: kind of autopilot and vehicle, mode, whether it is armed, and its condition."""
     mode: int = dialect.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED
     if ap.armed:
         mode |= dialect.MAV_MODE_FLAG_SAFETY_ARMED
@@ -50,7 +48,8 @@ def heartbeat(ap: Autopilot, now_ns: int) -> MavMessage:
     return message
 
 
-def attitude(ap: Autopilot, now_ns: int) -> MavMessage:
+def attitude(ap: AutopilotState, now_ns: int) -> MavMessage:
+    """ATTITUDE: roll, pitch and yaw [rad] with their rates [rad/s]."""
     m = ap.motion
     message: MavMessage = dialect.MAVLink_attitude_message(
         ap.boot_ms(now_ns), m.roll, m.pitch, m.yaw, m.rates.x, m.rates.y, m.rates.z
@@ -58,7 +57,8 @@ def attitude(ap: Autopilot, now_ns: int) -> MavMessage:
     return message
 
 
-def global_position(ap: Autopilot, now_ns: int) -> MavMessage | None:
+def global_position(ap: AutopilotState, now_ns: int) -> MavMessage | None:
+    """GLOBAL_POSITION_INT: geodetic position, height above home, ground velocity; None: no position."""
     if not ap.positioned(now_ns):
         return None
     place, v = ap.place, ap.motion.velocity
@@ -77,7 +77,8 @@ def global_position(ap: Autopilot, now_ns: int) -> MavMessage | None:
     return message
 
 
-def local_position(ap: Autopilot, now_ns: int) -> MavMessage | None:
+def local_position(ap: AutopilotState, now_ns: int) -> MavMessage | None:
+    """LOCAL_POSITION_NED in the autopilot's own local frame [m, m/s]; None without a position."""
     if not ap.positioned(now_ns):
         return None
     p, v = ap.local.ned_from_geodetic(*ap.place), ap.motion.velocity
@@ -87,7 +88,8 @@ def local_position(ap: Autopilot, now_ns: int) -> MavMessage | None:
     return message
 
 
-def vfr_hud(ap: Autopilot, now_ns: int) -> MavMessage:
+def vfr_hud(ap: AutopilotState, now_ns: int) -> MavMessage:
+    """VFR_HUD: airspeed, ground speed, heading, altitude and climb rate."""
     m = ap.motion
     ground = sqrt(m.velocity.x * m.velocity.x + m.velocity.y * m.velocity.y)
     throttle = 0 if ap.landed else 50
@@ -97,33 +99,24 @@ def vfr_hud(ap: Autopilot, now_ns: int) -> MavMessage:
     return message
 
 
-def sys_status(ap: Autopilot, now_ns: int) -> MavMessage:
+def sys_status(ap: AutopilotState, now_ns: int) -> MavMessage:
+    """SYS_STATUS: sensors present, enabled and healthy; voltage, current and charge of the battery."""
     h = ap.health
     good = h.sensor_health(ap.gps_fixed(now_ns), ap.positioned(now_ns), ap.healthy(now_ns))
     current = health.CURRENT_IDLE if ap.landed else health.CURRENT_FLYING
     message: MavMessage = dialect.MAVLink_sys_status_message(
-        health.SENSORS,
-        health.SENSORS,
-        good,
-        250,
-        _u16(h.voltage * 1e3),
-        _i16(current * 1e2),
-        round(h.battery * 100.0),
-        0,
-        0,
-        0,
-        0,
-        0,
-        0,
-    )
+        health.SENSORS, health.SENSORS, good, 250, _u16(h.voltage * 1e3), _i16(current * 1e2),
+        round(h.battery * 100.0), 0, 0, 0, 0, 0, 0,
+    )  # fmt: skip
     return message
 
 
-def battery_status(ap: Autopilot, now_ns: int) -> MavMessage:
+def battery_status(ap: AutopilotState, now_ns: int) -> MavMessage:
+    """BATTERY_STATUS: cell voltages, current, charge used and charge left."""
     h = ap.health
     cells = [_u16(h.voltage / health.CELLS * 1e3)] * health.CELLS + [UNKNOWN_U16] * (10 - health.CELLS)
     current = health.CURRENT_IDLE if ap.landed else health.CURRENT_FLYING
-    used = (1.0 - h.battery) * ap.setup.battery_s * health.CURRENT_FLYING / 3.6  # [mAh]
+    used = (1.0 - h.battery) * ap.setup.options.battery_s * health.CURRENT_FLYING / 3.6  # [mAh]
     message: MavMessage = dialect.MAVLink_battery_status_message(
         0,
         dialect.MAV_BATTERY_FUNCTION_ALL,
@@ -138,7 +131,8 @@ def battery_status(ap: Autopilot, now_ns: int) -> MavMessage:
     return message
 
 
-def gps_raw(ap: Autopilot, now_ns: int) -> MavMessage:
+def gps_raw(ap: AutopilotState, now_ns: int) -> MavMessage:
+    """GPS_RAW_INT: fix, position, speed and course as the receiver has them."""
     place, v = ap.place, ap.motion.velocity
     fixed = ap.gps_fixed(now_ns)
     fix = dialect.GPS_FIX_TYPE_3D_FIX if fixed else dialect.GPS_FIX_TYPE_NO_FIX
@@ -158,13 +152,15 @@ def gps_raw(ap: Autopilot, now_ns: int) -> MavMessage:
     return message
 
 
-def extended_state(ap: Autopilot, now_ns: int) -> MavMessage:
+def extended_state(ap: AutopilotState, now_ns: int) -> MavMessage:
+    """EXTENDED_SYS_STATE: on the ground or in the air."""
     landed = dialect.MAV_LANDED_STATE_ON_GROUND if ap.landed else dialect.MAV_LANDED_STATE_IN_AIR
     message: MavMessage = dialect.MAVLink_extended_sys_state_message(dialect.MAV_VTOL_STATE_UNDEFINED, landed)
     return message
 
 
-def ekf_status(ap: Autopilot, now_ns: int) -> MavMessage:
+def ekf_status(ap: AutopilotState, now_ns: int) -> MavMessage:
+    """EKF_STATUS_REPORT: ArduPilot's estimator, its flags and innovation ratios."""
     positioned = ap.positioned(now_ns)
     ratio = 0.05 if positioned else 1.5
     message: MavMessage = dialect.MAVLink_ekf_status_report_message(
@@ -173,26 +169,19 @@ def ekf_status(ap: Autopilot, now_ns: int) -> MavMessage:
     return message
 
 
-def estimator_status(ap: Autopilot, now_ns: int) -> MavMessage:
+def estimator_status(ap: AutopilotState, now_ns: int) -> MavMessage:
+    """ESTIMATOR_STATUS: PX4's estimator, its flags, innovation ratios and accuracies."""
     positioned = ap.positioned(now_ns)
     ratio = 0.05 if positioned else 1.5
     message: MavMessage = dialect.MAVLink_estimator_status_message(
-        ap.boot_ms(now_ns) * 1000,
-        ap.health.ekf_flags(positioned),
-        ratio,
-        ratio,
-        0.03,
-        0.02,
-        0.0,
-        0.0,
-        0.3,
-        0.4,
-    )
+        ap.boot_ms(now_ns) * 1000, ap.health.ekf_flags(positioned), ratio, ratio, 0.03, 0.02, 0.0, 0.0,
+        0.3, 0.4,
+    )  # fmt: skip
     return message
 
 
-def wind(ap: Autopilot, now_ns: int) -> MavMessage:
-    """ArduPilot: the direction the wind comes from [degrees] and its speed."""
+def wind(ap: AutopilotState, now_ns: int) -> MavMessage:
+    """WIND of ArduPilot: the direction that the wind comes from [deg] and its speed [m/s]."""
     w = ap.air.wind
     message: MavMessage = dialect.MAVLink_wind_message(
         degrees(atan2(-w.y, -w.x)) % 360.0, sqrt(w.x * w.x + w.y * w.y), w.z
@@ -200,8 +189,8 @@ def wind(ap: Autopilot, now_ns: int) -> MavMessage:
     return message
 
 
-def wind_cov(ap: Autopilot, now_ns: int) -> MavMessage:
-    """PX4: where the wind blows to, as velocity."""
+def wind_cov(ap: AutopilotState, now_ns: int) -> MavMessage:
+    """WIND_COV of PX4: the velocity with which the air moves [m/s; NED]."""
     w = ap.air.wind
     message: MavMessage = dialect.MAVLink_wind_cov_message(
         ap.boot_ms(now_ns) * 1000, w.x, w.y, w.z, 0.1, 0.1, ap.place.altitude_m, 0.5, 0.5
@@ -209,13 +198,15 @@ def wind_cov(ap: Autopilot, now_ns: int) -> MavMessage:
     return message
 
 
-def system_time(ap: Autopilot, now_ns: int) -> MavMessage:
-    wall_us = (ap.setup.epoch_ns + now_ns) // 1000 if ap.gps_fixed(now_ns) else 0
+def system_time(ap: AutopilotState, now_ns: int) -> MavMessage:
+    """SYSTEM_TIME: wall instant, 0 before the first fix, and time since boot."""
+    wall_us = (ap.setup.options.epoch_ns + now_ns) // 1000 if ap.gps_fixed(now_ns) else 0
     message: MavMessage = dialect.MAVLink_system_time_message(wall_us, ap.boot_ms(now_ns))
     return message
 
 
-def home_position(ap: Autopilot, now_ns: int) -> MavMessage | None:
+def home_position(ap: AutopilotState, now_ns: int) -> MavMessage | None:
+    """HOME_POSITION: home, geodetic and in the local frame; None while it is not known."""
     if not ap.home_known:
         return None
     p: Vec = ap.local.ned_from_geodetic(*ap.home)
@@ -224,19 +215,14 @@ def home_position(ap: Autopilot, now_ns: int) -> MavMessage | None:
         _e7(ap.home.latitude_deg),
         _e7(ap.home.longitude_deg),
         _i32(ap.home.altitude_m * 1e3),
-        p.x,
-        p.y,
-        p.z,
-        q,
-        0.0,
-        0.0,
-        0.0,
+        p.x, p.y, p.z, q, 0.0, 0.0, 0.0,
         ap.boot_ms(now_ns) * 1000,
-    )
+    )  # fmt: skip
     return message
 
 
-def global_origin(ap: Autopilot, now_ns: int) -> MavMessage | None:
+def global_origin(ap: AutopilotState, now_ns: int) -> MavMessage | None:
+    """GPS_GLOBAL_ORIGIN: the geodetic origin of the local frame; None while it is not known."""
     if not ap.home_known:
         return None
     o = ap.local.origin
@@ -246,7 +232,8 @@ def global_origin(ap: Autopilot, now_ns: int) -> MavMessage | None:
     return message
 
 
-def attitude_quaternion(ap: Autopilot, now_ns: int) -> MavMessage:
+def attitude_quaternion(ap: AutopilotState, now_ns: int) -> MavMessage:
+    """ATTITUDE_QUATERNION: the rotation from NED to the body (w, x, y, z) with its rates [rad/s]."""
     m = ap.motion
     cr, sr = cos(0.5 * m.roll), sin(0.5 * m.roll)
     cp, sp = cos(0.5 * m.pitch), sin(0.5 * m.pitch)
@@ -264,7 +251,8 @@ def attitude_quaternion(ap: Autopilot, now_ns: int) -> MavMessage:
     return message
 
 
-def altitude(ap: Autopilot, now_ns: int) -> MavMessage:
+def altitude(ap: AutopilotState, now_ns: int) -> MavMessage:
+    """ALTITUDE of PX4: above mean sea level, above the local origin and above home [m]."""
     amsl = ap.place.altitude_m
     local = amsl - ap.local.origin.altitude_m
     message: MavMessage = dialect.MAVLink_altitude_message(
@@ -273,13 +261,14 @@ def altitude(ap: Autopilot, now_ns: int) -> MavMessage:
     return message
 
 
-def mission_current(ap: Autopilot, now_ns: int) -> MavMessage:
+def mission_current(ap: AutopilotState, now_ns: int) -> MavMessage:
+    """MISSION_CURRENT: always the first item, for there are no missions."""
     message: MavMessage = dialect.MAVLink_mission_current_message(0)
     return message
 
 
-def autopilot_version(ap: Autopilot, now_ns: int) -> MavMessage:
-    """Capabilities name what is truly there: no file transfer, no missions."""
+def autopilot_version(ap: AutopilotState, now_ns: int) -> MavMessage:
+    """AUTOPILOT_VERSION: capabilities truly there (no file transfer, no missions) and firmware."""
     capabilities = (
         dialect.MAV_PROTOCOL_CAPABILITY_COMMAND_INT
         | dialect.MAV_PROTOCOL_CAPABILITY_MAVLINK2
@@ -298,7 +287,7 @@ def autopilot_version(ap: Autopilot, now_ns: int) -> MavMessage:
     return message
 
 
-Builder = Callable[["Autopilot", int], MavMessage | None]
+Builder = Callable[[AutopilotState, int], MavMessage | None]
 
 COMMON: dict[int, Builder] = {
     dialect.MAVLINK_MSG_ID_HEARTBEAT: heartbeat,
@@ -340,15 +329,15 @@ DATA_STREAMS: dict[int, tuple[int, ...]] = {
 DATA_STREAMS[dialect.MAV_DATA_STREAM_ALL] = tuple(n for group in DATA_STREAMS.values() for n in group)
 
 
-def _builders(ap: Autopilot) -> dict[int, Builder]:
+def _builders(ap: AutopilotState) -> dict[int, Builder]:
     return OF_PX4 if ap.autopilot_type == PX4 else OF_ARDUPILOT
 
 
-def can_build(ap: Autopilot, number: int) -> bool:
-    """Whether this kind sends such messages at all."""
+def can_build(ap: AutopilotState, number: int) -> bool:
+    """Whether this kind of autopilot sends messages of that number at all."""
     return number in _builders(ap)
 
 
-def build(ap: Autopilot, number: int, now_ns: int) -> MavMessage | None:
-    """The message now; None where there is nothing to say (no position, no home)."""
+def build(ap: AutopilotState, number: int, now_ns: int) -> MavMessage | None:
+    """The message of that number as it is now; None where it cannot be told (no position, no home)."""
     return _builders(ap)[number](ap, now_ns)

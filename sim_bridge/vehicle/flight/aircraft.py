@@ -5,16 +5,26 @@ Angles in degrees in the file. Everything that cannot fly is refused at load wit
 
 from __future__ import annotations
 
+from enum import Enum
 from functools import lru_cache
 from math import exp, isinf, radians
 from pathlib import Path
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
-import msgspec
 import numpy as np
+from msgspec import Meta
 
 from onboard.config import strict as config
-from onboard.config.strict import ConfigError
+from onboard.config.bounds import (
+    Acceleration,
+    NotNegative,
+    Positive,
+    PositiveAcceleration,
+    PositiveDuration,
+    PositiveSpeed,
+)
+from onboard.config.names import Title
+from onboard.config.strict import ConfigError, StrictConfig, demand
 from onboard.core.math.constants import STANDARD_GRAVITY
 from onboard.core.math.states import VehicleLimits
 from onboard.runtime.resources import configs
@@ -24,86 +34,110 @@ from sim_bridge.vehicle.flight.plane import PathLaw, PathModel, PlaneModel, Spee
 from sim_bridge.vehicle.flight.transfer import AxisTransfer, check, sampled
 
 
-class Part(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Base of all parts of an aircraft file: frozen and strict."""
+class PathName(Enum):
+    """How the path follows the nose, as a file names it."""
+
+    NOSE = "nose"
+    SLIP = "slip"
+    COORDINATED = "coordinated"
 
 
-class PitchFunctions(Part, frozen=True, kw_only=True):
+# Ranges that only an aircraft file has.
+Coefficient = Annotated[float, Meta(ge=-1e9, le=1e9, description="−1e9 to 1e9")]
+Coefficients = Annotated[
+    tuple[Coefficient, ...], Meta(min_length=1, max_length=20, description="1 to 20 coefficients")
+]
+Gain = Coefficient
+SurfaceDeg = Annotated[float, Meta(gt=0, le=90, description="a positive number, at most 90 deg")]
+Braking = Annotated[float, Meta(lt=0, ge=-1000, description="a negative number [m/s²], at least −1000")]
+SlipDeg = Annotated[float, Meta(gt=0, lt=90, description="an angle in (0, 90) deg")]
+BankDeg = Annotated[float, Meta(gt=0, lt=85, description="an angle in (0, 85) deg")]
+PathDeg = Annotated[float, Meta(ge=-85, le=85, description="−85 ≤ min < max ≤ 85")]
+SampleRate = Annotated[float, Meta(ge=100, le=2000, description="a rate in [100, 2000] Hz")]
+
+
+class PitchFunctions(StrictConfig, frozen=True):
     """(36): over one denominator, to the pitch rate [deg/s]."""
 
-    denominator: tuple[float, ...]
-    elevator: tuple[float, ...]  # [deg]
-    wind_x: tuple[float, ...] = (0.0,)  # along the heading [m/s]
-    wind_y: tuple[float, ...] = (0.0,)  # up [m/s]
+    denominator: Coefficients
+    elevator: Coefficients  # [deg]
+    wind_x: Coefficients = (0.0,)  # along the heading [m/s]
+    wind_y: Coefficients = (0.0,)  # up [m/s]
 
 
-class YawFunctions(Part, frozen=True, kw_only=True):
+class YawFunctions(StrictConfig, frozen=True):
     """(37): over one denominator, to the yaw rate [deg/s]."""
 
-    denominator: tuple[float, ...]
-    rudder: tuple[float, ...]  # [deg]
-    wind_z: tuple[float, ...] = (0.0,)  # to the right [m/s]
+    denominator: Coefficients
+    rudder: Coefficients  # [deg]
+    wind_z: Coefficients = (0.0,)  # to the right [m/s]
 
 
-class Loop(Part, frozen=True, kw_only=True):
+class Loop(StrictConfig, frozen=True):
     """Cascade of an axis: angle → rate → surface."""
 
-    angle_gain: float  # [1/s]
-    rate_limit_deg: float  # [deg/s]
-    rate_gain: float  # [deg per deg/s]; its sign is the surface's
-    integral_gain: float  # [deg per deg]; same sign
-    release_s: float = 0.5  # time in which an unattainable command leaves the integral [s]
+    angle_gain: Positive  # [1/s]
+    rate_limit_deg: Positive  # [deg/s]
+    rate_gain: Gain  # [deg per deg/s]; its sign is the surface's
+    integral_gain: Gain  # [deg per deg]; same sign
+    release_s: PositiveDuration = 0.5  # time in which an unattainable command leaves the integral [s]
 
 
-class Actuator(Part, frozen=True, kw_only=True):
+class Actuator(StrictConfig, frozen=True):
     """A servo: first-order lag with limits of position and rate."""
 
-    limit_deg: float
-    rate_deg: float  # [deg/s]
-    bandwidth: float  # [rad/s]
+    limit_deg: SurfaceDeg
+    rate_deg: Positive  # [deg/s]
+    bandwidth: Positive  # [rad/s]
 
 
-class SpeedSpec(Part, frozen=True, kw_only=True):
+class SpeedSpec(StrictConfig, frozen=True):
     """Engine, drag, and the speed loop."""
 
-    trim: float  # V_b [m/s]
-    gain: float  # [1/s]
-    integral_gain: float  # [1/s²]
-    acceleration_min: float  # [m/s²] negative
-    acceleration_max: float  # [m/s²]
-    engine_lag: float  # [s]
-    drag: float  # a_x of (33) [1/s]
-    gravity: float = STANDARD_GRAVITY  # a_θ of (33)
+    trim: PositiveSpeed  # V_b [m/s]
+    gain: Positive  # [1/s]
+    integral_gain: NotNegative  # [1/s²]
+    acceleration_min: Braking  # [m/s²] negative
+    acceleration_max: PositiveAcceleration  # [m/s²]
+    engine_lag: PositiveDuration  # [s]
+    drag: Positive  # a_x of (33) [1/s]
+    gravity: Acceleration = STANDARD_GRAVITY  # a_θ of (33)
 
 
-class FollowSpec(Part, frozen=True, kw_only=True):
+class FollowSpec(StrictConfig, frozen=True):
     """How the path follows the nose, and how gusts come to carry the aircraft."""
 
-    course_lag: float  # k_β of (35) [1/s]
-    climb_lag: float  # b_y of (34) [1/s]
-    slip_limit_deg: float = 27.0
-    slip_gain: float = 2.0
-    bank_limit_deg: float = 45.0
-    bank_time_s: float = 0.4
-    bank_rate_deg: float = 60.0  # [deg/s]
-    turn_gain: float = 0.6  # [1/s]
+    course_lag: Positive  # k_β of (35) [1/s]
+    climb_lag: Positive  # b_y of (34) [1/s]
+    slip_limit_deg: SlipDeg = 27.0
+    slip_gain: NotNegative = 2.0
+    bank_limit_deg: BankDeg = 45.0
+    bank_time_s: PositiveDuration = 0.4
+    bank_rate_deg: Positive = 60.0  # [deg/s]
+    turn_gain: Positive = 0.6  # [1/s]
 
 
-class LimitSpec(Part, frozen=True, kw_only=True):
-    """(2)–(3)."""
+class LimitSpec(StrictConfig, frozen=True):
+    """Limits (2)–(3) of pitch [deg] and airspeed [m/s]."""
 
-    pitch_min_deg: float = -25.0
-    pitch_max_deg: float = 25.0
-    speed_min: float = 15.0
-    speed_max: float = 60.0
+    pitch_min_deg: PathDeg = -25.0
+    pitch_max_deg: PathDeg = 25.0
+    speed_min: PositiveSpeed = 15.0
+    speed_max: PositiveSpeed = 60.0
+
+    def __post_init__(self) -> None:
+        demand(self.pitch_min_deg < self.pitch_max_deg, "pitch_min_deg",
+               f"{self.pitch_min_deg:g} with pitch_max_deg {self.pitch_max_deg:g}", "−85 ≤ min < max ≤ 85")
+        demand(self.speed_min < self.speed_max, "speed_min",
+               f"{self.speed_min:g} with speed_max {self.speed_max:g}", "0 < min < max")  # fmt: skip
 
 
-class Spec(Part, frozen=True, kw_only=True):
-    """An aircraft file."""
+class Spec(StrictConfig, frozen=True, kw_only=True):
+    """Everything that an aircraft file says."""
 
-    name: str
-    path: str  # nose | slip | coordinated
-    rate_hz: float = 100.0
+    name: Title
+    path: PathName
+    rate_hz: SampleRate = 100.0
     description: str = ""
     pitch: PitchFunctions
     pitch_loop: Loop
@@ -115,6 +149,11 @@ class Spec(Part, frozen=True, kw_only=True):
     follow: FollowSpec
     limits: LimitSpec = LimitSpec()
 
+    def __post_init__(self) -> None:
+        low, high = self.limits.speed_min, self.limits.speed_max
+        demand(low <= self.speed.trim <= high, "speed.trim", self.speed.trim,
+               f"within the limits {low:g} to {high:g} m/s")  # fmt: skip
+
 
 class Aircraft(NamedTuple):
     """An aircraft as loaded: its file's contents, its transfer functions and the model the kernel steps."""
@@ -125,17 +164,14 @@ class Aircraft(NamedTuple):
     model: PlaneModel
 
 
-PATHS = {path.name.lower(): path for path in PathModel}
-
-
 def pitch_transfer(spec: Spec) -> AxisTransfer:
-    """(36) of a file."""
+    """The pitch axis's transfer functions (36) of an aircraft file."""
     p = spec.pitch
     return AxisTransfer(p.denominator, p.elevator, p.wind_x, p.wind_y)
 
 
 def yaw_transfer(spec: Spec) -> AxisTransfer:
-    """(37) of a file."""
+    """The yaw axis's transfer functions (37) of an aircraft file."""
     y = spec.yaw
     return AxisTransfer(y.denominator, y.rudder, y.wind_z, (0.0,))
 
@@ -153,7 +189,6 @@ def named(name: str) -> Aircraft:
 
 def build(spec: Spec, name: str) -> Aircraft:
     """Check an aircraft and build its model. Raises ConfigError with file, key and reason."""
-    _check_numbers(spec, name)
     pitch = pitch_transfer(spec)
     yaw = yaw_transfer(spec)
     check(pitch, name, ("pitch.denominator", "pitch.elevator", "pitch.wind_x", "pitch.wind_y"))
@@ -169,7 +204,7 @@ def build(spec: Spec, name: str) -> Aircraft:
     dt = 1.0 / spec.rate_hz
     s, f = spec.speed, spec.follow
     model = PlaneModel(
-        path=int(PATHS[spec.path]),
+        path=int(PathModel[spec.path.name]),
         dt=dt,
         pitch=sampled(pitch, dt),
         pitch_law=_law(spec.pitch_loop, spec.elevator, dt),
@@ -244,52 +279,4 @@ def _law(loop: Loop, servo: Actuator, dt: float) -> AxisLaw:
         surface_limit=radians(servo.limit_deg),
         servo=share,
         servo_reach=radians(servo.rate_deg) * dt / share,
-    )
-
-
-def _check_numbers(spec: Spec, name: str) -> None:
-    def demand(ok: bool, key: str, found: object, expected: str) -> None:
-        if not ok:
-            raise ConfigError(f"{name}: {key}: found {found}, expected {expected}")
-
-    demand(spec.path in PATHS, "path", spec.path, "one of " + ", ".join(PATHS))
-    demand(100.0 <= spec.rate_hz <= 2000.0, "rate_hz", spec.rate_hz, "a rate in [100, 2000] Hz")
-    positive: list[tuple[str, msgspec.Struct, tuple[str, ...]]] = [
-        ("pitch_loop", spec.pitch_loop, ("angle_gain", "rate_limit_deg", "release_s")),
-        ("yaw_loop", spec.yaw_loop, ("angle_gain", "rate_limit_deg", "release_s")),
-        ("elevator", spec.elevator, ("limit_deg", "rate_deg", "bandwidth")),
-        ("rudder", spec.rudder, ("limit_deg", "rate_deg", "bandwidth")),
-        ("speed", spec.speed, ("trim", "gain", "acceleration_max", "engine_lag")),
-        ("follow", spec.follow, ("course_lag", "climb_lag", "bank_time_s", "bank_rate_deg", "turn_gain")),
-    ]
-    for part, struct, keys in positive:
-        for key in keys:
-            demand(getattr(struct, key) > 0, f"{part}.{key}", getattr(struct, key), "a positive number")
-    demand(spec.elevator.limit_deg <= 90, "elevator.limit_deg", spec.elevator.limit_deg, "at most 90 deg")
-    demand(spec.rudder.limit_deg <= 90, "rudder.limit_deg", spec.rudder.limit_deg, "at most 90 deg")
-    s, f, m = spec.speed, spec.follow, spec.limits
-    demand(s.acceleration_min < 0, "speed.acceleration_min", s.acceleration_min, "a negative number [m/s²]")
-    demand(s.integral_gain >= 0, "speed.integral_gain", s.integral_gain, "zero or more")
-    demand(s.drag > 0, "speed.drag", s.drag, "a positive number [1/s]")
-    demand(s.gravity >= 0, "speed.gravity", s.gravity, "zero or more [m/s²]")
-    demand(0 < f.bank_limit_deg < 85, "follow.bank_limit_deg", f.bank_limit_deg, "an angle in (0, 85) deg")
-    demand(0 < f.slip_limit_deg < 90, "follow.slip_limit_deg", f.slip_limit_deg, "an angle in (0, 90) deg")
-    demand(f.slip_gain >= 0, "follow.slip_gain", f.slip_gain, "zero or more")
-    demand(
-        -85 <= m.pitch_min_deg < m.pitch_max_deg <= 85,
-        "limits.pitch_min_deg",
-        f"{m.pitch_min_deg:g} with pitch_max_deg {m.pitch_max_deg:g}",
-        "−85 ≤ min < max ≤ 85",
-    )
-    demand(
-        0 < m.speed_min < m.speed_max,
-        "limits.speed_min",
-        f"{m.speed_min:g} with speed_max {m.speed_max:g}",
-        "0 < min < max",
-    )
-    demand(
-        m.speed_min <= s.trim <= m.speed_max,
-        "speed.trim",
-        s.trim,
-        f"within the limits {m.speed_min:g} to {m.speed_max:g} m/s",
     )

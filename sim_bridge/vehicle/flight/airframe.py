@@ -67,7 +67,7 @@ class Plane:
 
     @property
     def model(self) -> PlaneModel:
-        """The aircraft's model."""
+        """Everything fixed about the aircraft, as the kernel steps it."""
         return self._model
 
     @property
@@ -77,7 +77,7 @@ class Plane:
 
     @property
     def motion(self) -> Motion:
-        """Where it is now."""
+        """Motion at the end of the last step."""
         return self._motion
 
     def step(self, demand: Demand, air: Air, dt: float) -> Motion:

@@ -43,7 +43,7 @@ class AxisLaw(NamedTuple):
     rate_limit: float  # [rad/s] largest rate asked
     rate_gain: float  # [rad per rad/s]
     integral_gain: float  # per sample [rad per rad/s]
-    release: float  # share of the unattainable command taken off the integral per sample
+    release: float  # back-calculation: share of (attainable − asked surface) added to the integral per sample
     surface_limit: float  # [rad]
     servo: float  # share of the servo's error removed per sample (first-order lag)
     servo_reach: float  # [rad] command error at which the servo moves at its rate limit

@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 
 
 def control() -> Any:
-    """The module `control`."""
+    """The module python-control, imported at the first call."""
     import control as module
 
     return module

@@ -133,14 +133,8 @@ def _p(*coefficients: float) -> Polynomial:
 def _determinant(m: list[list[Polynomial]]) -> Polynomial:
     """Determinant of a 3 × 3 matrix of polynomials."""
     total: Polynomial = np.array([0.0])
-    for i, j, k, sign in (
-        (0, 1, 2, 1),
-        (1, 2, 0, 1),
-        (2, 0, 1, 1),
-        (0, 2, 1, -1),
-        (2, 1, 0, -1),
-        (1, 0, 2, -1),
-    ):
+    even, odd = ((0, 1, 2), (1, 2, 0), (2, 0, 1)), ((0, 2, 1), (2, 1, 0), (1, 0, 2))
+    for (i, j, k), sign in [*((p, 1) for p in even), *((p, -1) for p in odd)]:
         term = poly.polymul(poly.polymul(m[0][i], m[1][j]), m[2][k])
         total = _p(*poly.polyadd(total, sign * term))
     return total

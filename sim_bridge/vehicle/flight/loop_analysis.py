@@ -30,53 +30,50 @@ def _state(vector: Array) -> AxisState:
     return AxisState(*(float(value) for value in vector))
 
 
-def _cut(model: AxisModel, law: AxisLaw, x: Array, command: float, wanted: float) -> tuple[Array, float]:
-    """One sample with `command` at the servo; returns the next state and what the controller asks for."""
+def _sample(
+    model: AxisModel, law: AxisLaw, x: Array, wanted: float, cut: float | None
+) -> tuple[Array, float]:
+    """One sample towards the angle `wanted` [rad]: the next state, and the surface angle asked for [rad].
+
+    `cut` is the command at the servo [rad], None = what the controller asks for: the loop is closed.
+    """
     state = _state(x)
     rate = rate_asked(law, wanted - state.angle)
     asked = surface_asked(state, law, rate)
+    command = asked if cut is None else cut
     after = move(state, model, law, command, integrate(state, law, rate, asked, asked), 0.0, 0.0)
     return np.array(after), asked
 
 
-def open_loop(model: AxisModel, law: AxisLaw, dt: float) -> Any:
-    """L(z) from the servo's command to the controller's answer, sign such that 1 + L closes it."""
+def _columns(model: AxisModel, law: AxisLaw, cut: float | None) -> tuple[Array, Array]:
+    """What a small change of each state makes of the state (6, 6) and of the controller's answer (1, 6)."""
     a = np.zeros((SIZE, SIZE))
     c = np.zeros((1, SIZE))
     for column in range(SIZE):
         x = np.zeros(SIZE)
         x[column] = SMALL
-        after, asked = _cut(model, law, x, 0.0, 0.0)
+        after, asked = _sample(model, law, x, 0.0, cut)
         a[:, column] = after / SMALL
-        c[0, column] = -asked / SMALL
-    after, _ = _cut(model, law, np.zeros(SIZE), SMALL, 0.0)
-    b = (after / SMALL).reshape(SIZE, 1)
-    return linear.state_space(a, b, c, np.zeros((1, 1)), dt)
+        c[0, column] = asked / SMALL
+    return a, c
+
+
+def open_loop(model: AxisModel, law: AxisLaw, dt: float) -> Any:
+    """L(z) from the servo's command to the controller's answer, sign such that 1 + L closes it."""
+    a, c = _columns(model, law, 0.0)
+    after, _ = _sample(model, law, np.zeros(SIZE), 0.0, SMALL)
+    return linear.state_space(a, (after / SMALL).reshape(SIZE, 1), -c, np.zeros((1, 1)), dt)
 
 
 def closed_loop(model: AxisModel, law: AxisLaw) -> Array:
     """The closed loop's transition matrix over a sample: (6, 6)."""
-    a = np.zeros((SIZE, SIZE))
-    for column in range(SIZE):
-        x = np.zeros(SIZE)
-        x[column] = SMALL
-        state = _state(x)
-        rate = rate_asked(law, -state.angle)
-        asked = surface_asked(state, law, rate)
-        after = move(state, model, law, asked, integrate(state, law, rate, asked, asked), 0.0, 0.0)
-        a[:, column] = np.array(after) / SMALL
-    return a
+    return _columns(model, law, None)[0]
 
 
 def closed_response(model: AxisModel, law: AxisLaw, dt: float) -> Any:
     """T(z) from the demanded angle to the angle."""
-    a = closed_loop(model, law)
-    x = np.zeros(SIZE)
-    state = _state(x)
-    rate = rate_asked(law, SMALL)
-    asked = surface_asked(state, law, rate)
-    after = move(state, model, law, asked, integrate(state, law, rate, asked, asked), 0.0, 0.0)
-    b = (np.array(after) / SMALL).reshape(SIZE, 1)
+    after, _ = _sample(model, law, np.zeros(SIZE), SMALL, None)
     c = np.zeros((1, SIZE))
-    c[0, 2] = 1.0
-    return linear.state_space(a, b, c, np.zeros((1, 1)), dt)
+    c[0, AxisState._fields.index("angle")] = 1.0
+    b = (after / SMALL).reshape(SIZE, 1)
+    return linear.state_space(closed_loop(model, law), b, c, np.zeros((1, 1)), dt)

@@ -127,19 +127,9 @@ def trimmed(state: PlaneState, model: PlaneModel) -> PlaneState:
     offset = 0.0 if model.path == PathModel.COORDINATED else state.course
     yaw = AxisState(0.0, 0.0, offset, 0.0, 0.0, 0.0)
     return PlaneState(
-        state.position,
-        state.velocity,
-        state.speed,
-        thrust,
-        0.0,
-        state.pitch,
-        yaw,
-        state.course,
-        state.climb,
-        state.bank,
-        state.bank_rate,
-        state.drift,
-    )
+        state.position, state.velocity, state.speed, thrust, 0.0, state.pitch, yaw, state.course, state.climb,
+        state.bank, state.bank_rate, state.drift,
+    )  # fmt: skip
 
 
 def nose_yaw(state: PlaneState, model: PlaneModel) -> float:

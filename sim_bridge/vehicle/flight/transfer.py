@@ -65,7 +65,7 @@ def check(transfer: AxisTransfer, name: str, keys: tuple[str, str, str, str]) ->
 
 
 def trim(polynomial: Sequence[float]) -> tuple[float, ...]:
-    """Without leading zeros."""
+    """A polynomial without its leading zeros, highest power first."""
     for index, value in enumerate(polynomial):
         if value != 0.0:
             return tuple(polynomial[index:])
@@ -98,25 +98,9 @@ def sampled(transfer: AxisTransfer, dt: float) -> AxisModel:
     system = linear.state_space(wide, np.vstack([b, d]), np.eye(3), np.zeros((3, 3)))
     ad, bd, _, _ = linear.hold(system, dt)
     values = (
-        ad[0, 0],
-        ad[0, 1],
-        ad[1, 0],
-        ad[1, 1],
-        bd[0, 0],
-        bd[1, 0],
-        bd[0, 1],
-        bd[1, 1],
-        bd[0, 2],
-        bd[1, 2],
-        c[0, 0],
-        c[0, 1],
-        d[0, 0],
-        d[0, 1],
-        d[0, 2],
-        ad[2, 0],
-        ad[2, 1],
-        bd[2, 0],
-        bd[2, 1],
-        bd[2, 2],
-    )
+        ad[0, 0], ad[0, 1], ad[1, 0], ad[1, 1],
+        bd[0, 0], bd[1, 0], bd[0, 1], bd[1, 1], bd[0, 2], bd[1, 2],
+        c[0, 0], c[0, 1], d[0, 0], d[0, 1], d[0, 2],
+        ad[2, 0], ad[2, 1], bd[2, 0], bd[2, 1], bd[2, 2],
+    )  # fmt: skip
     return AxisModel(*(float(value) for value in values))

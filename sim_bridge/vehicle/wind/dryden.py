@@ -19,7 +19,7 @@ SLOWEST = 1.0  # [m/s] gusts pass a vehicle at rest this fast
 
 
 class GustState(NamedTuple):
-    """Normalised filter states."""
+    """States of the gust filters of one vehicle, normalised to unit variance."""
 
     u: float
     v1: float
@@ -39,7 +39,7 @@ class GustNoise(NamedTuple):
 
 
 class Scales(NamedTuple):
-    """Turbulence scale lengths [m]."""
+    """Scale lengths of the turbulence [m]."""
 
     horizontal: float  # L_u = L_v
     vertical: float  # L_w

@@ -22,8 +22,8 @@ from sim_bridge.vehicle.wind.shear import ROUGHNESS, mean_wind
 
 TICK = 0.02  # [s] of the gusts' grid
 BLOCK = 256  # ticks of noise drawn at once
-REMIX = 25  # ticks between two looks at the distances
-AIRSPEED = 20.0  # [m/s] reckoned with before a vehicle's first question
+REMIX = 25  # ticks after which the correlation is computed anew from the distances
+FIRST_AIRSPEED = 20.0  # [m/s] at which a vehicle meets gusts until `air` is first told its own
 
 
 def wind_vector(speed: float, from_deg: float) -> Vec:
@@ -55,7 +55,7 @@ class WindField:
         self._mix: NDArray[np.float64] = np.eye(count)
         self._tick = 0
         self._places = [ZERO] * count
-        self._speeds = [AIRSPEED] * count
+        self._speeds = [FIRST_AIRSPEED] * count
         self._states = [GustState(0.0, 0.0, 0.0, 0.0, 0.0)] * count
         self._started = False
 

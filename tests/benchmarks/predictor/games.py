@@ -20,8 +20,8 @@ from onboard.core.game.rules import Control, Rules, Target
 from onboard.core.game.views import sighted
 from onboard.core.math.states import FREE, Vehicle
 from onboard.core.math.vectors import NORTH, ZERO, Vec, along, angle_between, distance, dot, scale, unit
+from onboard.game.plugins import evader_strategy, pursuer_strategy
 from onboard.pilot.predictor import TrackPredictor, Trainer
-from onboard.runtime.plugins import evader_strategy, pursuer_strategy
 
 DT, SECONDS, DELAY, LOST, RATE, SIGMA = 0.05, 40.0, 0.5, 0.3, 10.0, 3.0
 TURN = pi / 3.0  # [rad/s]

@@ -5,17 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import pytest
+from textual.strip import Strip
 
 from gcs.console.app import CONFIRM_S, REFRESH_HZ, Console
 from gcs.console.help import HelpScreen
-from gcs.console.plain_lines import Plain
+from gcs.console.plain_lines import PlainLines
 from gcs.console.source import Key
 from gcs.console.widgets import AlertBoard, Detail, Lines, LogPanel, Plan, Prompt, StatusBar, VehicleTable
-from gcs.picture import journal
+from gcs.picture import station_journal
 from gcs.picture.values import Picture
-from onboard.wire.bus import messages as swarm
-from onboard.wire.bus.messages import Command, CommandKind, CommandReply, Phase
-from tests.support.radio import START_NS, Tower, decision, health, phase, setup, state
+from onboard.wire.bus import messages
+from onboard.wire.bus.messages import Command, CommandKind, CommandReply, CommandState, Phase
+from tests.support.sample_messages import START_NS, Tower, decision, health, phase, setup, state
 
 
 class Desk:
@@ -42,17 +43,17 @@ class Desk:
     def command(self, kind: CommandKind, ids: Iterable[int]) -> str:
         self.given.append((kind.value, tuple(ids)))
         order = Command(f"c{len(self.given)}", kind, "anna", self.tower.now_ns)
-        self.tower.note("sent", journal.SENT.encode(journal.Sent(order, tuple(ids))))
+        self.tower.note(station_journal.SENT, station_journal.Sent(order, tuple(ids)))
         return ""
 
     def acknowledge(self, alert: str) -> None:
-        self.tower.note("acknowledged", journal.ACKNOWLEDGED.encode(journal.Acknowledged(alert, "anna")))
+        self.tower.note(station_journal.ACKNOWLEDGED, station_journal.Acknowledged(alert, "anna"))
 
 
 def desk(count: int = 6, **changes: object) -> Desk:
     """A game of `count` vehicles that runs."""
     tower = Tower()
-    tower.hear(setup(count, pursuer_speed=6.0, **changes), swarm.Master("bridge", START_NS, lease_s=1e3))
+    tower.hear(setup(count, pursuer_speed=6.0, **changes), messages.Master("bridge", START_NS, lease_s=1e3))
     tower.hear(phase(Phase.STAGING))
     tower.fly(1.0, *range(1, count + 1), state_hz=4)
     for i in range(1, count + 1):
@@ -62,8 +63,12 @@ def desk(count: int = 6, **changes: object) -> Desk:
 
 def screen(app: Console) -> str:
     """What is on the terminal, as text."""
-    strips = app.screen._compositor.render_strips()
-    return "\n".join("".join(segment.text for segment in strip) for strip in strips)
+    return "\n".join("".join(segment.text for segment in strip) for strip in strips(app))
+
+
+def strips(app: Console) -> list[Strip]:
+    """The lines of the terminal; Textual gives them away in no public place."""
+    return app.screen._compositor.render_strips()
 
 
 async def test_the_whole_picture_is_on_80_by_24():
@@ -127,8 +132,8 @@ async def test_one_key_aborts_everybody_without_a_question():
         await pilot.pause()
         assert "abort: 0 of 6 confirmed; no answer: 1, 2, 3, 4, 5, 6" in app.query_one(AlertBoard).text
         for i in (1, 2, 4, 5, 6):
-            answer = CommandReply("c1", i, "confirmed", "", "anna", START_NS, "LOITER")
-            source.tower.note("replied", journal.REPLIED.encode(journal.Replied(answer)))
+            answer = CommandReply("c1", i, CommandState.CONFIRMED, "", "anna", START_NS, "LOITER")
+            source.tower.note(station_journal.REPLIED, station_journal.Replied(answer))
         app.refresh_picture()
         assert "abort: 5 of 6 confirmed; no answer: 3" in app.query_one(AlertBoard).text
 
@@ -270,7 +275,7 @@ async def test_alerts_are_shown_with_what_to_do_and_acknowledged():
 async def test_the_log_scrolls():
     source = desk()
     for n in range(1, 60):
-        source.tower.hear(swarm.Event(2, n, START_NS, swarm.Severity.INFO, "note", f"event {n}"))
+        source.tower.hear(messages.Event(2, n, START_NS, messages.Severity.INFO, "note", f"event {n}"))
     app = Console(source)
     async with app.run_test(size=(80, 24)) as pilot:
         await pilot.pause()
@@ -288,7 +293,7 @@ async def test_the_help_names_every_key_and_command_and_is_left_again():
         await pilot.press("question_mark")
         assert isinstance(app.screen, HelpScreen)
         assert "ABORT ALL" in screen(app)
-        text = app.screen._text.plain
+        text = app.screen.text.plain
         for kind in CommandKind:
             assert f"\n  {kind.value} [WHOM]" in text
         for binding in app.BINDINGS:
@@ -338,7 +343,7 @@ async def test_a_source_brings_keys_of_its_own():
         assert app.query_one(Prompt).said == "did faster"
         assert app.view.scale == scale  # the source's keys go before the console's
         await pilot.press("question_mark")
-        assert "pause and go on" in app.screen._text.plain
+        assert "pause and go on" in app.screen.text.plain
 
 
 async def test_two_hundred_vehicles_are_scrolled_through():
@@ -353,7 +358,7 @@ async def test_two_hundred_vehicles_are_scrolled_through():
 
 def coloured(app: Console) -> bool:
     """Whether anything on the terminal has a hue."""
-    for strip in app.screen._compositor.render_strips():
+    for strip in strips(app):
         for segment in strip:
             colour = segment.style.color if segment.style else None
             if colour is not None and len(set(colour.get_truecolor())) > 1:
@@ -416,12 +421,11 @@ async def test_only_lines_that_have_changed_are_drawn_again(monkeypatch):
 async def test_words_from_the_network_cannot_steer_the_terminal():
     source = desk()
     evil = "\x1b[2J\x07calm\nE all is lost"
-    source.tower.hear(swarm.Event(2, 1, START_NS, swarm.Severity.INFO, "note", evil))
+    source.tower.hear(messages.Event(2, 1, START_NS, messages.Severity.INFO, "note", evil))
     source.tower.hear(state(2, source.tower.now_ns, mode="\x1b[31m"))
     app = Console(source)
     async with app.run_test(size=(80, 24)) as pilot:
         await pilot.pause()
-        strips = app.screen._compositor.render_strips()
-        assert all(segment.text.isprintable() for strip in strips for segment in strip)
+        assert all(segment.text.isprintable() for strip in strips(app) for segment in strip)
         assert "·[2J·calm·E all is lost" in screen(app)
-    assert all(line.isprintable() for line in Plain().lines(source.tower.picture))
+    assert all(line.isprintable() for line in PlainLines().lines(source.tower.picture))

@@ -16,12 +16,13 @@ from hypothesis import strategies as st
 from mcap.reader import make_reader
 
 from gcs.recording.reader import Recording
-from gcs.recording.recorder import Recorder, Status, remark_of
+from gcs.recording.recorder import Recorder, RecorderStatus, remark_of
 from onboard.config.strict import ConfigError
 from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus.messages import Severity
-from tests.support.chase import EPOCH_NS, Item, chase
-from tests.support.recordings import CHILD, kill_while_recording, read
+from tests.support.chase_messages import EPOCH_NS, Item, chase
+from tests.support.real_time import patience
+from tests.support.recording_process import CHILD, kill_while_recording, read
 
 
 def recorded(path: Path, items: list[Item], **options: object) -> Recorder:
@@ -257,7 +258,7 @@ def test_a_real_limit_of_the_operating_system_is_no_crash(tmp_path: Path) -> Non
         resource.setrlimit(resource.RLIMIT_FSIZE, (40_000, 40_000))
 
     command = [sys.executable, str(CHILD), str(tmp_path / "flight.mcap"), "20"]
-    done = subprocess.run(command, preexec_fn=limited, capture_output=True, text=True, timeout=60)
+    done = subprocess.run(command, preexec_fn=limited, capture_output=True, text=True, timeout=patience(20.0))
     assert done.returncode == 0, done.stderr
     assert "file too large" in done.stdout.splitlines()[-1]
     recording = Recording(tmp_path / "flight.mcap")
@@ -279,7 +280,7 @@ def test_killed_at_any_moment_the_file_opens_with_at_most_a_second_missing(
 def test_status_is_a_value(tmp_path: Path) -> None:
     recorder = recorded(tmp_path / "f", list(chase(2.0)))
     status = recorder.status()
-    assert isinstance(status, Status)
+    assert isinstance(status, RecorderStatus)
     assert msgspec.json.encode(status)
     assert status.recorded == len(list(chase(2.0)))
     assert status.trouble == ""

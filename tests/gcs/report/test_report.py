@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import hashlib
 import itertools
 import json
 import re
+from base64 import b64encode
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -14,15 +16,20 @@ import numpy as np
 import pytest
 
 from gcs.recording.recorder import Recorder
-from gcs.report.plots import figures
+from gcs.report import theme
+from gcs.report.drawing import svg
+from gcs.report.figures import NAMES, figures
 from gcs.report.program import read_run, write_report
 from onboard.config.strict import ConfigError
-from onboard.wire.bus import messages as swarm
-from onboard.wire.bus import topics
-from tests.support.chase import EPOCH_NS, Item
-from tests.support.runs import flight, make_run, make_tlogs
+from onboard.core.route.choice import TrackRule
+from onboard.core.safety.policy import Action
+from onboard.core.strategy.knowledge import RuleId
+from onboard.game import palette
+from onboard.wire.bus import messages, topics
+from tests.support.chase_messages import EPOCH_NS, Item, chase
+from tests.support.run_folders import flight, make_run, make_tlogs
 
-FIGURES = ["space", "plan", "distances", "rules", "speeds", "heights", "wind", "links", "latencies"]
+FIGURES = ["plan", "space", "distances", "rules", "speeds", "heights", "wind", "links", "latencies"]
 
 
 class Page(HTMLParser):
@@ -93,19 +100,108 @@ def test_the_page_refers_to_nothing_outside_itself(page: Page) -> None:
     policy = next(value for _, name, value in page.attributes if name == "content" and "default-src" in value)
     assert policy.startswith("default-src 'none'")
     assert "http" not in policy
-    own = page.scripts[-1]
-    assert "Plotly.newPlot" in own
+    data, own = page.scripts
     assert not re.search(r"https?:|//[a-z]", own)
+    digest = b64encode(hashlib.sha256(own.encode()).digest()).decode()
+    assert f"script-src 'sha256-{digest}';" in policy, "this one script may run, and no other"
+    assert [figure["name"] for figure in json.loads(data)["figures"]] == FIGURES
+
+
+def test_every_colour_of_a_figure_has_a_twin_for_dark_screens(run: Path, page: Page) -> None:
+    sheet = page.styles[0]
+    light, dark = sheet.split("@media screen", 1)
+    used = set()
+    for drawing in figures(read_run(run)):
+        text = svg(drawing)
+        assert not re.search(r"#[0-9a-f]{3,8}\b|rgb", text.replace('href="#', ""))
+        used |= set(re.findall(r"var\((--c[0-9a-f]{6})\)", text))
+    assert len(used) > 12
+    for name in used:
+        assert f"{name}: #" in light, name
+        assert f"{name}: #" in dark, name
+
+
+def test_the_palette_tells_colours_apart() -> None:
+    colours = palette.every_colour()
+    assert len({colour.light for colour in colours}) == len(colours)
+    assert palette.vehicle(1, evader=True) == palette.EVADER
+    assert [palette.vehicle(i, evader=False) for i in (2, 3, 10)] == [
+        palette.PURSUERS[0], palette.PURSUERS[1], palette.PURSUERS[0],
+    ]  # fmt: skip
+    assert {palette.action(a.name.lower()) for a in Action if a is not Action.PASS} <= set(
+        palette.ACTIONS.values()
+    )
+
+
+@pytest.mark.parametrize("rule", [r for r in (*RuleId, *TrackRule) if r.name not in ("NONE", "CUSTOM")])
+def test_every_rule_has_one_colour_and_a_sentence(rule: RuleId | TrackRule) -> None:
+    name = rule.name.lower()
+    assert name in palette.RULES
+    sentence, source = theme.explained(name)
+    assert sentence.startswith(("When ", "Always: "))
+    assert source not in ("", "plug-in")
+
+
+def test_the_page_explains_the_rules_that_were_in_force(page: Page) -> None:
+    assert "intercept When the evader comes closer and its ray meets the Apollonius sphere" in page.text
+    assert "close in A rule of a strategy that this program does not hold. plug-in" in page.text
+
+
+def test_what_was_played_on_virtual_time_says_so(run: Path, page: Page, tmp_path: Path) -> None:
+    assert "virtual" not in page.text
+    assert "began 2025-10-09 08:53:22 UTC" in page.text
+    folder = make_run(tmp_path / "fast")
+    (folder / "timing.json").write_text('{"virtual_s": 24.0, "wall_s": 2.0}', encoding="utf-8")
+    write_report(folder)
+    found = Page((folder / "report.html").read_text(encoding="utf-8"))
+    assert "played on virtual time" in found.text
+    assert "virtual time since the start of the game [s]" in found.text
+    assert "began" not in found.text
+
+
+def test_equal_links_do_not_hide_each_other(run: Path) -> None:
+    values = read_run(run)
+    (panel,) = next(d for d in figures(values) if d.name == "links").panels
+    lines = {line.get_gid(): line for line in panel.axes.lines}
+    for series in panel.series:
+        vehicle, what = int(series.name.split(":")[0].split()[1]), series.name.split(": ")[1]
+        link = values.links[vehicle]
+        share = link.quality if what == "link" else link.battery
+        told = series.scale * (lines[series.gid].get_ydata() - series.zero)
+        assert told[np.isfinite(told)] == pytest.approx(100 * share)
+        assert abs(series.zero - 0.4 - sorted(values.links).index(vehicle)) < 1e-9, "a row of its own"
+
+
+def test_silence_breaks_a_curve(run: Path) -> None:
+    drawing = next(d for d in figures(read_run(run)) if d.name == "speeds")
+    breaks = {
+        line.get_label(): int(np.isnan(line.get_ydata()).sum())
+        for line in drawing.panels[0].axes.lines if line.get_gid()
+    }  # fmt: skip
+    assert breaks == {"evader 1": 0, "pursuer 2": 1, "pursuer 3": 0}
+
+
+def test_a_legend_of_sixty_vehicles_keeps_five_rows(tmp_path: Path) -> None:
+    values = read_run(make_run(tmp_path / "many", list(chase(3.0, vehicles=60))))
+    for drawing in figures(values):
+        for legend in drawing.figure.legends:
+            told = [text.get_text() for text in legend.get_texts()]
+            assert len(told) <= 5 * legend._ncols
+            if drawing.name == "plan":
+                assert told[-1] == "target"
+                assert any(text.endswith("… 60") for text in told)
 
 
 def test_the_figures_are_pictures_with_something_in_them(run: Path) -> None:
     pictures = sorted(p.name for p in (run / "figures").iterdir())
-    assert pictures == [
-        f"{n}.png" for n in ("distances", "links", "plan", "rules", "space", "speeds", "wind")
-    ]
+    assert pictures == sorted(f"{name}.png" for name in FIGURES)
+    assert sorted(NAMES) == sorted(FIGURES)
     for picture in (run / "figures").iterdir():
         pixels = matplotlib.image.imread(picture)
-        assert pixels.shape[1] == 1170
+        assert pixels.shape[1] == 1800 or picture.name == "plan.png"
+        ink = np.argwhere((pixels[:, :, :3] < 0.98).any(axis=2))
+        share = np.ptp(ink, axis=0) / pixels.shape[:2]
+        assert share.min() > 0.85, f"{picture}: white margins"
         assert len(np.unique(pixels[::3, ::3].reshape(-1, pixels.shape[2]), axis=0)) > 25, picture
 
 
@@ -122,9 +218,7 @@ def test_distances_are_those_that_were_flown(run: Path) -> None:
 def test_rules_are_bands_in_order_without_gaps(run: Path) -> None:
     bands = read_run(run).rules[3]
     assert {band.rule for band in bands} == {"intercept", "close_in"}
-    assert all(
-        a.end == pytest.approx(b.start) and a.rule != b.rule for a, b in itertools.pairwise(bands)
-    )
+    assert all(a.end == pytest.approx(b.start) and a.rule != b.rule for a, b in itertools.pairwise(bands))
     silent = read_run(run).rules[2]
     breaks = [(a.end, b.start) for a, b in itertools.pairwise(silent) if b.start - a.end > 1.0]
     assert breaks == [(pytest.approx(5.9, abs=0.2), pytest.approx(9.0, abs=0.2))], "silence is not a rule"
@@ -145,7 +239,7 @@ def test_without_a_recording_the_logs_and_the_scenario_speak(tmp_path: Path) -> 
     assert any("no such file" in note for note in written.notes)
     assert any("no decisions" in note for note in written.notes)
     values = read_run(folder)
-    assert [figure.name for figure in figures(values)] == ["space", "plan", "distances", "speeds", "heights"]
+    assert [figure.name for figure in figures(values)] == ["plan", "space", "distances", "speeds", "heights"]
     assert values.capture_radius == 5.0
     assert values.target == (400.0, 100.0, -60.0)
     for vehicle, flown in values.flown.items():
@@ -215,16 +309,14 @@ def test_a_folder_with_nothing_to_tell_is_refused_in_one_line(
 
 def test_words_from_the_network_cannot_become_markup(tmp_path: Path) -> None:
     evil = "</script><img src=http://x/y onerror=alert(1)>"
-    event = swarm.Event(2, 1, EPOCH_NS, swarm.Severity.ERROR, evil, evil)
-    report = swarm.DecisionReport(
+    event = messages.Event(2, 1, EPOCH_NS, messages.Severity.ERROR, evil, evil)
+    report = messages.DecisionReport(
         2, EPOCH_NS, 0.0, evil, evil, evil, evil, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0, 0.0
     )
     items = [
         *flight(3.0),
-        Item(topics.key("field", topics.EVENTS, 2), swarm.EVENT.encode(event), EPOCH_NS + 4 * 10**9),
-        Item(
-            topics.key("field", topics.DECISION, 2), swarm.DECISION.encode(report), EPOCH_NS + 4 * 10**9 + 1
-        ),
+        Item(topics.EVENTS.key("field", 2), topics.EVENTS.encode(event), EPOCH_NS + 4 * 10**9),
+        Item(topics.DECISION.key("field", 2), topics.DECISION.encode(report), EPOCH_NS + 4 * 10**9 + 1),
     ]
     folder = make_run(tmp_path / "run", items)
     (folder / "summary.json").write_text(json.dumps({evil: evil}), encoding="utf-8")
@@ -232,14 +324,15 @@ def test_words_from_the_network_cannot_become_markup(tmp_path: Path) -> None:
     found = Page((folder / "report.html").read_text(encoding="utf-8"))
     assert "onerror" in found.text, "it is shown as text"
     assert not [a for a in found.attributes if a[0] == "img"]
-    assert len(found.scripts) == 2 or "".join(found.scripts).count("Plotly.newPlot") == len(FIGURES)
+    assert len(found.scripts) == 2
+    assert evil in json.dumps(json.loads(found.scripts[0]), ensure_ascii=False).replace("_", " ")
 
 
 def test_a_recording_of_states_alone_and_one_of_commands_alone_work(tmp_path: Path) -> None:
     states = [item for item in flight(3.0) if item.key.endswith("/state")]
     values = read_run(make_run(tmp_path / "states", states))
     assert [figure.name for figure in figures(values)] == [
-        "space", "plan", "distances", "speeds", "heights", "wind", "latencies",
+        "plan", "space", "distances", "speeds", "heights", "wind", "latencies",
     ]  # fmt: skip
     journal = [item for item in flight() if "/gcs/" in item.key]
     written = write_report(make_run(tmp_path / "journal", journal))
@@ -248,13 +341,13 @@ def test_a_recording_of_states_alone_and_one_of_commands_alone_work(tmp_path: Pa
 
 def test_a_long_flight_is_thinned(tmp_path: Path) -> None:
     payloads = [item for item in flight(3.0) if item.key.endswith("vehicles/1/state")]
-    state = swarm.STATE.decode(payloads[0].payload, {})  # type: ignore[arg-type]
+    state = topics.STATE.decode(payloads[0].payload, {})  # type: ignore[arg-type]
     assert state is not None
     recorder = Recorder(tmp_path / "recording.mcap", "field")
     for step in range(9000):
         stamp_ns = EPOCH_NS + step * 50_000_000
         later = msgspec.structs.replace(state, stamp_ns=stamp_ns, position=(float(step), 0.0, -50.0))
-        recorder.record(payloads[0].key, swarm.STATE.encode(later), stamp_ns)
+        recorder.record(payloads[0].key, topics.STATE.encode(later), stamp_ns)
     recorder.close()
     flown = read_run(tmp_path).flown[1]
     assert len(flown.t) == 4000

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import itertools
 import os
+import re
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
+import numpy as np
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
-from gcs.report.program import write_report
-from tests.support.runs import make_run
+from gcs.report.program import read_run, write_report
+from tests.support.run_folders import make_run
 
 BROWSERS = ("/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome")
 OPTIONS = (
@@ -23,9 +25,9 @@ OPTIONS = (
     "--disable-component-update",
     "--disable-sync",
 )
-CAMERA = (
-    "JSON.parse(JSON.stringify(document.getElementById('figure-space')._fullLayout.scene._scene.getCamera()))"
-)
+# the places [px] of what matches, in order of the page
+BOXES = "all => all.map(e => e.getBoundingClientRect()).map(b => [b.left, b.top, b.right, b.bottom])"
+PATHS = "all => all.map(e => e.getAttribute('d'))"
 
 
 def browser_path() -> str:
@@ -57,6 +59,19 @@ def tab(browser: Browser) -> Page:
     return browser.new_page(viewport={"width": 1240, "height": 900})
 
 
+def drag(tab: Page, figure: str, start: tuple[float, float], end: tuple[float, float]) -> None:
+    """Press, move and release between two places, given as shares of the figure's width and height."""
+    drawn = tab.locator(f"#figure-{figure} svg")
+    drawn.scroll_into_view_if_needed()
+    box = drawn.bounding_box()
+    assert box is not None
+    first, last = ((box["x"] + x * box["width"], box["y"] + y * box["height"]) for x, y in (start, end))
+    tab.mouse.move(*first)
+    tab.mouse.down()
+    tab.mouse.move(*last, steps=5)
+    tab.mouse.up()
+
+
 @pytest.mark.real
 def test_the_report_opens_without_error_or_request_and_its_3d_view_turns(tab: Page, report: Path) -> None:
     errors: list[str] = []
@@ -65,27 +80,94 @@ def test_the_report_opens_without_error_or_request_and_its_3d_view_turns(tab: Pa
     tab.on("pageerror", lambda error: errors.append(str(error)))
     tab.on("request", lambda request: requests.append(request.url))
     tab.goto(report.as_uri())
-    tab.wait_for_function("document.querySelectorAll('.figure .main-svg').length >= 9", timeout=60_000)
-    tab.wait_for_function(f"{CAMERA}.eye !== undefined", timeout=60_000)
-
+    assert tab.locator(".figure svg").count() == 9
     assert tab.locator("h1").inner_text() == "Evader captured by pursuer 3 after 12.3 s"
-    before: Any = tab.evaluate(CAMERA)
-    box = tab.locator("#figure-space").bounding_box()
-    assert box is not None
-    middle = (box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
-    tab.mouse.move(*middle)
-    tab.mouse.down()
-    tab.mouse.move(middle[0] + 180, middle[1] + 30, steps=8)
-    tab.mouse.up()
-    tab.wait_for_function(f"Math.abs({CAMERA}.eye.x - ({before['eye']['x']})) > 0.1", timeout=30_000)
-    after: Any = tab.evaluate(CAMERA)
 
-    def far(camera: Any) -> float:
-        return float(sum(camera["eye"][axis] ** 2 for axis in "xyz") ** 0.5)
-
-    assert far(after) == pytest.approx(far(before), rel=0.02), "turned, not zoomed"
+    ways = tab.locator("#figure-space [id^='space-pl'] path")
+    before = ways.evaluate_all(PATHS)
+    drag(tab, "space", (0.4, 0.5), (0.6, 0.55))
+    after = ways.evaluate_all(PATHS)
+    assert all(a != b for a, b in zip(before, after, strict=True)), "everything turned"
+    for left, top, right, bottom in ways.evaluate_all(BOXES):
+        frame = tab.locator("#figure-space svg").evaluate_all(BOXES)[0]
+        assert frame[0] <= left <= right <= frame[2], "and is still in view"
+        assert frame[1] <= top <= bottom <= frame[3]
+    tab.locator("#figure-space svg").dblclick()
+    back = ways.evaluate_all(PATHS)
+    for drawn, again in zip(before, back, strict=True):
+        ends = (re.findall(r"-?[\d.]+", drawn)[:2], re.findall(r"-?[\d.]+", again)[:2])
+        assert [float(v) for v in ends[0]] == pytest.approx([float(v) for v in ends[1]], abs=0.02), "the twin"
     assert errors == []
     assert requests == [report.as_uri()]
+
+
+@pytest.mark.real
+def test_the_pointer_asks_what_was_when(tab: Page, report: Path) -> None:
+    tab.goto(report.as_uri())
+    box = tab.locator("#figure-distances svg").bounding_box()
+    assert box is not None
+    tab.locator("#figure-distances svg").hover(position={"x": 0.5 * box["width"], "y": 0.4 * box["height"]})
+    time, *told = tab.locator("#tip").inner_text().split("\n")
+    at = float(time.removesuffix(" s"))
+    gaps = {gap.id: gap for gap in read_run(report.parent).gaps()}
+    assert len(told) == 2
+    for line in told:
+        who, value = line.split(": ")
+        gap = gaps[int(who.split()[1])]
+        truth = float(np.interp(at, gap.t, gap.distance))
+        assert float(value.removesuffix(" m")) == pytest.approx(truth, abs=0.5)
+    assert tab.locator(".cursor").count() == 9, "one line in each row of axes over time"
+    assert tab.locator("#figure-plan circle").count() == 3
+    assert tab.locator("#figure-space circle").count() == 3
+
+
+@pytest.mark.real
+def test_a_part_can_be_enlarged_in_all_figures_over_time_at_once(tab: Page, report: Path) -> None:
+    tab.goto(report.as_uri())
+    drag(tab, "speeds", (0.5, 0.2), (0.6, 0.3))
+    ticks = {
+        name: tab.locator(f"#figure-{name} .ticks text").all_inner_texts() for name in ("speeds", "links")
+    }
+    assert len(ticks["speeds"]) >= 4
+    assert ticks["speeds"] == ticks["links"]
+    assert tab.locator("#figure-plan .ticks").count() == 0, "the plan keeps its own part"
+    drag(tab, "plan", (0.3, 0.3), (0.6, 0.5))
+    assert tab.locator("#figure-plan .ticks text").count() >= 6
+    tab.locator("#figure-speeds svg").dblclick()
+    assert tab.locator("#figure-speeds .ticks, #figure-links .ticks").count() == 0
+    assert tab.locator("#figure-plan .ticks").count() == 1
+
+
+@pytest.mark.real
+@pytest.mark.parametrize("width", [800, 1240])
+def test_no_text_of_a_figure_lies_on_another(browser: Browser, report: Path, width: int) -> None:
+    tab = browser.new_page(viewport={"width": width, "height": 900})
+    tab.goto(report.as_uri())
+    assert tab.evaluate("document.documentElement.scrollWidth <= innerWidth"), "nothing sticks out"
+    for figure in tab.locator(".figure").all():
+        texts = figure.locator("svg text")
+        words, boxes = texts.all_inner_texts(), texts.evaluate_all(BOXES)
+        frame = figure.locator("svg").evaluate_all(BOXES)[0]
+        for (a, first), (b, second) in itertools.combinations(zip(words, boxes, strict=True), 2):
+            wide = min(first[2], second[2]) - max(first[0], second[0])
+            high = min(first[3], second[3]) - max(first[1], second[1])
+            assert wide < 1.0 or high < 3.0, f"{a} and {b}"  # lines of text have room above and below
+        for word, (left, _, right, bottom) in zip(words, boxes, strict=True):
+            assert frame[0] - 1 <= left <= right <= frame[2] + 1, word
+            assert bottom <= frame[3] + 3, word
+
+
+@pytest.mark.real
+def test_who_prefers_the_dark_gets_it_and_paper_stays_white(browser: Browser, report: Path) -> None:
+    tab = browser.new_page(color_scheme="dark")
+    tab.goto(report.as_uri())
+    background = "getComputedStyle(document.body).backgroundColor"
+    ink = "getComputedStyle(document.querySelector('#figure-plan text')).fill"
+    assert tab.evaluate(background) == "rgb(13, 17, 23)"
+    dark = tab.evaluate(ink)
+    tab.emulate_media(media="print")
+    assert tab.evaluate(background) == "rgb(255, 255, 255)"
+    assert tab.evaluate(ink) != dark
 
 
 @pytest.mark.real

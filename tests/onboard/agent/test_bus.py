@@ -15,20 +15,13 @@ from onboard.config.strict import convert
 from onboard.runtime.clock import SkewedClock
 from onboard.runtime.links import memory_pair
 from onboard.runtime.patterns import matches
-from onboard.wire.bus import messages as swarm
-from onboard.wire.bus.messages import Master, Role, Track
-from onboard.wire.bus.topics import DECISION, EVADER_BRIEF, MASTER, SETUP, STATE, TRACK, key
-from tests.support.flights import (
-    EVADER,
-    MATE,
-    PURSUER,
-    chase,
-    flies,
-    game_of,
-    passes,
-    under_way,
-)
-from tests.support.virtual import virtual
+from onboard.wire.autopilot_kind import Kind
+from onboard.wire.bus import messages, topics
+from onboard.wire.bus.messages import AgentStage, Master, Role, Track
+from onboard.wire.bus.topics import DECISION, EVADER_BRIEF, MASTER, SETUP, STATE, TRACK
+from tests.support.small_scenarios import EVADER, MATE, PURSUER, chase
+from tests.support.virtual_time import virtual
+from tests.support.whole_games import flies, game_of, under_way
 
 
 @virtual
@@ -37,19 +30,19 @@ async def test_no_agent_listens_to_an_opponents_state_or_to_the_evaders_brief() 
         asked: dict[int, list[str]] = {}
         await under_way(game, 1.0)
         secrets = {
-            EVADER: [key(game.game, STATE, PURSUER), key(game.game, STATE, MATE)],
-            PURSUER: [key(game.game, STATE, EVADER), key(game.game, EVADER_BRIEF)],
-            MATE: [key(game.game, STATE, EVADER), key(game.game, EVADER_BRIEF)],
+            EVADER: [STATE.key(game.game, PURSUER), STATE.key(game.game, MATE)],
+            PURSUER: [STATE.key(game.game, EVADER), EVADER_BRIEF.key(game.game)],
+            MATE: [STATE.key(game.game, EVADER), EVADER_BRIEF.key(game.game)],
         }
         for id, agent in game.agents.items():
             asked[id] = [listener.pattern for listener in agent.bus.listeners]  # type: ignore[attr-defined]
             assert sorted(asked[id]) == sorted(agent.core.bus.keys())
             for secret in secrets[id]:
                 assert not any(matches(pattern, secret) for pattern in asked[id]), (id, secret)
-                for decision in (key(game.game, DECISION, EVADER), key(game.game, DECISION, PURSUER)):
+                for decision in (DECISION.key(game.game, EVADER), DECISION.key(game.game, PURSUER)):
                     assert not any(matches(pattern, decision) for pattern in asked[id])
-        assert any(matches(p, key(game.game, STATE, MATE)) for p in asked[PURSUER])
-        assert any(matches(p, key(game.game, EVADER_BRIEF)) for p in asked[EVADER])
+        assert any(matches(p, STATE.key(game.game, MATE)) for p in asked[PURSUER])
+        assert any(matches(p, EVADER_BRIEF.key(game.game)) for p in asked[EVADER])
 
 
 @virtual
@@ -65,7 +58,7 @@ async def test_the_setpoint_leaves_before_anything_is_published() -> None:
                 do(effect)
 
             agent._effects[kind] = doing
-        await passes(game, 2.0)
+        await game.forward(2.0)
         steps = " ".join(order).split("Beat")[1:-1]
         assert len(steps) > 30
         for step in steps:  # from the end of one control step to the end of the next
@@ -80,24 +73,25 @@ async def test_an_agent_with_no_game_waits_visibly_and_names_what_it_lacks() -> 
     async with game_of(chase(), agents=False) as game:
         game.bridge.master.step = lambda motions: None  # type: ignore[union-attr,method-assign]
         agent = game.start_agent(PURSUER)
-        await passes(game, 5.0)
+        await game.forward(5.0)
         health = game.health[PURSUER]
-        assert health.stage == "waiting"
+        assert health.stage == AgentStage.WAITING
         assert "a game's setup" in health.lacks
         assert "a master" in health.lacks
-        assert health.autopilot == "ArduCopter"
+        assert health.autopilot is Kind.ARDUCOPTER
         assert not flies(agent)
 
 
 @virtual
 async def test_without_an_autopilot_of_its_own_number_it_says_which_it_hears() -> None:
     async with game_of(chase(), agents=False) as game:
+        game.expects(9, "setup_refused")
         other = Agent(
             AgentConfig(id=9, game=game.game), game.clock, [game.links[EVADER]], game.broker.connect("nine"),
             Equipment(nonce=9, log=lambda line: None),
         )  # fmt: skip
         task = asyncio.create_task(other.run())
-        await passes(game, 3.0)
+        await game.forward(3.0)
         assert any("system 1" in lack for lack in other.core.lacks)
         assert other.core.vehicle.counters()["foreign_system"] > 10
         task.cancel()
@@ -119,7 +113,8 @@ async def test_a_setup_that_contradicts_the_configuration_is_refused_with_the_re
     full = convert({"id": 2, **plain}, AgentConfig, "test")
     given = {k: getattr(full, k) for k in settings}
     async with game_of(chase(), configure={PURSUER: given}) as game:
-        await passes(game, 4.0)
+        game.expects(PURSUER, "setup_refused")
+        await game.forward(4.0)
         assert "setup_refused" in game.kinds(PURSUER)
         assert any(reason in event.text for event in game.events)
         assert any(reason in lack for lack in game.health[PURSUER].lacks)
@@ -147,7 +142,7 @@ async def test_a_clock_off_is_an_alert_and_far_off_not_ready(offset: float, aler
     async with game_of(chase(), agents=False) as game:
         agent = skewed(offset)(game, game.clock)
         task = asyncio.create_task(agent.run())
-        await passes(game, 6.0)
+        await game.forward(6.0)
         assert agent.core.bus.clock.offset_s == pytest.approx(offset, abs=0.02)
         assert ("clock_offset" in agent.core.journal.kinds) == alert
         assert any("a clock that agrees" in lack for lack in agent.core.lacks) != ready
@@ -157,10 +152,11 @@ async def test_a_clock_off_is_an_alert_and_far_off_not_ready(offset: float, aler
 @virtual
 async def test_a_jump_of_the_clock_makes_it_hold_and_say_so() -> None:
     async with game_of(chase()) as game:
+        game.expects(PURSUER, "clock_jump")
         await under_way(game, 3.0)
         agent = game.agents[PURSUER]
         agent.clock = SkewedClock(game.clock, 700_000_000)  # type: ignore[arg-type]
-        await passes(game, 0.3)
+        await game.forward(0.3)
         assert "clock_jump" in game.kinds(PURSUER)
         assert not flies(agent)
 
@@ -168,6 +164,7 @@ async def test_a_jump_of_the_clock_makes_it_hold_and_say_so() -> None:
 @virtual
 async def test_two_agents_with_one_id_are_reported() -> None:
     async with game_of(chase(pursuers=2)) as game:
+        game.expects(PURSUER, "double_id")
         await under_way(game, 1.0)
         near, _ = memory_pair("nowhere")
         twin = Agent(
@@ -175,7 +172,7 @@ async def test_two_agents_with_one_id_are_reported() -> None:
             Equipment(nonce=99, log=lambda line: None),
         )  # fmt: skip
         task = asyncio.create_task(twin.run())
-        await passes(game, 2.0)
+        await game.forward(2.0)
         assert "double_id" in game.kinds(PURSUER)
         assert twin.core.journal.kinds["double_id"] == 1
         task.cancel()
@@ -184,11 +181,13 @@ async def test_two_agents_with_one_id_are_reported() -> None:
 @virtual
 async def test_two_masters_are_reported_and_the_first_ones_clock_counts() -> None:
     async with game_of(chase()) as game:
+        for id in game.scenario.ids:
+            game.expects(id, "two_masters")
         await under_way(game, 1.0)
         for _ in range(8):
             wrong = Master("usurper", game.clock.wall_ns() - 10**10, 2.0, 1 << 48)
-            game.bus.publish(key(game.game, MASTER), swarm.MASTER.encode(wrong), MASTER.delivery)
-            await passes(game, 0.25)
+            game.bus.publish(MASTER.key(game.game), topics.MASTER.encode(wrong), MASTER.delivery)
+            await game.forward(0.25)
         agent = game.agents[PURSUER]
         assert game.kinds(PURSUER).count("two_masters") == 1
         assert abs(agent.core.bus.clock.offset_s) < 0.05
@@ -198,12 +197,14 @@ async def test_two_masters_are_reported_and_the_first_ones_clock_counts() -> Non
 @virtual
 async def test_a_setup_from_another_than_the_master_is_ignored() -> None:
     async with game_of(chase()) as game:
+        for id in game.scenario.ids:
+            game.expects(id, "two_masters")
         await under_way(game, 1.0)
         agent = game.agents[PURSUER]
         assert agent.core.bus.setup is not None
-        other = replace(agent.core.bus.setup, master="usurper", rules=swarm.RulesMessage(99.0, 199.0))
-        game.bus.publish(key(game.game, SETUP), swarm.SETUP.encode(other), SETUP.delivery)
-        await passes(game, 1.0)
+        other = replace(agent.core.bus.setup, master="usurper", rules=messages.RulesMessage(99.0, 199.0))
+        game.bus.publish(SETUP.key(game.game), topics.SETUP.encode(other), SETUP.delivery)
+        await game.forward(1.0)
         assert agent.core.bus.setup.master == "sim-bridge"
         assert "two_masters" in game.kinds(PURSUER)
         assert flies(agent)
@@ -215,10 +216,10 @@ async def test_a_bus_that_dies_and_returns_in_flight() -> None:
         await under_way(game, 3.0)
         agent = game.agents[PURSUER]
         game.broker.kill()
-        await passes(game, 4.0)
+        await game.forward(4.0)
         assert agent.core.lacks.count("the bus") == 1
         game.broker.restore()
-        await passes(game, 3.0)
+        await game.forward(3.0)
         assert game.kinds(PURSUER).count("bus") == 2
         assert flies(agent)
 
@@ -229,7 +230,7 @@ async def test_a_bus_that_comes_after_the_agent() -> None:
         game.broker.kill()
         agent = game.start_agent(PURSUER)
         game.start_agent(EVADER)
-        await passes(game, 3.0)
+        await game.forward(3.0)
         assert "the bus" in agent.core.lacks
         game.broker.restore()
         await under_way(game, 2.0)
@@ -245,11 +246,11 @@ async def test_garbage_on_the_bus_is_counted_by_cause_and_changes_nothing() -> N
         foreign = Track(EVADER, game.clock.wall_ns(), position, position, (1.0,) * 6)  # type: ignore[arg-type]
         nan = Track(EVADER, 0, (float("nan"), 0.0, 0.0), position, (1.0,) * 6)  # type: ignore[arg-type]
         bus = game.bus
-        bus.publish(key(game.game, TRACK, EVADER), b"\xff\x00\x01", TRACK.delivery)
-        bus.publish(key(game.game, TRACK, EVADER), swarm.TRACK.encode(nan), TRACK.delivery)
-        bus.publish(key(game.game, TRACK, MATE), swarm.TRACK.encode(foreign), TRACK.delivery)
-        bus.publish(key(game.game, SETUP), b"\x92\x63\x90", SETUP.delivery)
-        await passes(game, 1.0)
+        bus.publish(TRACK.key(game.game, EVADER), b"\xff\x00\x01", TRACK.delivery)
+        bus.publish(TRACK.key(game.game, EVADER), topics.TRACK.encode(nan), TRACK.delivery)
+        bus.publish(TRACK.key(game.game, MATE), topics.TRACK.encode(foreign), TRACK.delivery)
+        bus.publish(SETUP.key(game.game), b"\x92\x63\x90", SETUP.delivery)
+        await game.forward(1.0)
         assert agent.core.bus.drops["undecodable"] == 1
         assert agent.core.bus.drops["not_finite"] == 1
         assert agent.core.bus.drops["wrong_id"] == 1
@@ -267,7 +268,7 @@ async def test_garbage_on_the_link_is_counted_and_shown_in_health() -> None:
             link.send(b"\x00\x01\x02nothing")
             link.send(bytes([0xFD, 9, 0, 0, 1, 9, 1, 0, 0, 0]) + bytes(11))
             link.send(bytes([0xFD, 9, 0, 0]))
-        await passes(game, 1.0)
+        await game.forward(1.0)
         counters = game.health[PURSUER].counters
         assert counters["garbage_bytes"] >= 10
         assert counters["bad_crc"] >= 1

@@ -11,6 +11,7 @@ from onboard.agent.config import AgentConfig
 from onboard.agent.preflight import Mark, Row, Sight, judge, table
 from onboard.autopilot.base import Telemetry
 from onboard.wire.mavlink.modes import Kind
+from tests.support.real_time import patience
 
 GOOD = Sight(
     now=10.0,
@@ -87,7 +88,7 @@ def test_in_the_field_an_unsigned_link_is_a_warning() -> None:
 def test_alone_on_a_machine_it_fails_with_a_table_and_exit_code_1() -> None:
     command = [sys.executable, "-m", "onboard.cli", "check", "--link", "udpin://127.0.0.1:0",
                "--bus", "tcp/127.0.0.1:1", "--seconds", "0.5"]  # fmt: skip
-    run = subprocess.run(command, capture_output=True, text=True, timeout=30, check=False)
+    run = subprocess.run(command, capture_output=True, text=True, timeout=patience(10.0), check=False)
     assert run.returncode == 1, run.stderr
     assert "FAIL  link" in run.stdout
     assert "FAIL  bus" in run.stdout

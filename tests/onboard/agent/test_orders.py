@@ -4,27 +4,24 @@ from __future__ import annotations
 
 import pytest
 
-from onboard.agent.core.command_book import CommandState, Orders
+from onboard.agent.core.command_book import Orders
 from onboard.autopilot.base import Stage
 from onboard.core.safety.policy import Action
 from onboard.game.scenario import Kind
-from onboard.wire.bus.messages import CommandKind, Phase
-from tests.support.flights import (
-    PURSUER,
+from onboard.wire.bus.messages import AgentStage, CommandKind, CommandState, Phase
+from tests.support.small_scenarios import PURSUER, chase, lossy
+from tests.support.virtual_time import virtual
+from tests.support.whole_games import (
     autopilot,
-    chase,
     choose_mode,
     command,
     flies,
     game_of,
-    lossy,
     mode,
     order,
-    passes,
     speed,
     under_way,
 )
-from tests.support.virtual import virtual
 
 WORDS = {
     Kind.PX4: {"hold": "HOLD", "return": "RTL", "land": "LAND", "abort": "HOLD"},
@@ -42,27 +39,29 @@ async def test_an_order_in_flight_is_pending_then_confirmed_by_the_autopilots_mo
     async with game_of(chase(kind)) as game:
         await under_way(game, 2.0)
         reply = await order(game, PURSUER, command(CommandKind(what)))
-        assert reply.state == "pending"
-        await passes(game, 1.2)
+        assert reply.state == CommandState.PENDING
+        await game.forward(1.2)
         reply = await order(game, PURSUER, command(CommandKind(what)))
-        assert (reply.state, reply.mode, reply.obeyed) == ("confirmed", WORDS[kind][what], "tower")
+        assert (reply.state, reply.mode, reply.obeyed) == (CommandState.CONFIRMED, WORDS[kind][what], "tower")
         assert mode(game, PURSUER) == WORDS[kind][what]
-        assert game.health[PURSUER].stage == "held"
-        await passes(game, 5.0)
+        assert game.health[PURSUER].stage == AgentStage.HELD
+        await game.forward(5.0)
         assert mode(game, PURSUER) == WORDS[kind][what]
 
 
 @virtual
 async def test_an_order_to_land_is_that_for_the_supervisor_too_and_before_the_game_as_well() -> None:
     async with game_of(chase()) as game:
-        assert await game.until(lambda: game.phase is Phase.STAGING and mode(game, PURSUER) == "LOITER", 20.0)
-        await passes(game, 1.0)
+        await game.forward(20.0, until=lambda: mode(game, PURSUER) == "LOITER")
+        await game.forward(1.0)
+        assert game.phase is Phase.STAGING
         await order(game, PURSUER, command(CommandKind.LAND))
-        assert await game.until(lambda: mode(game, PURSUER) == "LAND", 2.0)
+        await game.forward(2.0, until=lambda: mode(game, PURSUER) == "LAND")
         assert "supervisor_land" in game.kinds(PURSUER)
         assert "supervisor_return" not in game.kinds(PURSUER)
-        await passes(game, 1.2)
-        assert (await order(game, PURSUER, command(CommandKind.LAND))).state == "confirmed"
+        await game.forward(1.2)
+        reply = await order(game, PURSUER, command(CommandKind.LAND))
+        assert reply.state is CommandState.CONFIRMED
 
 
 @virtual
@@ -70,11 +69,13 @@ async def test_resume_gives_the_game_back_to_the_agent() -> None:
     async with game_of(chase()) as game:
         await under_way(game, 2.0)
         await order(game, PURSUER, command(CommandKind.HOLD, "c-1"))
-        await passes(game, 3.0)
+        await game.forward(3.0)
         assert speed(game, PURSUER) < 0.5
         await order(game, PURSUER, command(CommandKind.RESUME, "c-2"))
-        await passes(game, 3.0)
-        assert (await order(game, PURSUER, command(CommandKind.RESUME, "c-2"))).state == "confirmed"
+        await game.forward(3.0)
+        assert (
+            await order(game, PURSUER, command(CommandKind.RESUME, "c-2"))
+        ).state == CommandState.CONFIRMED
         assert flies(game.agents[PURSUER])
         assert speed(game, PURSUER) > 3.0
 
@@ -85,8 +86,8 @@ async def test_start_lets_an_agent_fly_that_may_not_take_control_by_itself() -> 
         await under_way(game, 1.0)
         assert not flies(game.agents[PURSUER])
         await order(game, PURSUER, command(CommandKind.START))
-        await passes(game, 2.5)
-        assert (await order(game, PURSUER, command(CommandKind.START))).state == "confirmed"
+        await game.forward(2.5)
+        assert (await order(game, PURSUER, command(CommandKind.START))).state == CommandState.CONFIRMED
         assert flies(game.agents[PURSUER])
 
 
@@ -96,7 +97,7 @@ async def test_a_command_repeated_twenty_times_happens_once() -> None:
         await under_way(game, 2.0)
         for _ in range(20):
             await order(game, PURSUER, command(CommandKind.ABORT))
-            await passes(game, 0.1)
+            await game.forward(0.1)
         assert game.kinds(PURSUER).count("command") == 1
         assert game.kinds(PURSUER).count("command_confirmed") == 1
 
@@ -106,21 +107,22 @@ async def test_at_30_percent_loss_an_abort_reaches_the_autopilot_all_the_same() 
     async with game_of(chase(impairment=lossy(0.3))) as game:
         await under_way(game, 2.0)
         await order(game, PURSUER, command(CommandKind.ABORT))
-        assert await game.until(lambda: mode(game, PURSUER) == "LOITER", 1.5)
+        await game.forward(1.5, until=lambda: mode(game, PURSUER) == "LOITER")
 
 
 @virtual
 async def test_under_a_pilots_hands_an_order_is_refused_with_the_reason() -> None:
     async with game_of(chase()) as game:
+        game.expects(PURSUER, "supervisor_end")
         await under_way(game, 2.0)
         choose_mode(game, PURSUER, "LOITER")
-        await passes(game, 2.0)
+        await game.forward(2.0)
         reply = await order(game, PURSUER, command(CommandKind.RETURN))
-        assert reply.state == "refused"
+        assert reply.state == CommandState.REFUSED
         assert "a pilot flies it" in reply.reason
         assert mode(game, PURSUER) == "LOITER"
         reply = await order(game, PURSUER, command(CommandKind.RESUME, "c-2"))
-        assert await game.until(lambda: flies(game.agents[PURSUER]), 4.0)
+        await game.forward(4.0, until=lambda: flies(game.agents[PURSUER]))
 
 
 @virtual
@@ -130,8 +132,8 @@ async def test_a_later_order_supersedes_an_open_one_and_bytes_that_are_none_are_
         await order(game, PURSUER, command(CommandKind.HOLD, "c-1"))
         await order(game, PURSUER, command(CommandKind.RETURN, "c-2", "other"))
         first = await order(game, PURSUER, command(CommandKind.HOLD, "c-1"))
-        assert (first.state, first.obeyed) == ("superseded", "other")
-        await passes(game, 1.5)
+        assert (first.state, first.obeyed) == (CommandState.SUPERSEDED, "other")
+        await game.forward(1.5)
         assert mode(game, PURSUER) == "RTL"
         agent = game.agents[PURSUER]
         assert b"refused" in agent._request(b"\x00garbage")

@@ -7,6 +7,7 @@ import pytest
 from onboard.agent.config import AgentConfig
 from onboard.agent.core.events import Instant, LinkBytes, LinkFacts, Send, Started
 from onboard.agent.core.machine import AgentCore, Facts
+from onboard.core.math.constants import NS_PER_S
 from onboard.wire.mavlink.tlog import read_tlog
 from tests.support.paths import RECORDINGS
 
@@ -20,8 +21,7 @@ STORIES = [
 def test_kind_modes_and_health_come_out_as_the_story_tells(
     name: str, kind: str, modes: list[str], height: float
 ) -> None:
-    config = AgentConfig(id=1, dry_run=True)
-    core = AgentCore(config, Facts(1, (LinkFacts("recording", stream=False),)))
+    core = AgentCore(AgentConfig(id=1, dry_run=True), Facts(1, (LinkFacts("recording", stream=False),)))
     core.handle(Started(), Instant(0.0, 0))
     seen: list[str] = []
     first: dict[str, float] = {}  # what became good, and when [s]
@@ -30,7 +30,7 @@ def test_kind_modes_and_health_come_out_as_the_story_tells(
     sent = 0
     for entry in read_tlog((RECORDINGS / f"{name}.tlog").read_bytes()):
         start = entry.stamp_ns if start < 0 else start
-        now = Instant((entry.stamp_ns - start) / 1e9, entry.stamp_ns)
+        now = Instant((entry.stamp_ns - start) / NS_PER_S, entry.stamp_ns)
         effects = core.handle(LinkBytes(0, 0, entry.packet.raw), now)
         sent += sum(isinstance(effect, Send) for effect in effects)
         core.vehicle.foreign.clear()

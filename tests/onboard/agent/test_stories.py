@@ -8,25 +8,10 @@ from onboard.agent.core.events import Think
 from onboard.autopilot.base import Stage
 from onboard.game.scenario import Kind
 from onboard.runtime.impairment import CLEAR, CUT
-from onboard.wire.bus.messages import Phase
-from tests.support.flights import (
-    EVADER,
-    MATE,
-    PURSUER,
-    autopilot,
-    chase,
-    choose_mode,
-    fenced,
-    flies,
-    game_of,
-    lossy,
-    mode,
-    passes,
-    place,
-    speed,
-    under_way,
-)
-from tests.support.virtual import virtual
+from onboard.wire.bus.messages import AgentStage, Phase
+from tests.support.small_scenarios import EVADER, MATE, PURSUER, chase, fenced, lossy
+from tests.support.virtual_time import virtual
+from tests.support.whole_games import autopilot, choose_mode, flies, game_of, mode, place, speed, under_way
 
 KINDS = pytest.mark.parametrize("kind", list(Kind), ids=lambda kind: kind.value)
 GUIDED = {Kind.PX4: "OFFBOARD", Kind.ARDUCOPTER: "GUIDED", Kind.ARDUPLANE: "GUIDED"}
@@ -37,15 +22,16 @@ HOLD = {Kind.PX4: "HOLD", Kind.ARDUCOPTER: "LOITER", Kind.ARDUPLANE: "LOITER"}
 @virtual
 async def test_from_staging_to_the_end_each_kind_of_vehicle_plays_its_part(kind: Kind) -> None:
     async with game_of(chase(kind)) as game:
+        game.expects_abort()
         await under_way(game, 6.0)
         assert all(flies(agent) for agent in game.agents.values())
         assert mode(game, PURSUER) == GUIDED[kind]
         fast = 50.0 if kind is Kind.ARDUPLANE else 5.0
         assert speed(game, EVADER) == pytest.approx(fast, rel=0.05)
         game.bridge.master.abort("the day is over")  # type: ignore[union-attr]
-        assert await game.until(lambda: mode(game, PURSUER) == HOLD[kind], 3.0)
-        await passes(game, 1.0)
-        assert game.health[PURSUER].stage == "ended"
+        await game.forward(3.0, until=lambda: mode(game, PURSUER) == HOLD[kind])
+        await game.forward(1.0)
+        assert game.health[PURSUER].stage == AgentStage.ENDED
         for expected in ("started", "autopilot", "setup", "control", "phase", "released"):
             assert expected in game.kinds(PURSUER)
 
@@ -63,34 +49,37 @@ async def test_at_30_percent_loss_both_ways_the_chase_goes_on() -> None:
 @virtual
 async def test_a_link_cut_for_three_seconds_and_back(kind: Kind) -> None:
     async with game_of(chase(kind)) as game:
+        game.expects(PURSUER, "supervisor_end")
         await under_way(game)
         game.impair(PURSUER, CUT)
-        await passes(game, 3.0)
+        await game.forward(3.0)
         assert not flies(game.agents[PURSUER])
         assert "supervisor_hold" in game.kinds(PURSUER)
         game.impair(PURSUER, CLEAR)
-        assert await game.until(lambda: flies(game.agents[PURSUER]), 6.0)
-        assert await game.until(lambda: mode(game, PURSUER) == GUIDED[kind], 3.0)
+        await game.forward(6.0, until=lambda: flies(game.agents[PURSUER]))
+        await game.forward(3.0, until=lambda: mode(game, PURSUER) == GUIDED[kind])
         assert flies(game.agents[EVADER])
 
 
 @virtual
 async def test_an_autopilot_that_starts_again_in_flight_is_noticed_and_flown_again() -> None:
     async with game_of(chase()) as game:
+        game.expects(PURSUER, "reboot", "supervisor_end")
         await under_way(game)
         autopilot(game, PURSUER).reboot(game.bridge.world.elapsed_ns)
-        assert await game.until(lambda: "reboot" in game.kinds(PURSUER), 10.0)
-        assert await game.until(lambda: flies(game.agents[PURSUER]), 40.0), game.told[-8:]
+        await game.forward(10.0, until=lambda: "reboot" in game.kinds(PURSUER))
+        await game.forward(40.0, until=lambda: flies(game.agents[PURSUER]))
 
 
 @virtual
 async def test_a_killed_agent_started_again_waits_for_the_masters_resume() -> None:
     async with game_of(chase()) as game:
+        game.expects(PURSUER, "supervisor_end")
         await under_way(game)
         game.kill_agent(PURSUER)
-        await passes(game, 2.0)
+        await game.forward(2.0)
         agent = game.start_agent(PURSUER)
-        assert await game.until(lambda: flies(agent), 8.0), game.told[-8:]
+        await game.forward(8.0, until=lambda: flies(agent))
         story = [kind for kind in game.kinds(PURSUER) if kind in ("started", "resumed", "supervisor_clip")]
         again = story[story.index("started", 1) :]
         assert again[:2] == ["started", "resumed"]
@@ -101,13 +90,13 @@ async def test_without_the_masters_resume_an_agent_that_comes_late_does_not_fly(
     async with game_of(chase()) as game:
         await under_way(game)
         game.kill_agent(PURSUER)
-        await passes(game, 2.0)
+        await game.forward(2.0)
         game.bridge.master.rules.heard_health = lambda health, now: None  # type: ignore[union-attr,method-assign]
         agent = game.start_agent(PURSUER)
-        await passes(game, 5.0)
+        await game.forward(5.0)
         assert not flies(agent)
         assert "the master's resume" in agent.core.lacks
-        assert game.health[PURSUER].stage == "waiting"
+        assert game.health[PURSUER].stage == AgentStage.WAITING
         assert "late" in game.kinds(PURSUER)
 
 
@@ -115,20 +104,20 @@ async def test_without_the_masters_resume_an_agent_that_comes_late_does_not_fly(
 @virtual
 async def test_when_a_pilot_changes_the_mode_the_agent_stops_at_once_and_says_so(kind: Kind) -> None:
     async with game_of(chase(kind)) as game:
+        game.expects(PURSUER, "supervisor_end")
         await under_way(game)
         agent = game.agents[PURSUER]
         choose_mode(game, PURSUER, "POSCTL" if kind is Kind.PX4 else HOLD[kind])
-        heard = await game.until(lambda: agent.core.vehicle.stage is Stage.TAKEN, 1.5)
-        assert heard
+        await game.forward(1.5, until=lambda: agent.core.vehicle.stage is Stage.TAKEN)
         sent = agent.core.vehicle.sent_at
-        await passes(game, 10.0)
+        await game.forward(10.0)
         assert agent.core.vehicle.sent_at == sent
         assert mode(game, PURSUER) != GUIDED[kind]
-        assert game.health[PURSUER].stage == "handed_over"
+        assert game.health[PURSUER].stage == AgentStage.HANDED_OVER
         assert {"take_over", "supervisor_end"} <= set(game.kinds(PURSUER))
         if kind is not Kind.PX4:  # a PX4 pilot cannot choose OFFBOARD without a stream of setpoints
             choose_mode(game, PURSUER, GUIDED[kind])
-            assert await game.until(lambda: flies(agent), 5.0)
+            await game.forward(5.0, until=lambda: flies(agent))
             assert "handed_back" in game.kinds(PURSUER)
 
 
@@ -137,7 +126,7 @@ async def test_the_evader_turns_before_the_fence_whatever_its_target() -> None:
     async with game_of(chase(fence=fenced())) as game:
         await under_way(game, 1.0)
         for _ in range(90):
-            await passes(game, 0.5)
+            await game.forward(0.5)
             assert place(game, EVADER).x < 150.0
             if game.phase is not Phase.RUNNING:
                 break
@@ -154,12 +143,13 @@ async def test_without_leave_to_take_control_the_agent_waits_for_a_pilot() -> No
         assert agent.core.vehicle.stage is Stage.IDLE
         assert mode(game, PURSUER) == "LOITER"
         choose_mode(game, PURSUER, "GUIDED")
-        assert await game.until(lambda: flies(agent), 3.0)
+        await game.forward(3.0, until=lambda: flies(agent))
 
 
 @virtual
 async def test_a_dry_run_decides_and_publishes_but_sends_nothing() -> None:
     async with game_of(chase(), configure={PURSUER: {"dry_run": True}}) as game:
+        game.expects(PURSUER, "mode_unconfirmed")
         sent: list[bytes] = []
         vehicle = game.bridge.world.vehicles[PURSUER]
         receive = vehicle.autopilot.receive
@@ -174,23 +164,26 @@ async def test_a_dry_run_decides_and_publishes_but_sends_nothing() -> None:
 @virtual
 async def test_a_battery_that_is_low_while_the_vehicle_waits_under_control_sends_it_home() -> None:
     async with game_of(chase()) as game:
-        assert await game.until(lambda: mode(game, PURSUER) == "GUIDED" and game.phase is Phase.READY, 30.0)
+        await game.forward(
+            30.0, until=lambda: mode(game, PURSUER) == "GUIDED" and game.phase is Phase.READY
+        )
         autopilot(game, PURSUER).set_battery(0.1)
-        assert await game.until(lambda: mode(game, PURSUER) == "RTL", 4.0)
+        await game.forward(4.0, until=lambda: mode(game, PURSUER) == "RTL")
         assert "supervisor_return" in game.kinds(PURSUER)
 
 
 @virtual
 async def test_a_strategy_that_never_answers_ends_the_stream() -> None:
     async with game_of(chase()) as game:
+        game.expects(PURSUER, "strategy", "supervisor_end")
         await under_way(game, 3.0)
         agent = game.agents[PURSUER]
         agent._effects[Think] = lambda effect: None
         begun = agent.now
-        assert await game.until(lambda: not flies(agent), 1.0)
+        await game.forward(1.0, until=lambda: not flies(agent))
         assert agent.core.vehicle.sent_at - begun <= 0.3
         assert "supervisor_end" in game.kinds(PURSUER)
-        await passes(game, 5.0)
+        await game.forward(5.0)
         assert speed(game, PURSUER) < 0.3
 
 

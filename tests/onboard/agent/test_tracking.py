@@ -6,15 +6,16 @@ import asyncio
 
 import pytest
 
-from onboard.agent.config import AgentConfig, check
+from onboard.agent.config import AgentConfig, load
 from onboard.agent.shell import Agent, Equipment
 from onboard.config.strict import ConfigError
 from onboard.core.math.vectors import Vec, distance
 from onboard.game.route_file import load_route
 from onboard.game.scenario import Kind
 from onboard.wire.bus.messages import Role
-from tests.support.flights import EVADER, chase, choose_mode, flies, game_of, mode, passes, place
-from tests.support.virtual import virtual
+from tests.support.small_scenarios import EVADER, chase
+from tests.support.virtual_time import virtual
+from tests.support.whole_games import choose_mode, flies, game_of, mode, place
 
 ROUTE = """
 name = "round"
@@ -41,21 +42,19 @@ async def test_a_route_is_flown_in_time_and_the_vehicle_holds_at_its_end(
     file = tmp_path_factory.mktemp("route") / "route.toml"
     file.write_text(text, encoding="utf-8")
     async with game_of(chase(kind), agents=False) as game:
-        config = AgentConfig(
-            id=EVADER, role=Role.TRACKER, route=str(file), take_control=True, game=game.game
-        )
+        config = AgentConfig(id=EVADER, role=Role.TRACKER, route=str(file), take_control=True, game=game.game)
         equipment = Equipment(nonce=3, log=lambda line: None, route=load_route(file))
         agent = Agent(config, game.clock, [game.links[EVADER]], game.broker.connect("t"), equipment)
         task = asyncio.create_task(agent.run())
         scale = 1.0 if kind is Kind.ARDUCOPTER else 10.0
-        assert await game.until(lambda: flies(agent), 5.0), agent.core.lacks
-        assert await game.until(lambda: "waypoint" in agent.core.journal.kinds, 40.0)
+        await game.forward(5.0, until=lambda: flies(agent))
+        await game.forward(40.0, until=lambda: "waypoint" in agent.core.journal.kinds)
         assert distance(place(game, EVADER), Vec(120.0 * scale, 0.0, -120.0)) < near
         assert agent.core.flight.decision is not None
         assert agent.core.flight.decision.level == "tactical"
-        assert await game.until(lambda: agent.core.part.state(0).over, 45.0)
+        await game.forward(45.0, until=lambda: agent.core.part.state(0).over)
         assert distance(place(game, EVADER), Vec(120.0 * scale, 120.0 * scale, -120.0)) < near
-        assert await game.until(lambda: mode(game, EVADER) == "LOITER", 3.0)
+        await game.forward(3.0, until=lambda: mode(game, EVADER) == "LOITER")
         task.cancel()
 
 
@@ -66,21 +65,22 @@ async def test_a_pilot_takes_the_tracker_over_and_gives_it_back(
     file = tmp_path_factory.mktemp("route") / "route.toml"
     file.write_text(COPTER, encoding="utf-8")
     async with game_of(chase(), agents=False) as game:
+        game.expects(EVADER, "supervisor_end")
         config = AgentConfig(
             id=EVADER, role=Role.TRACKER, route=str(file), take_control=True, game=game.game
         )
         equipment = Equipment(nonce=3, log=lambda line: None, route=load_route(file))
         agent = Agent(config, game.clock, [game.links[EVADER]], game.broker.connect("t"), equipment)
         task = asyncio.create_task(agent.run())
-        assert await game.until(lambda: flies(agent), 5.0)
+        await game.forward(5.0, until=lambda: flies(agent))
         choose_mode(game, EVADER, "LOITER")
-        await passes(game, 3.0)
+        await game.forward(3.0)
         assert not flies(agent)
         choose_mode(game, EVADER, "GUIDED")
-        assert await game.until(lambda: flies(agent), 5.0)
+        await game.forward(5.0, until=lambda: flies(agent))
         task.cancel()
 
 
 def test_a_tracker_without_a_route_is_refused() -> None:
     with pytest.raises(ConfigError, match="route: found none, expected a tracker's route file"):
-        check(AgentConfig(role=Role.TRACKER), "options")
+        load(None, {"role": "tracker"})

@@ -10,8 +10,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from onboard.autopilot.arduplane import ArduPlaneAdapter, bank_for
+from onboard.autopilot.arduplane import ArduPlaneEncoder, bank_for
 from onboard.autopilot.base import Envelope, ReleaseMode, Setpoint, Stage
+from onboard.autopilot.guided import GuidedAdapter
 from onboard.core.math.angles import wrap
 from onboard.core.math.vectors import ZERO, Vec, direction, norm, scale
 from onboard.wire.mavlink.commands import CommandInt, CommandLong, RollTarget, Target
@@ -21,8 +22,12 @@ from tests.onboard.autopilot.scripted import DT, Plane, Scripted
 ENVELOPE = Envelope(speed_min=14.0, speed_max=28.0, climb_max=4.0, sink_max=4.0, bank_max=radians(45))
 
 
-def plane(wind: Vec = ZERO, **options: bool) -> Plane:
-    return Plane(ArduPlaneAdapter(Target(1), ENVELOPE, **options), wind)
+def adapter(*, plain: bool = False) -> GuidedAdapter:
+    return GuidedAdapter(Target(1), ArduPlaneEncoder(Target(1), ENVELOPE, plain=plain))
+
+
+def plane(wind: Vec = ZERO, *, plain: bool = False) -> Plane:
+    return Plane(adapter(plain=plain), wind)
 
 
 def fly(play: Plane, seconds: float, wanted: Vec | Callable[[float], Vec]) -> list[tuple[Vec, Vec]]:
@@ -182,7 +187,7 @@ def test_a_setpoint_that_is_no_number_is_not_sent() -> None:
 
 
 def test_entering_takes_the_mode_and_waits_for_the_heartbeat() -> None:
-    play = Scripted(Kind.ARDUPLANE, ArduPlaneAdapter(Target(1), ENVELOPE), "AUTO")
+    play = Scripted(Kind.ARDUPLANE, adapter(), "AUTO")
     play.adapter.enter(play.now)
     sent = play.fly(1.0, Setpoint(Vec(22.0, 0.0, 0.0)))
     assert sent[0].command == 176

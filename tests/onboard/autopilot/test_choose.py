@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from math import radians
-
 import pytest
 
-from onboard.autopilot.base import Envelope, Refusal
-from onboard.autopilot.choose import adapter_for
-from onboard.autopilot.parameters import envelope_from, findings, gcs_failsafe
+from onboard.autopilot.base import Refusal
+from onboard.autopilot.choose import AdapterOptions, adapter_for
+from onboard.autopilot.parameters import findings, gcs_failsafe
 from onboard.wire.mavlink.commands import Target
 from onboard.wire.mavlink.dialect import dialect
 from onboard.wire.mavlink.modes import Kind
@@ -58,7 +56,7 @@ def test_each_autopilot_gets_its_own(
 def test_what_cannot_be_flown_is_refused_with_the_reason(
     autopilot: int, vehicle: int, scheme: str, reason: str
 ) -> None:
-    refusal = adapter_for(heartbeat(autopilot, vehicle), Target(2), scheme=scheme)
+    refusal = adapter_for(heartbeat(autopilot, vehicle), Target(2), AdapterOptions(scheme))
     assert isinstance(refusal, Refusal)
     assert reason in refusal.reason
 
@@ -76,13 +74,27 @@ def test_the_plain_variant_needs_a_failsafe_that_watches_the_agent(
     change: dict[str, float | None], reason: str
 ) -> None:
     plane = heartbeat(3, 1)
-    good = adapter_for(plane, Target(2), scheme="arduplane-plain", parameters=WATCHED)
+    good = adapter_for(plane, Target(2), AdapterOptions("arduplane-plain"), WATCHED)
     assert not isinstance(good, Refusal)
     assert good.name == "arduplane-plain"
     parameters = {k: v for k, v in {**WATCHED, **change}.items() if v is not None}
-    refusal = adapter_for(plane, Target(2), scheme="arduplane-plain", parameters=parameters)
+    refusal = adapter_for(plane, Target(2), AdapterOptions("arduplane-plain"), parameters)
     assert isinstance(refusal, Refusal)
     assert reason in refusal.reason
+
+
+@pytest.mark.parametrize(
+    ("hold_mode", "autopilot", "flown"),
+    [("BRAKE", 3, True), ("BREAK", 3, False), ("GUIDED", 3, False), ("BRAKE", 12, False), ("HOLD", 12, True)],
+)
+def test_a_mode_to_hold_in_that_the_autopilot_does_not_have_is_refused(
+    hold_mode: str, autopilot: int, flown: bool
+) -> None:
+    found = adapter_for(heartbeat(autopilot, 2), Target(2), AdapterOptions(hold_mode=hold_mode))
+    assert isinstance(found, Refusal) != flown
+    if isinstance(found, Refusal):
+        assert f"hold_mode '{hold_mode}' is no mode" in found.reason
+        assert "expected one of" in found.reason
 
 
 def test_parameters_that_defeat_a_failsafe_are_found() -> None:
@@ -95,15 +107,3 @@ def test_parameters_that_defeat_a_failsafe_are_found() -> None:
         "COM_OBL_RC_ACT",
     ]
     assert findings(Kind.PX4_MULTICOPTER, {"COM_OF_LOSS_T": 1.0, "GF_ACTION": 2.0}, 2) == ()
-
-
-def test_the_envelope_is_the_tighter_of_what_is_declared_and_what_the_autopilot_does() -> None:
-    declared = Envelope(speed_min=10.0, speed_max=50.0, bank_max=radians(60))
-    plane = {"AIRSPEED_MIN": 9.0, "AIRSPEED_MAX": 22.0, "ROLL_LIMIT_DEG": 45.0, "TECS_CLMB_MAX": 5.0}
-    envelope = envelope_from(Kind.ARDUPLANE, plane, declared)
-    assert (envelope.speed_min, envelope.speed_max) == (10.0, 22.0)
-    assert envelope.bank_max == pytest.approx(radians(45))
-    assert envelope.climb_max == 3.0
-    older = envelope_from(Kind.ARDUPLANE, {"LIM_ROLL_CD": 4500.0}, declared)
-    assert older.bank_max == pytest.approx(radians(45))
-    assert envelope_from(Kind.ARDUCOPTER, {}, declared) == declared

@@ -10,12 +10,13 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+import psutil
 import pytest
 
 from onboard.autopilot.base import Envelope, Note, ReleaseMode, Setpoint, Stage, Telemetry
-from onboard.autopilot.mavsdk import LINE, RELEASE, SETPOINT, MavsdkAdapter
+from onboard.autopilot.mavsdk import LINE, RELEASE, SETPOINT, MavsdkAdapter, MavsdkEncoder
 from onboard.autopilot.mavsdk_child import Feeder
-from onboard.core.math.vectors import ZERO, Vec
+from onboard.core.math.vectors import Vec
 from onboard.game.scenario import Kind as Spec
 from onboard.game.scenario import VehicleSpec
 from onboard.wire.geodesy import Frame
@@ -24,6 +25,7 @@ from onboard.wire.mavlink.modes import Kind, mode_name
 from sim_bridge.vehicle.autopilot.make import autopilot_for
 from sim_bridge.vehicle.flight.kinematic import kinematic, start_motion
 from sim_bridge.vehicle.motion import CALM
+from tests.support.real_time import patience
 
 pytest.importorskip("mavsdk")
 
@@ -89,7 +91,8 @@ class Pilot:
 
     def __init__(self, vehicle: Vehicle) -> None:
         self.vehicle = vehicle
-        self.adapter = MavsdkAdapter(Kind.PX4_MULTICOPTER, Target(1), Envelope(), vehicle.url)
+        encoder = MavsdkEncoder(Kind.PX4_MULTICOPTER, Target(1), Envelope())
+        self.adapter = MavsdkAdapter(Target(1), encoder, vehicle.url)
         self.notes: list[Note] = []
 
     async def fly(self, seconds: float, velocity: Vec | None, until: Stage | None = None) -> None:
@@ -115,26 +118,38 @@ def flight() -> Iterator[Pilot]:
 
 
 async def in_flight(pilot: Pilot) -> None:
-    pilot.adapter.enter(time.monotonic())
-    await pilot.fly(30.0, ZERO, until=Stage.ACTIVE)
-    assert pilot.vehicle.mode == "OFFBOARD", pilot.notes
-    await pilot.fly(2.0, Vec(0.0, 4.0, 0.0))
-    assert pilot.vehicle.airframe.motion.velocity.y == pytest.approx(4.0, abs=0.5)
+    """Fly offboard at 4 m/s; once more where this parent, on a busy machine, was 200 ms late."""
+    end = time.monotonic() + patience(30.0)
+    while abs(pilot.vehicle.airframe.motion.velocity.y - 4.0) > 0.5 or pilot.vehicle.mode != "OFFBOARD":
+        assert time.monotonic() < end, pilot.notes
+        if pilot.adapter.stage not in (Stage.ENTERING, Stage.ACTIVE):
+            pilot.adapter.enter(time.monotonic())
+        await pilot.fly(0.2, Vec(0.0, 4.0, 0.0))
+
+
+async def silent(pilot: Pilot) -> None:
+    """Wait until the vehicle has had no target for two seconds, though setpoints are still at hand."""
+    end = time.monotonic() + patience(3.0)
+    while time.monotonic() - max(pilot.vehicle.targets) < 2.0:
+        assert time.monotonic() < end, "the targets did not cease"
+        await pilot.fly(0.2, Vec(0.0, 4.0, 0.0))
+
+
+def running(pid: int | None) -> bool:
+    """Whether a child process has not exited."""
+    return pid is not None and psutil.Process(pid).status() != psutil.STATUS_ZOMBIE
 
 
 @pytest.mark.real
 async def test_a_blocked_parent_ends_offboard_and_the_child(flight: Pilot) -> None:
-    """Promise: 200 ms. Asserted with three times that, and the time of the mode change."""
+    """Promised within 200 ms."""
     await in_flight(flight)
-    courier = flight.adapter._courier
-    assert courier is not None
+    before = flight.adapter.child
     blocked = time.monotonic()
-    time.sleep(3.0)  # noqa: ASYNC251  the parent's loop is blocked: that is the point
-    assert not courier.alive()
-    assert flight.vehicle.mode == "HOLD"
-    assert max(flight.vehicle.targets) - blocked < 0.6
-    left = next(at for at, mode in flight.vehicle.modes if mode == "HOLD" and at > blocked)
-    assert left - blocked < 1.5
+    while flight.vehicle.mode != "HOLD" or running(before):
+        assert time.monotonic() < blocked + patience(3.0)
+        time.sleep(0.1)  # noqa: ASYNC251  the parent's loop is blocked: that is the point
+    assert max(flight.vehicle.targets) - blocked < patience(0.2)
     await flight.fly(0.3, Vec(0.0, 4.0, 0.0))
     assert "mavsdk_ended" in [note.kind for note in flight.notes]
     assert flight.adapter.stage is Stage.IDLE
@@ -144,13 +159,11 @@ async def test_a_blocked_parent_ends_offboard_and_the_child(flight: Pilot) -> No
 async def test_hold_and_return_through_mavsdk(flight: Pilot) -> None:
     await in_flight(flight)
     flight.adapter.leave(time.monotonic(), ReleaseMode.HOLD)
-    await flight.fly(5.0, Vec(0.0, 4.0, 0.0), until=Stage.LEFT)
+    await flight.fly(patience(5.0), Vec(0.0, 4.0, 0.0), until=Stage.LEFT)
     assert flight.vehicle.mode == "HOLD"
-    last = time.monotonic()
-    await flight.fly(0.5, Vec(0.0, 4.0, 0.0))
-    assert max(flight.vehicle.targets) < last + 0.3
+    await silent(flight)
     flight.adapter.leave(time.monotonic(), ReleaseMode.RETURN)
-    await flight.fly(5.0, None, until=Stage.LEFT)
+    await flight.fly(patience(5.0), None, until=Stage.LEFT)
     assert flight.vehicle.mode == "RTL"
 
 
@@ -158,10 +171,10 @@ async def test_hold_and_return_through_mavsdk(flight: Pilot) -> None:
 async def test_a_pilot_takes_over_and_mavsdk_does_not_take_it_back(flight: Pilot) -> None:
     await in_flight(flight)
     flight.vehicle.autopilot.pilot_mode(time.monotonic_ns(), "POSCTL")
-    await flight.fly(3.0, Vec(0.0, 4.0, 0.0))
+    await flight.fly(patience(3.0), Vec(0.0, 4.0, 0.0), until=Stage.TAKEN)
+    await silent(flight)
     assert flight.adapter.stage is Stage.TAKEN
     assert flight.vehicle.mode == "POSCTL"
-    assert max(flight.vehicle.targets) < time.monotonic() - 2.0
 
 
 def test_what_waited_in_the_pipe_is_no_sign_of_life() -> None:

@@ -11,8 +11,8 @@ import pytest
 
 from onboard.autopilot import health
 from onboard.autopilot.base import Envelope, Note, Refusal, ReleaseMode, Setpoint, Stage
-from onboard.autopilot.choose import adapter_for
-from onboard.autopilot.stream_rates import Asking
+from onboard.autopilot.choose import AdapterOptions, adapter_for
+from onboard.autopilot.stream_rates import StreamRates
 from onboard.autopilot.telemetry_state import Observer
 from onboard.autopilot.timesync import TimesyncEstimator
 from onboard.core.math.angles import wrap
@@ -24,7 +24,7 @@ from onboard.wire.mavlink.commands import Outgoing, SetpointMessage, Target
 from onboard.wire.mavlink.frames import Framer, Sender
 from onboard.wire.mavlink.modes import Kind as Autopilot
 from onboard.wire.mavlink.values import CommandAck, Heartbeat, Timesync
-from tests.support.flown import ORIGIN, Flown
+from tests.support.flown_autopilot import ORIGIN, FlownAutopilot
 
 KINDS = pytest.mark.parametrize("kind", list(Kind), ids=lambda kind: kind.value)
 HOLD = {Kind.PX4: "HOLD", Kind.ARDUCOPTER: "LOITER", Kind.ARDUPLANE: "LOITER"}
@@ -47,7 +47,7 @@ class Flight:
         scheme: str = "auto",
         parameters: dict[str, float] | None = None,
     ) -> None:
-        self.flown = Flown(kind, wind=wind, parameters=parameters or {})
+        self.flown = FlownAutopilot(kind, wind=wind, parameters=parameters or {})
         self.loss = loss
         self.rng = np.random.default_rng(seed)
         self.wind = wind if kind == Kind.ARDUPLANE else ZERO
@@ -60,19 +60,20 @@ class Flight:
         self.path: list[tuple[Vec, Vec]] = []  # (wanted over ground, flown)
         self.seen = 0
         while self.observer.snapshot().mode == "":
-            self.flown.fly(0.05)
+            self.flown.forward(0.05)
             self._hear()
         heart = self.observer.snapshot()
         chosen = adapter_for(
             Heartbeat(heart.kind, 0, 0, 0, heart.mode, heart.armed, 4),
             Target(1),
-            scheme=scheme,
-            parameters=parameters,
-            envelope=PLANE_ENVELOPE if kind == Kind.ARDUPLANE else Envelope(acceleration=0.0),
+            AdapterOptions(
+                scheme, envelope=PLANE_ENVELOPE if kind == Kind.ARDUPLANE else Envelope(acceleration=0.0)
+            ),
+            parameters or {},
         )
         assert not isinstance(chosen, Refusal)
         self.adapter = chosen
-        self.asking = Asking(heart.kind, Target(1))
+        self.asking = StreamRates(heart.kind, Target(1))
         self._asked_at = -1.0
         self._counts: dict[str, int] = {}
 
@@ -80,10 +81,10 @@ class Flight:
     def now(self) -> float:
         return self.flown.now_ns / NS_PER_S
 
-    def fly(self, seconds: float, wanted: Vec | Callable[[float], Vec] | None) -> None:
+    def forward(self, seconds: float, wanted: Vec | Callable[[float], Vec] | None) -> None:
         """Let time pass in steps of 50 ms; `wanted` is relative to the air."""
         for _ in range(round(seconds / 0.05)):
-            self.flown.fly(0.05)
+            self.flown.forward(0.05)
             self._hear()
             velocity = wanted(self.now) if callable(wanted) else wanted
             setpoint = None if velocity is None else Setpoint(velocity, self.wind)
@@ -138,21 +139,21 @@ def level(kind: Kind) -> Vec:
 @pytest.mark.parametrize("loss", [0.0, 0.3])
 def test_it_enters_follows_and_leaves(kind: Kind, loss: float) -> None:
     flight = Flight(kind, loss)
-    flight.fly(3.0, None)
+    flight.forward(3.0, None)
     flight.adapter.enter(flight.now)
-    flight.fly(8.0, level(kind))
+    flight.forward(8.0, level(kind))
     assert flight.adapter.stage is Stage.ACTIVE
     assert flight.flown.mode == GUIDED[kind]
-    flight.fly(15.0, level(kind))
+    flight.forward(15.0, level(kind))
     assert degrees(abs(wrap(pi / 2 - atan2(flight.flown.velocity.y, flight.flown.velocity.x)))) < 5.0
     flight.adapter.leave(flight.now, ReleaseMode.HOLD)
     last = flight.now
-    flight.fly(4.0, level(kind))
+    flight.forward(4.0, level(kind))
     assert flight.flown.mode == HOLD[kind]
     assert flight.adapter.stage is Stage.LEFT
     assert max(flight.setpoints) <= last
     flight.adapter.leave(flight.now, ReleaseMode.RETURN)
-    flight.fly(4.0, None)
+    flight.forward(4.0, None)
     assert flight.flown.mode == "RTL"
     assert {note.severity for note in flight.notes} == {"info"}
 
@@ -161,10 +162,10 @@ def test_it_enters_follows_and_leaves(kind: Kind, loss: float) -> None:
 def test_a_pilot_takes_over_in_flight(kind: Kind) -> None:
     flight = Flight(kind, 0.2)
     flight.adapter.enter(flight.now)
-    flight.fly(8.0, level(kind))
+    flight.forward(8.0, level(kind))
     flight.flown.autopilot.pilot_mode(flight.flown.now_ns, "POSCTL" if kind == Kind.PX4 else "CIRCLE")
     taken = flight.now
-    flight.fly(5.0, level(kind))
+    flight.forward(5.0, level(kind))
     assert flight.adapter.stage is Stage.TAKEN
     assert max(flight.setpoints) < taken + 2.1  # the change's heartbeat may be lost: the next comes in 1 s
     assert [note.kind for note in flight.notes][-1] == "take_over"
@@ -175,9 +176,9 @@ def test_half_an_hour_at_a_fifth_of_loss_has_no_gap_above_half_a_second(kind: Ki
     """At the autopilot: ten losses in a row come once in five days."""
     flight = Flight(kind, 0.2)
     flight.adapter.enter(flight.now)
-    flight.fly(6.0, level(kind))
+    flight.forward(6.0, level(kind))
     first = flight.now
-    flight.fly(1800.0, level(kind))
+    flight.forward(1800.0, level(kind))
     sent = [at for at in flight.setpoints if at >= first]
     assert len(sent) > 0.7 * 1800 * 20
     assert max(b - a for a, b in pairwise(sent)) <= 0.5
@@ -188,18 +189,17 @@ def test_a_plane_follows_a_swinging_course_in_wind_as_a_real_one_was_measured_to
     wind = Vec(-4.0, 5.0, 0.0)
     flight = Flight(Kind.ARDUPLANE, 0.05, wind)
     flight.adapter.enter(flight.now)
-    flight.fly(5.0, Vec(22.0, 0.0, 0.0))
+    flight.forward(5.0, Vec(22.0, 0.0, 0.0))
 
     def wanted(now: float) -> Vec:
         yaw, speed = radians(70.0) * sin(2 * pi * now / 40.0), 22.0 + 2.0 * sin(2 * pi * now / 25.0)
         return Vec(speed * cos(yaw), speed * sin(yaw), -2.0 * sin(2 * pi * now / 30.0))
 
-    flight.fly(20.0, wanted)
+    flight.forward(20.0, wanted)
     flight.path.clear()
-    flight.fly(100.0, wanted)
+    flight.forward(100.0, wanted)
     course = [
-        wrap(atan2(air.y + wind.y, air.x + wind.x) - atan2(ground.y, ground.x))
-        for air, ground in flight.path
+        wrap(atan2(air.y + wind.y, air.x + wind.x) - atan2(ground.y, ground.x)) for air, ground in flight.path
     ]
     climb = [air.z - ground.z for air, ground in flight.path]
     assert degrees(sqrt(sum(e * e for e in course) / len(course))) < 12.0
@@ -209,7 +209,7 @@ def test_a_plane_follows_a_swinging_course_in_wind_as_a_real_one_was_measured_to
 @KINDS
 def test_the_rates_asked_for_arrive_and_health_is_read(kind: Kind) -> None:
     flight = Flight(kind)
-    flight.fly(15.0, None)
+    flight.forward(15.0, None)
     now, snapshot = flight.now, flight.observer.snapshot()
     assert now - snapshot.position_at <= 0.11
     assert now - snapshot.attitude_at <= 0.11
@@ -218,13 +218,13 @@ def test_the_rates_asked_for_arrive_and_health_is_read(kind: Kind) -> None:
     assert snapshot.landed_state == 2
     if kind == Kind.ARDUPLANE:
         assert now - snapshot.wind_at <= 0.5
-    assert flight.asking.budget == pytest.approx(Asking(Autopilot.ARDUPLANE, Target(1)).budget, rel=0.6)
+    assert flight.asking.budget == pytest.approx(StreamRates(Autopilot.ARDUPLANE, Target(1)).budget, rel=0.6)
 
 
 @KINDS
 def test_the_autopilots_clock_is_known_beside_ours(kind: Kind) -> None:
     flight = Flight(kind, 0.2)
-    flight.fly(20.0, None)
+    flight.forward(20.0, None)
     offset = flight.timesync.offset()
     assert offset.known
     assert offset.round_trip_ns <= 0.1 * NS_PER_S
@@ -233,7 +233,7 @@ def test_the_autopilots_clock_is_known_beside_ours(kind: Kind) -> None:
 def test_wind_of_both_reports_reaches_the_snapshot_as_where_the_air_moves() -> None:
     flight = Flight(Kind.ARDUPLANE, wind=Vec(0.0, 8.0, 0.0))
     flight.adapter.enter(flight.now)
-    flight.fly(60.0, lambda now: Vec(20.0 * cos(0.1 * now), 20.0 * sin(0.1 * now), 0.0))
+    flight.forward(60.0, lambda now: Vec(20.0 * cos(0.1 * now), 20.0 * sin(0.1 * now), 0.0))
     assert flight.observer.snapshot().wind == pytest.approx((0.0, 8.0, 0.0), abs=1.0)
 
 
@@ -241,14 +241,14 @@ def test_wind_of_both_reports_reaches_the_snapshot_as_where_the_air_moves() -> N
 def test_an_autopilot_that_starts_again_in_flight_is_entered_again(kind: Kind) -> None:
     flight = Flight(kind)
     flight.adapter.enter(flight.now)
-    flight.fly(8.0, level(kind))
+    flight.forward(8.0, level(kind))
     flight.flown.autopilot.reboot(flight.flown.now_ns)
-    flight.fly(5.0, level(kind))
+    flight.forward(5.0, level(kind))
     assert flight.observer.snapshot().reboots == 1
     assert flight.adapter.stage is Stage.IDLE
     assert "reboot" in [note.kind for note in flight.notes]
     flight.adapter.enter(flight.now)
-    flight.fly(8.0, level(kind))
+    flight.forward(8.0, level(kind))
     assert flight.adapter.stage is Stage.ACTIVE
 
 
@@ -258,18 +258,18 @@ WATCHED = {"FS_GCS_ENABL": 1.0, "SYSID_MYGCS": 1.0, "FS_LONG_ACTN": 1.0}
 def test_the_plain_variant_flies_a_course_and_its_failsafe_brings_a_plane_home_whose_agent_has_died() -> None:
     flight = Flight(Kind.ARDUPLANE, scheme="arduplane-plain", parameters=WATCHED)
     flight.adapter.enter(flight.now)
-    flight.fly(30.0, Vec(0.0, 20.0, 0.0))
+    flight.forward(30.0, Vec(0.0, 20.0, 0.0))
     assert flight.setpoints == []  # no attitude targets: commands alone
     assert flight.flown.velocity.y == pytest.approx(20.0, abs=1.0)
-    flight.flown.fly(2.0)  # killed: not even a heartbeat
+    flight.flown.forward(2.0)  # killed: not even a heartbeat
     assert flight.flown.mode == "GUIDED"
-    flight.flown.fly(40.0)
+    flight.flown.forward(40.0)
     assert flight.flown.mode == "RTL"
 
 
 def test_a_killed_agents_plane_turns_no_more_when_its_roll_lapses_and_comes_home_by_the_failsafe() -> None:
     flight = Flight(Kind.ARDUPLANE, parameters=WATCHED)
     flight.adapter.enter(flight.now)
-    flight.fly(10.0, lambda now: Vec(20.0 * cos(0.4 * now), 20.0 * sin(0.4 * now), 0.0))
-    flight.flown.fly(40.0)
+    flight.forward(10.0, lambda now: Vec(20.0 * cos(0.4 * now), 20.0 * sin(0.4 * now), 0.0))
+    flight.flown.forward(40.0)
     assert flight.flown.mode == "RTL"

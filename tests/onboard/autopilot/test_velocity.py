@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from itertools import pairwise
 from math import inf, nan
-from typing import Any
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onboard.autopilot.base import Envelope, ReleaseMode, Setpoint, Stage
-from onboard.autopilot.velocity import VelocityAdapter
+from onboard.autopilot.guided import GuidedAdapter
+from onboard.autopilot.velocity import VelocityEncoder
 from onboard.core.math.vectors import ZERO, Vec, norm
 from onboard.wire.mavlink.commands import CommandLong, Target, VelocityTarget
 from onboard.wire.mavlink.modes import Kind
@@ -23,14 +23,14 @@ EAST = Setpoint(Vec(0.0, 5.0, 0.0))
 HOVER = Setpoint(ZERO)
 
 
-def px4(**options: Any) -> Scripted:
-    adapter = VelocityAdapter(Kind.PX4_MULTICOPTER, Target(1), Envelope(), **options)
-    return Scripted(Kind.PX4_MULTICOPTER, adapter, "HOLD")
+def px4() -> Scripted:
+    encoder = VelocityEncoder(Kind.PX4_MULTICOPTER, Target(1), Envelope())
+    return Scripted(Kind.PX4_MULTICOPTER, GuidedAdapter(Target(1), encoder), "HOLD")
 
 
-def copter(**options: Any) -> Scripted:
-    adapter = VelocityAdapter(Kind.ARDUCOPTER, Target(1), Envelope(), **options)
-    return Scripted(Kind.ARDUCOPTER, adapter, "LOITER")
+def copter(*, may_arm: bool = False, hold_mode: str = "") -> Scripted:
+    encoder = VelocityEncoder(Kind.ARDUCOPTER, Target(1), Envelope(), hold_mode)
+    return Scripted(Kind.ARDUCOPTER, GuidedAdapter(Target(1), encoder, may_arm=may_arm), "LOITER")
 
 
 def test_px4_sees_a_second_of_setpoints_before_it_is_asked_for_offboard() -> None:
@@ -94,6 +94,22 @@ def test_the_command_is_repeated_until_the_heartbeat_says_so_but_never_faster_th
     play.deaf = False
     play.fly(1.0, None)
     assert play.adapter.stage is Stage.ACTIVE
+
+
+def test_a_repeated_command_says_how_often_it_was_sent_before_and_a_new_one_begins_at_0() -> None:
+    play = copter(may_arm=True)
+    play.deaf = True
+    play.adapter.enter(play.now)
+    play.adapter.arm(play.now)
+    play.fly(60.0, None)
+    play.adapter.leave(play.now, ReleaseMode.RETURN)
+    play.fly(0.5, None)
+    commands = [m for _, m in play.sent if isinstance(m, CommandLong)]
+    modes = [m.confirmation for m in commands if m.command == 176]
+    arming = [m.confirmation for m in commands if m.command == 400]
+    assert modes[-5:] == [0, 1, 2, 3, 4]
+    assert modes[:-5] == list(range(len(modes) - 5))
+    assert arming == list(range(len(arming)))
 
 
 def test_a_refusal_is_told_once_and_tried_again() -> None:

@@ -28,7 +28,7 @@ def test_the_twenty_kilometres_have_six_waypoints_after_the_start() -> None:
 BAD = [
     ("time = 83.3", "time = 40.0", r"waypoints\[1\].time: found unreachable: 3500 m in 40 s", "63.6 s"),
     ("time = 83.3", "time = 150.0", r"waypoints\[1\].time: found unreachable", "at most 116.7 s"),
-    ("time = 83.3", "time = -1.0", r"waypoints\[1\].time", "later than 0 s"),
+    ("time = 83.3", "time = -1.0", r"waypoints\[1\].time", "zero or more"),
     ("3500.0, 0.0, 300.0", "3500.0, 0.0, -5.0", r"waypoints\[1\].position: found height -5 m", "above"),
     ("ground = 0.0", "ground = 310.0", r"waypoints\[0\].position: found height 300 m", "310 m"),
     ("3500.0, 0.0, 300.0", "1500.0, 0.0, 3300.0", r"waypoints\[1\].position: found unreachable", "deg"),
@@ -37,7 +37,7 @@ BAD = [
     ("speed_min = 30.0", "speed_min = 60.0", "speed_min", "min ≤ max"),
     ("nominal = 42.0", "nominal = 42.0\nspeed = 3", "speed", "unknown key"),
     ("3500.0, 0.0, 300.0", "3500.0, nan, 300.0", r"waypoints\[1\].position\[1\]", "finite"),
-    ("3500.0, 0.0, 300.0", "3500.0, 0.0", r"waypoints\[1\].position", "length 3"),
+    ("3500.0, 0.0, 300.0", "3500.0, 0.0", r"waypoints\[1\].position", "expected 3 values"),
 ]
 
 
@@ -60,5 +60,5 @@ def test_a_route_without_waypoints_is_refused(tmp_path: Path) -> None:
         'name = "none"\nnominal = 40.0\nspeed_min = 30.0\nspeed_max = 50.0\nwaypoints = []\n',
         encoding="utf-8",
     )
-    with pytest.raises(ConfigError, match="waypoints: found 0, expected a start and at least one more"):
+    with pytest.raises(ConfigError, match="waypoints: found \\[\\], expected a start and at least one more"):
         load_route(path)

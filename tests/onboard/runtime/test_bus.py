@@ -6,8 +6,8 @@ import asyncio
 
 from onboard.runtime.protocols import Bus
 from onboard.wire.bus.topics import Delivery
-from tests.support.buses import Heard, Stage, both_buses
-from tests.support.waiting import until
+from tests.support.bus_stages import Heard, Stage, both_buses
+from tests.support.real_time import until
 
 GAME = "apollonius/range"
 SETUP = f"{GAME}/game/setup"

@@ -13,9 +13,9 @@ from onboard.runtime.impairment import CLEAR, CUT, Impairment
 from onboard.runtime.loop import virtual_clock
 from onboard.runtime.protocols import Sample
 from onboard.wire.bus.topics import Delivery
-from tests.support.buses import Heard
-from tests.support.virtual import virtual
-from tests.support.waiting import until
+from tests.support.bus_stages import Heard
+from tests.support.real_time import until
+from tests.support.virtual_time import virtual
 
 STATE = "apollonius/range/vehicles/2/state"
 EVENTS = "apollonius/range/vehicles/2/events"

@@ -13,11 +13,12 @@ from pathlib import Path
 import pytest
 
 from onboard.config.strict import ConfigError
-from onboard.runtime.bus_zenoh import LEASE_MS, open_zenoh
+from onboard.runtime.bus_zenoh import open_zenoh
 from onboard.runtime.inbox import QUEUE_MAX, Inbox
+from onboard.runtime.zenoh_config import LEASE_MS
 from onboard.wire.bus.topics import Delivery
-from tests.support.buses import Heard, free_port
-from tests.support.waiting import until
+from tests.support.bus_stages import Heard, free_port
+from tests.support.real_time import patience, until
 
 STATE = "apollonius/range/vehicles/2/state"
 
@@ -138,7 +139,7 @@ async def test_endpoints_may_come_from_a_zenoh_file(tmp_path: Path) -> None:
 def test_a_program_ends_whether_the_bus_ever_came_or_not(closing: str) -> None:
     program = f"""
 import asyncio
-from onboard.runtime.bus_zenoh import LEASE_MS, open_zenoh
+from onboard.runtime.bus_zenoh import open_zenoh
 async def main():
     bus = await open_zenoh("tcp/127.0.0.1:{free_port()}")
     bus.announce("apollonius/range/vehicles/2/alive")
@@ -147,7 +148,7 @@ asyncio.run(main())
 print("ended")
 """
     done = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=False
+        [sys.executable, "-c", program], capture_output=True, text=True, timeout=patience(20.0), check=False
     )
     assert (done.returncode, done.stdout) == (0, "ended\n"), done.stderr
 
@@ -158,11 +159,11 @@ async def test_a_process_that_dies_or_hangs_is_seen_to_leave(end: signal.Signals
     endpoint = f"tcp/127.0.0.1:{free_port()}"
     program = f"""
 import asyncio
-from onboard.runtime.bus_zenoh import LEASE_MS, open_zenoh
+from onboard.runtime.bus_zenoh import open_zenoh
 async def main():
     bus = await open_zenoh("{endpoint}")
     bus.announce("apollonius/range/vehicles/2/alive")
-    await asyncio.sleep(60)
+    await asyncio.sleep(3600)
 asyncio.run(main())
 """
     station = await open_zenoh(endpoint, listen=True)
@@ -170,9 +171,9 @@ asyncio.run(main())
     station.presence("apollonius/range/vehicles/*/alive", lambda key, alive: seen.append(alive))
     child = await asyncio.create_subprocess_exec(sys.executable, "-c", program)
     try:
-        await until(lambda: seen == [True], 30.0)
+        await until(lambda: seen == [True], 10.0)
         child.send_signal(end)
-        await until(lambda: seen == [True, False], 3 * LEASE_MS / 1000)
+        await until(lambda: seen == [True, False], LEASE_MS / 1000)
         assert not station.connected()
     finally:
         if child.returncode is None:

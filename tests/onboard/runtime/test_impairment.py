@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from onboard.runtime.impairment import CLEAR, CUT, HELD_BACK_S, Channel, Impaired, Impairment
 from onboard.runtime.links import memory_pair
 from onboard.runtime.loop import virtual_clock
-from tests.support.virtual import virtual
+from tests.support.virtual_time import virtual
 
 MS = 1_000_000
 shares = st.floats(0.0, 1.0)

@@ -14,8 +14,8 @@ from onboard.config.strict import ConfigError
 from onboard.runtime.links import PENDING_MAX, UdpLink, memory_pair, open_link, open_udp
 from onboard.runtime.protocols import Link
 from onboard.runtime.serial_link import BACKLOG_MAX
-from tests.support.virtual import virtual
-from tests.support.waiting import until
+from tests.support.real_time import patience, until
+from tests.support.virtual_time import virtual
 
 
 class Inbox:
@@ -31,7 +31,7 @@ class Inbox:
         self._more.set()
 
     async def until(self, count: int) -> list[tuple[bytes, Hashable]]:
-        async with asyncio.timeout(10):
+        async with asyncio.timeout(patience(5.0)):
             while len(self.got) < count:
                 self._more.clear()
                 await self._more.wait()
@@ -119,7 +119,7 @@ async def test_a_peer_that_is_not_there_is_counted_not_raised() -> None:
         port = free.getsockname()[1]
     link = await open_link(f"udpout://127.0.0.1:{port}")
     try:
-        async with asyncio.timeout(10):
+        async with asyncio.timeout(patience(5.0)):
             while not link.counters().get("refused"):
                 link.send(b"anybody?")
                 await asyncio.sleep(0.01)
@@ -174,7 +174,7 @@ async def test_a_serial_port_carries_both_ways_and_reports_the_cable_pulled() ->
         assert b"".join(data for data, _ in inbox.got) == bytes(range(256))
         link.send(b"\x00\x0a\x0d\x11\x13\xff")  # nothing may be translated on its way
         heard = b""
-        async with asyncio.timeout(10):
+        async with asyncio.timeout(patience(5.0)):
             while len(heard) < 6:
                 await asyncio.sleep(0.005)
                 heard += _read(master)
@@ -201,7 +201,7 @@ async def test_a_serial_port_that_does_not_drain_drops_whole_messages() -> None:
         assert counts["overflow"] > 0
         assert counts["sent"] + counts["overflow"] == 200
         heard = b""
-        async with asyncio.timeout(20):
+        async with asyncio.timeout(patience(5.0)):
             while len(heard) < counts["sent"] * 1000:
                 heard += _read(master)
                 await asyncio.sleep(0)
@@ -218,5 +218,3 @@ def _read(fd: int) -> bytes:
         return os.read(fd, 65536)
     except BlockingIOError:
         return b""
-
-

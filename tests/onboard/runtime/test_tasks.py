@@ -8,7 +8,7 @@ import pytest
 
 from onboard.runtime.loop import virtual_clock
 from onboard.runtime.tasks import Pace, periodic
-from tests.support.virtual import virtual
+from tests.support.virtual_time import virtual
 
 MS = 1_000_000
 

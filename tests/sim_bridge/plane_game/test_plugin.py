@@ -11,6 +11,7 @@ import pytest
 
 from sim_bridge.plane_game.program import table1
 from tests.support.paths import ROOT
+from tests.support.real_time import patience
 
 EXAMPLE = ROOT / "examples" / "strategy-plugin"
 
@@ -27,7 +28,7 @@ def planar(site: Path, *words: str) -> subprocess.CompletedProcess[str]:
     path = os.pathsep.join([str(site), str(ROOT)])
     return subprocess.run(
         [sys.executable, "-m", "sim_bridge.cli", "planar", *words], capture_output=True, text=True,
-        timeout=100, check=False, env={**os.environ, "PYTHONPATH": path},
+        timeout=patience(40.0), check=False, env={**os.environ, "PYTHONPATH": path},
     )  # fmt: skip
 
 
@@ -37,7 +38,7 @@ def test_the_example_is_installed_by_pip_and_played(tmp_path: Path) -> None:
     subprocess.run(
         [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--no-build-isolation", "--no-index",
          "--disable-pip-version-check", "--target", str(site), str(EXAMPLE)],
-        check=True, timeout=100, capture_output=True,
+        check=True, timeout=patience(40.0), capture_output=True,
     )  # fmt: skip
     done = planar(site, str(table1()[9]), "--strategy", "flank")
     assert (done.returncode, done.stderr) == (0, "")

@@ -12,13 +12,14 @@ from pathlib import Path
 import pytest
 
 from tests.support.paths import ROOT
+from tests.support.real_time import patience
 
 CARRIED = ("onboard", "gcs", "sim_bridge", "configs", "pyproject.toml", "README.md", "LICENSE")
 
 
 def call(*words: object, cwd: Path, **more: str) -> subprocess.CompletedProcess[str]:
     done = subprocess.run(
-        [*map(str, words)], cwd=cwd, capture_output=True, text=True, timeout=110, check=False,
+        [*map(str, words)], cwd=cwd, capture_output=True, text=True, timeout=patience(40.0), check=False,
         env={**{k: v for k, v in os.environ.items() if k != "PYTHONPATH"}, **more},
     )  # fmt: skip
     assert done.returncode == 0, done.stdout + done.stderr

@@ -13,7 +13,7 @@ from onboard.config.strict import ConfigError
 from onboard.runtime.run_folder import new_run
 from onboard.wire.mavlink.tlog import read_tlog
 from sim_bridge.programs import run_folder
-from tests.support.programs import bridge, short
+from tests.support.sim_bridge_process import bridge, short
 
 pytestmark = pytest.mark.game
 SEEDED = ("summary.json", "vehicle-1.tlog", "vehicle-2.tlog", "recording.mcap", "configuration.json")

@@ -16,15 +16,16 @@ from onboard.game.scenario import Flight, Kind, Parameters, Scenario, VehicleSpe
 from onboard.runtime.bus_zenoh import open_zenoh
 from onboard.runtime.clock import RealClock
 from onboard.runtime.links import open_udp
-from onboard.wire.bus.topics import SETUP, TRACK, key
+from onboard.wire.bus.messages import OutcomeResult
+from onboard.wire.bus.topics import SETUP, TRACK
 from onboard.wire.mavlink.commands import set_message_interval
 from onboard.wire.mavlink.dialect import dialect
 from sim_bridge.programs.serve import Options, serve, serve_scenario
 from sim_bridge.world.radio import CALLERS_MAX, Radio, agent_ports
-from tests.support.buses import Heard, free_port
-from tests.support.companions import Companion
-from tests.support.scripted import ScriptedAgent
-from tests.support.waiting import until
+from tests.support.bus_stages import Heard, free_port
+from tests.support.real_time import patience, until
+from tests.support.scripted_agents import ScriptedAgent
+from tests.support.scripted_companion import Companion
 
 SCENARIO = Scenario(
     name="served",
@@ -98,16 +99,16 @@ async def test_a_served_game_from_the_first_heartbeat_to_the_outcome(tmp_path: P
         wish = dialect.MAVLINK_MSG_ID_GLOBAL_POSITION_INT
         companions[32].send(set_message_interval(companions[32].target, wish, 20.0))
         await until(lambda: companions[32].heard("COMMAND_ACK"))
-        setup, tracks = Heard(bus, key("game", SETUP)), Heard(bus, key("game", TRACK, 31))
+        setup, tracks = Heard(bus, SETUP.key("game")), Heard(bus, TRACK.key("game", 31))
         agents = [ScriptedAgent(bus, RealClock(), "game", id) for id in (31, 32)]
         async with asyncio.TaskGroup() as group:
             beating = [group.create_task(agent.run()) for agent in agents]
-            async with asyncio.timeout(60):
+            async with asyncio.timeout(patience(20.0)):
                 outcome = await game
             for task in beating:
                 task.cancel()
         assert outcome is not None
-        assert outcome.verdict == "escaped"
+        assert outcome.verdict == OutcomeResult.ESCAPED
         assert setup.samples
         assert len(tracks.samples) > 5
         assert said[0] == "served: 2 vehicles, game 'game', seed 0"
@@ -138,7 +139,7 @@ def test_a_signal_ends_it_cleanly(number: signal.Signals, tmp_path: Path) -> Non
             if line.startswith("bus: listening"):
                 break
         child.send_signal(number)
-        out, err = child.communicate(timeout=30)
+        out, err = child.communicate(timeout=patience(10.0))
     finally:
         child.kill()
     assert child.returncode == 0, err

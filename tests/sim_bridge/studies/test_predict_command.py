@@ -9,20 +9,22 @@ import pytest
 
 from onboard.config.strict import ConfigError
 from onboard.runtime.resources import configs
-from sim_bridge.studies import predict as room
-from sim_bridge.studies.predict import FLYING, LAST, PAPER, STEADY
+from sim_bridge.studies.comparison import FLYING, LAST, PAPER, STEADY, Comparison, compare, table
+from sim_bridge.studies.paper_example import example, example_table
+from sim_bridge.studies.predict import predict
+from sim_bridge.studies.tracks import Recording, recording_of, weave
 
 
-def write(path: Path, recording: room.Recording) -> Path:
+def write(path: Path, recording: Recording) -> Path:
     rows = [f"{s.t},{s.position.x},{s.position.y},{s.position.z}" for s in recording.samples]
     path.write_text("\n".join(["t,north,east,down", *rows]))
     return path
 
 
 def test_a_recorded_track_is_compared(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    source = write(tmp_path / "weave.csv", room.weave(seconds=40.0))
-    room.predict(source, tmp_path / "out", json=True)
-    found = msgspec.json.decode(capsys.readouterr().out, type=room.Comparison)
+    source = write(tmp_path / "weave.csv", weave(seconds=40.0))
+    predict(source, tmp_path / "out", json=True)
+    found = msgspec.json.decode(capsys.readouterr().out, type=Comparison)
     error = {row.predictor: row.mean_error for row in found.rows}
     assert set(error) == {LAST, STEADY, FLYING, PAPER}
     assert not found.simulated
@@ -34,9 +36,9 @@ def test_a_recorded_track_is_compared(tmp_path: Path, capsys: pytest.CaptureFixt
 
 def test_a_scenario_is_simulated_and_its_evader_followed() -> None:
     scenario = configs() / "scenarios" / "table1" / "row05.toml"
-    drawn = room.compare(room.recording_of(scenario), paper=False)
+    drawn = compare(recording_of(scenario), paper=False)
     assert drawn.comparison.simulated
-    text = room.table(drawn.comparison)
+    text = table(drawn.comparison)
     assert FLYING in text
     assert "who spoke" in text
 
@@ -44,13 +46,13 @@ def test_a_scenario_is_simulated_and_its_evader_followed() -> None:
 def test_the_example_of_3_5_2_has_a_network_a_coordinate_and_a_figure(tmp_path: Path) -> None:
     from sim_bridge.studies.predict_figures import draw_activation, draw_example
 
-    played = room.example(epochs=30)
+    played = example(epochs=30)
     for one in played.results:
         assert one.error_test < 1.5
         assert one.epochs == 30
         assert one.time > 0.0
     assert [one.coordinate for one in played.results] == ["x", "y"]
-    assert "test set" in room.example_table(played)
+    assert "test set" in example_table(played)
     assert all(path.stat().st_size > 1000 for path in draw_example(played, tmp_path))
     assert all(path.stat().st_size > 1000 for path in draw_activation(tmp_path))
 
@@ -71,11 +73,11 @@ def test_bad_tracks_are_named_in_one_line(tmp_path: Path, text: str, said: str) 
     source = tmp_path / "bad.csv"
     source.write_text(text)
     with pytest.raises(ConfigError) as failure:
-        room.predict(source)
+        predict(source)
     assert said in str(failure.value)
     assert "\n" not in str(failure.value)
 
 
 def test_a_missing_file_is_named(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match="no such file"):
-        room.predict(tmp_path / "none.csv")
+        predict(tmp_path / "none.csv")

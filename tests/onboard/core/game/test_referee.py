@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from onboard.core.game.referee import GameResult, Score, Step, judge, opening, passage
 from onboard.core.game.rules import Rules, Target
 from onboard.core.math.vectors import ZERO, Vec
-from tests.support.situations import points
+from tests.support.random_situations import points
 
 FRESH = Score(GameResult.RUNNING, 0.0, -1, 1e300, 0.0)
 

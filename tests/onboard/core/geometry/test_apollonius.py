@@ -11,7 +11,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 from onboard.core.geometry.apollonius import apollonius_sphere, closest_approach, intercept
 from onboard.core.math.vectors import NORTH, ZERO, Vec, along, angle_between, distance, scale, sub, unit
-from tests.support.situations import headings, points
+from tests.support.random_situations import headings, points
 
 speeds = st.floats(0.2, 10.0)
 

@@ -13,7 +13,7 @@ from onboard.core.geometry.cones import blocked_cones, is_free
 from onboard.core.math.states import Vehicle
 from onboard.core.math.vectors import NORTH, ZERO, Vec, scale
 from tests.onboard.core.geometry.test_cones import EVADER, SPHERE
-from tests.support.situations import pursuers
+from tests.support.random_situations import pursuers
 
 HEADINGS = np.linspace(-pi, pi, 3600, endpoint=False)
 

@@ -21,7 +21,7 @@ from onboard.core.geometry.cones import (
 )
 from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import NORTH, ZERO, Vec, along, angle_between, distance, dot, pitch_of, yaw_of
-from tests.support.situations import angle, headings, pursuers
+from tests.support.random_situations import angle, headings, pursuers
 
 EVADER = Vehicle(ZERO, ZERO, 5.0)
 COUNT = 6000

@@ -13,7 +13,7 @@ from onboard.core.safety.fence import fits, inside, outside_by
 from onboard.core.safety.health import HealthAction
 from onboard.core.safety.policy import Action, Cause, Fence, SupervisorInput
 from onboard.core.safety.supervisor import SupervisorState, advance, handed_back, supervise
-from tests.support.supervised import COPTER, FIELD, PLANE, Flight, assert_within
+from tests.support.supervised_vehicle import COPTER, FIELD, PLANE, SupervisedVehicle, assert_within
 
 anything = st.floats(allow_nan=True, allow_infinity=True)
 any_vec = st.builds(Vec, anything, anything, anything)
@@ -66,7 +66,7 @@ wishes = st.lists(st.one_of(sane_vec, any_vec), min_size=1, max_size=8)
 def test_no_multicopter_leaves_its_fence_whatever_its_strategy_wants(
     wishes: list[Vec], start: tuple[float, float, float]
 ) -> None:
-    flight = Flight(COPTER._replace(fences=(L_SHAPE,)), Vec(*start))
+    flight = SupervisedVehicle(COPTER._replace(fences=(L_SHAPE,)), Vec(*start))
     for n in range(1200):
         flight.step(wishes[(n // 40) % len(wishes)])
         assert outside_by(flight.seen.position, L_SHAPE) == 0.0
@@ -84,7 +84,7 @@ def test_no_plane_leaves_its_fence_in_wind_whatever_its_strategy_wants(
     wishes: list[Vec], heading: float, wind: Vec, outwards: bool
 ) -> None:
     start = Vec(20.0 * cos(heading) + wind.x, 20.0 * sin(heading) + wind.y, 0.0)
-    flight = Flight(PLANE, Vec(0.0, 0.0, -150.0), start, wind)
+    flight = SupervisedVehicle(PLANE, Vec(0.0, 0.0, -150.0), start, wind)
     for n in range(3000):
         at = flight.seen.position
         away = atan2(at.y, at.x) + wishes[0].x / 60.0

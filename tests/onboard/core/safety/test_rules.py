@@ -12,19 +12,19 @@ from onboard.core.safety.policy import Action, Cause, Command
 from onboard.core.safety.supervisor import commanded, reordered
 from onboard.core.safety.words import ACTIONS, CAUSES
 from tests.support.paths import ROOT
-from tests.support.supervised import COPTER, PLANE, Flight
+from tests.support.supervised_vehicle import COPTER, PLANE, SupervisedVehicle
 
 NORTH = Vec(4.0, 0.0, 0.0)
 
 
-def copter(**policy: object) -> Flight:
+def copter(**policy: object) -> SupervisedVehicle:
     """A multicopter in the middle of a square fence, 30 m up, flying north at 4 m/s."""
-    return Flight(COPTER._replace(**policy), Vec(0.0, 0.0, -30.0), NORTH)  # type: ignore[arg-type]
+    return SupervisedVehicle(COPTER._replace(**policy), Vec(0.0, 0.0, -30.0), NORTH)  # type: ignore[arg-type]
 
 
-def plane() -> Flight:
+def plane() -> SupervisedVehicle:
     """A plane in the middle of its field, flying north."""
-    return Flight(PLANE, Vec(0.0, 0.0, -150.0), Vec(20.0, 0.0, 0.0))
+    return SupervisedVehicle(PLANE, Vec(0.0, 0.0, -150.0), Vec(20.0, 0.0, 0.0))
 
 
 def test_a_decision_within_all_limits_passes_untouched() -> None:
@@ -104,7 +104,7 @@ def test_a_plane_turns_before_the_fence_and_stays_inside() -> None:
 
 
 def test_outside_the_fence_the_way_leads_back_in() -> None:
-    flight = Flight(COPTER, Vec(110.0, 0.0, -30.0))
+    flight = SupervisedVehicle(COPTER, Vec(110.0, 0.0, -30.0))
     verdict = flight.step(NORTH)
     assert verdict.cause == Cause.OUTSIDE_FENCE
     flight.fly(15.0, ZERO)
@@ -112,7 +112,7 @@ def test_outside_the_fence_the_way_leads_back_in() -> None:
 
 
 def test_far_outside_the_fence_the_autopilot_flies_home_until_handed_back() -> None:
-    flight = Flight(COPTER, Vec(140.0, 0.0, -30.0))
+    flight = SupervisedVehicle(COPTER, Vec(140.0, 0.0, -30.0))
     assert flight.step(NORTH).action == Action.RETURN
     flight.seen = flight.seen._replace(position=Vec(0.0, 0.0, -30.0))
     assert flight.fly(10.0, NORTH).action == Action.RETURN
@@ -122,8 +122,8 @@ def test_far_outside_the_fence_the_autopilot_flies_home_until_handed_back() -> N
 
 def test_two_multicopters_that_fly_at_each_other_stay_apart() -> None:
     policy = COPTER._replace(separation=10.0)
-    one = Flight(policy, Vec(-40.0, 0.0, -30.0), Vec(4.0, 0.0, 0.0))
-    two = Flight(policy, Vec(40.0, 0.3, -30.0), Vec(-4.0, 0.0, 0.0))
+    one = SupervisedVehicle(policy, Vec(-40.0, 0.0, -30.0), Vec(4.0, 0.0, 0.0))
+    two = SupervisedVehicle(policy, Vec(40.0, 0.3, -30.0), Vec(-4.0, 0.0, 0.0))
     two.seen = two.seen._replace(id=3)
     least = inf
     for _ in range(600):

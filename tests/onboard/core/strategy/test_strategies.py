@@ -40,7 +40,7 @@ from onboard.core.strategy.pursuit import (
     pursuer_pure,
 )
 from onboard.core.strategy.registry import EVADERS, PURSUERS
-from tests.support.situations import headings, points, pursuers
+from tests.support.random_situations import headings, points, pursuers
 
 EAST = Vec(0.0, 1.0, 0.0)
 

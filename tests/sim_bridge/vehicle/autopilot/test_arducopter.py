@@ -9,19 +9,19 @@ import pytest
 from onboard.core.math.vectors import ZERO, Vec, norm, sub
 from onboard.game.scenario import Kind, VehicleSpec
 from onboard.wire.mavlink.dialect import DialectSender, dialect
-from tests.support.flown import ORIGIN, Flown
+from tests.support.flown_autopilot import ORIGIN, FlownAutopilot
 
 GCS = dialect.MAVLink_heartbeat_message(6, 8, 0, 0, 4, 3)
 
 
-def guided(**more: object) -> Flown:
-    flown = Flown(Kind.ARDUCOPTER, **more)  # type: ignore[arg-type]
+def guided(**more: object) -> FlownAutopilot:
+    flown = FlownAutopilot(Kind.ARDUCOPTER, **more)  # type: ignore[arg-type]
     assert flown.mode_to("GUIDED") == 0
     return flown
 
 
-def chase(flown: Flown, v: Vec, seconds: float, **more: int) -> Flown:
-    return flown.fly(seconds, every_s=0.1, send=lambda: flown.velocity_target(v, **more))
+def chase(flown: FlownAutopilot, v: Vec, seconds: float, **more: int) -> FlownAutopilot:
+    return flown.forward(seconds, every_s=0.1, send=lambda: flown.velocity_target(v, **more))
 
 
 def test_it_follows_a_velocity_within_its_limits() -> None:
@@ -32,27 +32,27 @@ def test_it_follows_a_velocity_within_its_limits() -> None:
 
 
 def test_velocity_outside_guided_is_ignored() -> None:
-    flown = chase(Flown(Kind.ARDUCOPTER), Vec(5.0, 0.0, 0.0), 3.0)
+    flown = chase(FlownAutopilot(Kind.ARDUCOPTER), Vec(5.0, 0.0, 0.0), 3.0)
     assert norm(flown.velocity) < 1e-6
     assert flown.autopilot.counters["target_outside_guided"] == 30
 
 
 def test_when_targets_cease_it_stops_by_itself_after_three_seconds() -> None:
     flown = chase(guided(), Vec(5.0, 0.0, 0.0), 4.0)
-    flown.fly(2.8)
+    flown.forward(2.8)
     assert flown.velocity.x == pytest.approx(5.0)
-    flown.fly(2.0)
+    flown.forward(2.0)
     assert norm(flown.velocity) < 0.3
     assert flown.mode == "GUIDED"
     where = flown.position
-    flown.fly(10.0)
+    flown.forward(10.0)
     assert norm(sub(flown.position, where)) < 0.5
     chase(flown, Vec(0.0, 4.0, 0.0), 3.0)
     assert flown.velocity.y == pytest.approx(4.0)  # and goes on when they come again
 
 
 def test_its_patience_is_a_parameter() -> None:
-    flown = chase(guided(parameters={"GUID_TIMEOUT": 0.5}), Vec(5.0, 0.0, 0.0), 4.0).fly(2.2)
+    flown = chase(guided(parameters={"GUID_TIMEOUT": 0.5}), Vec(5.0, 0.0, 0.0), 4.0).forward(2.2)
     assert norm(flown.velocity) < 0.3
 
 
@@ -72,7 +72,7 @@ def test_what_it_does_not_understand_stops_it(frame: int, mask: int) -> None:
 def test_a_velocity_that_is_no_number_stops_it() -> None:
     flown = chase(guided(), Vec(5.0, 0.0, 0.0), 3.0)
     flown.send(flown.velocity_target(Vec(float("nan"), 0.0, 0.0)))
-    flown.fly(2.5)
+    flown.forward(2.5)
     assert norm(flown.velocity) < 0.3
 
 
@@ -80,25 +80,25 @@ def test_a_velocity_in_the_bodys_frame_is_turned_by_its_heading() -> None:
     spec = VehicleSpec(position=(0.0, 0.0, 50.0), speed=5.0, heading_deg=90.0)
     flown = guided(spec=spec)
     flown.send(flown.velocity_target(Vec(3.0, 0.0, 0.0), frame=8))
-    flown.fly(2.0)
+    flown.forward(2.0)
     assert flown.velocity.y == pytest.approx(3.0, abs=1e-6)
     assert abs(flown.velocity.x) < 1e-6
 
 
 def test_it_goes_to_a_local_position_of_its_own_frame() -> None:
-    flown = guided(system=4).fly(1.0)
+    flown = guided(system=4).forward(1.0)
     here = flown.last("LOCAL_POSITION_NED")
     flown.send(
         dialect.MAVLink_set_position_target_local_ned_message(
             0, 4, 1, 1, 0x0DF8, here.x + 20.0, here.y - 10.0, here.z - 5.0, 0, 0, 0, 0, 0, 0, 0, 0
         )
     )
-    flown.fly(30.0)
+    flown.forward(30.0)
     assert norm(sub(flown.position, Vec(20.0, -10.0, -55.0))) < 0.5
 
 
 def test_it_repositions_and_refuses_frames_it_does_not_know() -> None:
-    flown = Flown(Kind.ARDUCOPTER)
+    flown = FlownAutopilot(Kind.ARDUCOPTER)
     place = ORIGIN.geodetic_from_ned(Vec(30.0, 15.0, 0.0))
     x, y = round(place.latitude_deg * 1e7), round(place.longitude_deg * 1e7)
     assert flown.command_int(192, -1, 0, 0, 0, x, y, 60.0, 6) == 4  # not in GUIDED, and not asked to change
@@ -106,13 +106,13 @@ def test_it_repositions_and_refuses_frames_it_does_not_know() -> None:
     assert flown.command_int(192, -1, 1, 0, 0, 1_000_000_000, y, 60.0, 6) == 2
     assert flown.command_int(192, -1, 1, 0, float("nan"), x, y, 60.0, 6) == 0
     assert flown.mode == "GUIDED"
-    flown.fly(30.0)
+    flown.forward(30.0)
     assert norm(sub(flown.position, Vec(30.0, 15.0, -60.0))) < 0.5
 
 
 def test_global_targets_are_followed_too() -> None:
     flown = guided()
-    flown.fly(
+    flown.forward(
         3.0,
         every_s=0.1,
         send=lambda: dialect.MAVLink_set_position_target_global_int_message(
@@ -123,7 +123,7 @@ def test_global_targets_are_followed_too() -> None:
 
 
 def test_modes_by_command_and_by_message_are_acknowledged() -> None:
-    flown = Flown(Kind.ARDUCOPTER)
+    flown = FlownAutopilot(Kind.ARDUCOPTER)
     assert flown.command(176, 1, 99) == 4
     assert flown.texts()[-1] == "No such mode 99"
     assert flown.command(176, 0, 4) == 2  # not a custom mode
@@ -148,7 +148,7 @@ def test_the_pilots_switch_takes_it_out_of_guided_at_once() -> None:
         flown.autopilot.pilot_mode(flown.now_ns, "OFFBOARD")
 
 
-def silent(flown: Flown, gcs: tuple[int, int], seconds: float) -> Flown:
+def silent(flown: FlownAutopilot, gcs: tuple[int, int], seconds: float) -> FlownAutopilot:
     """Ten heartbeats of a ground station, then silence; velocities all the while."""
     beat = DialectSender(*gcs)
     for _ in range(10):
@@ -164,7 +164,7 @@ def test_the_ground_stations_silence_brings_it_home_if_the_parameter_says_so() -
     assert flown.mode == "RTL"
     assert "GCS Failsafe" in flown.texts()
     flown.send(GCS, DialectSender(255, 190))
-    flown.fly(1.0)
+    flown.forward(1.0)
     assert flown.texts()[-1] == "GCS Failsafe Cleared"
     assert flown.mode == "RTL"
 
@@ -187,7 +187,7 @@ def test_what_it_does_then_is_a_parameter(action: int, mode: str) -> None:
 
 
 def test_a_mode_flown_by_hand_goes_on() -> None:
-    flown = Flown(Kind.ARDUCOPTER, parameters={"FS_GCS_ENABLE": 1})
+    flown = FlownAutopilot(Kind.ARDUCOPTER, parameters={"FS_GCS_ENABLE": 1})
     silent(flown, (255, 190), 8.0)
     assert flown.mode == "LOITER"
     assert "GCS Failsafe - Continuing Pilot Control" in flown.texts()
@@ -206,7 +206,7 @@ def test_a_low_battery_acts_as_its_parameter_says() -> None:
 
 def test_return_climbs_first_and_home_may_be_moved() -> None:
     spec = VehicleSpec(position=(60.0, 0.0, 5.0), speed=5.0)
-    flown = Flown(Kind.ARDUCOPTER, spec=spec)
+    flown = FlownAutopilot(Kind.ARDUCOPTER, spec=spec)
     place = ORIGIN.geodetic_from_ned(ZERO)
     assert (
         flown.command_int(
@@ -215,10 +215,10 @@ def test_return_climbs_first_and_home_may_be_moved() -> None:
         == 0
     )
     assert flown.mode_to("RTL") == 0
-    flown.fly(5.0)
+    flown.forward(5.0)
     assert flown.height > 12.0
     assert flown.position.x > 55.0
-    flown.fly(70.0)
+    flown.forward(70.0)
     assert flown.autopilot.parked
     assert abs(flown.position.x) < 1.5
 

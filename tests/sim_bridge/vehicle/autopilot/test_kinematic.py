@@ -8,9 +8,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from onboard.core.math.angles import wrap
+from onboard.core.math.constants import STANDARD_GRAVITY
 from onboard.core.math.vectors import ZERO, Vec, norm, sub
 from onboard.game.scenario import Kind, VehicleSpec
-from sim_bridge.vehicle.flight.kinematic import G, ability_of, crab, kinematic, start_motion, wrap
+from sim_bridge.vehicle.flight.kinematic import ability_of, crab, kinematic, start_motion
 from sim_bridge.vehicle.motion import CALM, Air, Airframe, Demand, Lateral
 
 DT = 0.02
@@ -102,7 +104,7 @@ def test_a_bank_turns_at_g_tan_phi_over_v_and_closes_the_circle() -> None:
     while airframe.motion.roll < roll:
         airframe.step(flown(Lateral.ROLL, roll), CALM, DT)
     start = airframe.motion
-    period = 2.0 * pi * 22.0 / (G * tan(roll))
+    period = 2.0 * pi * 22.0 / (STANDARD_GRAVITY * tan(roll))
     steps = 2000
     for _ in range(steps):
         airframe.step(flown(Lateral.ROLL, roll), CALM, period / steps)

@@ -7,23 +7,25 @@ import pytest
 from onboard.core.math.vectors import ZERO, Vec, norm, sub
 from onboard.game.scenario import Kind, VehicleSpec
 from onboard.wire.mavlink.dialect import DialectSender, dialect
-from tests.support.flown import ORIGIN, Flown
+from tests.support.flown_autopilot import ORIGIN, FlownAutopilot
 
 GCS = dialect.MAVLink_heartbeat_message(6, 8, 0, 0, 4, 3)
 
 
-def stream(flown: Flown, v: Vec, seconds: float, every_s: float = 0.05, **more: int) -> Flown:
-    return flown.fly(seconds, every_s=every_s, send=lambda: flown.velocity_target(v, **more))
+def stream(
+    flown: FlownAutopilot, v: Vec, seconds: float, every_s: float = 0.05, **more: int
+) -> FlownAutopilot:
+    return flown.forward(seconds, every_s=every_s, send=lambda: flown.velocity_target(v, **more))
 
 
-def offboard(**more: object) -> Flown:
-    flown = stream(Flown(Kind.PX4, **more), ZERO, 1.2)  # type: ignore[arg-type]
+def offboard(**more: object) -> FlownAutopilot:
+    flown = stream(FlownAutopilot(Kind.PX4, **more), ZERO, 1.2)  # type: ignore[arg-type]
     assert flown.mode_to("OFFBOARD") == 0
     return flown
 
 
 def test_offboard_is_refused_without_a_stream() -> None:
-    flown = Flown(Kind.PX4)
+    flown = FlownAutopilot(Kind.PX4)
     assert flown.mode_to("OFFBOARD") == 1
     assert flown.mode == "HOLD"
     stream(flown, ZERO, 0.8)
@@ -34,18 +36,18 @@ def test_offboard_is_refused_without_a_stream() -> None:
 
 
 def test_a_stream_below_two_hertz_is_none() -> None:
-    assert stream(Flown(Kind.PX4), ZERO, 6.0, every_s=0.6).mode_to("OFFBOARD") == 1
-    assert stream(Flown(Kind.PX4), ZERO, 6.0, every_s=0.4).mode_to("OFFBOARD") == 0
+    assert stream(FlownAutopilot(Kind.PX4), ZERO, 6.0, every_s=0.6).mode_to("OFFBOARD") == 1
+    assert stream(FlownAutopilot(Kind.PX4), ZERO, 6.0, every_s=0.4).mode_to("OFFBOARD") == 0
 
 
 def test_a_stream_that_has_ended_does_not_count() -> None:
-    flown = stream(Flown(Kind.PX4), ZERO, 3.0).fly(0.7)
+    flown = stream(FlownAutopilot(Kind.PX4), ZERO, 3.0).forward(0.7)
     assert flown.mode_to("OFFBOARD") == 1
 
 
 @pytest.mark.parametrize(("frame", "mask"), [(2, 0x9C7), (7, 0x9C7), (1, 0xFFF), (1, 0x9FF)])
 def test_what_it_does_not_understand_is_no_stream(frame: int, mask: int) -> None:
-    flown = stream(Flown(Kind.PX4), ZERO, 3.0, frame=frame, mask=mask)
+    flown = stream(FlownAutopilot(Kind.PX4), ZERO, 3.0, frame=frame, mask=mask)
     assert flown.mode_to("OFFBOARD") == 1
 
 
@@ -55,18 +57,18 @@ def test_it_follows_a_velocity() -> None:
 
 
 def test_setpoints_do_nothing_in_hold() -> None:
-    assert norm(stream(Flown(Kind.PX4), Vec(5.0, 0.0, 0.0), 4.0).velocity) < 1e-6
+    assert norm(stream(FlownAutopilot(Kind.PX4), Vec(5.0, 0.0, 0.0), 4.0).velocity) < 1e-6
 
 
 def test_the_loss_of_setpoints_is_seen_after_a_second_and_it_holds() -> None:
     flown = stream(offboard(), Vec(5.0, 0.0, 0.0), 4.0)
-    flown.fly(0.9)
+    flown.forward(0.9)
     assert flown.mode == "OFFBOARD"
     assert flown.velocity.x == pytest.approx(5.0)
-    flown.fly(0.2)
+    flown.forward(0.2)
     assert flown.mode == "HOLD"
     assert flown.last("HEARTBEAT").custom_mode == 4 << 16 | 3 << 24
-    flown.fly(4.0)
+    flown.forward(4.0)
     where = flown.position
     stream(flown, Vec(5.0, 0.0, 0.0), 3.0)  # they come again: it does not go back by itself
     assert flown.mode == "HOLD"
@@ -75,7 +77,7 @@ def test_the_loss_of_setpoints_is_seen_after_a_second_and_it_holds() -> None:
 
 @pytest.mark.parametrize(("action", "mode"), [(3, "RTL"), (4, "LAND"), (0, "POSCTL"), (5, "HOLD")])
 def test_what_it_does_then_is_a_parameter(action: int, mode: str) -> None:
-    flown = stream(offboard(parameters={"COM_OBL_RC_ACT": action}), Vec(1.0, 0.0, 0.0), 1.0).fly(1.5)
+    flown = stream(offboard(parameters={"COM_OBL_RC_ACT": action}), Vec(1.0, 0.0, 0.0), 1.0).forward(1.5)
     assert flown.mode == mode
 
 
@@ -105,7 +107,7 @@ def test_a_critical_battery_acts_as_its_parameter_says() -> None:
 
 @pytest.mark.parametrize("parts", [(1, 4, 4), (1, 9, 0), (0, 6, 0), (1, 4, 0), (float("nan"), 6, 0)])
 def test_modes_it_cannot_enter_are_refused_for_now(parts: tuple[float, ...]) -> None:
-    flown = stream(Flown(Kind.PX4), ZERO, 2.0)
+    flown = stream(FlownAutopilot(Kind.PX4), ZERO, 2.0)
     assert flown.command(176, *parts) == 1
     assert flown.mode == "HOLD"
 
@@ -119,20 +121,20 @@ def test_the_pilots_switch_takes_it_out_of_offboard() -> None:
 
 
 def test_it_repositions_in_hold() -> None:
-    flown = Flown(Kind.PX4)
+    flown = FlownAutopilot(Kind.PX4)
     place = ORIGIN.geodetic_from_ned(Vec(12.0, -9.0, 0.0))
     x, y = round(place.latitude_deg * 1e7), round(place.longitude_deg * 1e7)
     assert flown.command_int(192, -1, 1, 0, float("nan"), x, y, 488.0 + 40.0, 5) == 0
-    flown.fly(25.0)
+    flown.forward(25.0)
     assert norm(sub(flown.position, Vec(12.0, -9.0, -40.0))) < 0.5
     assert flown.command_int(192, -1, 1, 0, 0, x, y, 40.0, 1) == 8
     assert flown.command_int(192, -1, 1, 0, 0, 1_000_000_000, y, 40.0, 5) == 2
 
 
 def test_a_position_setpoint_is_of_its_own_frame() -> None:
-    flown = offboard(system=6).fly(0.5)
+    flown = offboard(system=6).forward(0.5)
     here = flown.last("LOCAL_POSITION_NED")
-    flown.fly(
+    flown.forward(
         12.0,
         every_s=0.1,
         send=lambda: dialect.MAVLink_set_position_target_local_ned_message(

@@ -8,7 +8,7 @@ import pytest
 
 from onboard.game.scenario import Kind
 from tests.support.paths import ROOT
-from tests.support.personalities import (
+from tests.support.personality_comparison import (
     FILES,
     NOT_OURS,
     NOT_THEIRS,
@@ -112,4 +112,4 @@ def test_every_difference_in_messages_has_a_reason(kind: Kind) -> None:
 
 def test_the_page_tells_what_was_compared() -> None:
     page = PAGE.read_text()
-    assert filled(page) == page, "run: python -m tests.support.personalities docs/personalities.md"
+    assert filled(page) == page, "run: python -m tests.support.personality_comparison docs/personalities.md"

@@ -32,7 +32,7 @@ BAD = [
     ("rate_gain = -1.2", "rate_gain = 1.2", "yaw_loop.rate_gain", "sign"),
     ("rate_gain = -1.2", "rate_gain = -60.0", "yaw_loop", "unstable"),
     ("rate_hz = 100.0", "rate_hz = 50.0", "rate_hz", "[100, 2000] Hz"),
-    ('path = "nose"', 'path = "tail"', "path", "one of nose, slip, coordinated"),
+    ('path = "nose"', 'path = "tail"', "path", "one of: nose, slip, coordinated"),
     ("limit_deg = 25.0", "limit_deg = -25.0", "elevator.limit_deg", "positive"),
     ("acceleration_min = -4.0", "acceleration_min = 4.0", "speed.acceleration_min", "negative"),
     ("pitch_max_deg = 25.0", "pitch_max_deg = -30.0", "limits.pitch_min_deg", "min < max"),

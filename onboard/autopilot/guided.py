@@ -1,0 +1,145 @@
+"""An adapter is the machine of modes and an encoder of setpoints: this joins the two."""
+
+from __future__ import annotations
+
+from typing import NamedTuple, Protocol
+
+from onboard.autopilot.base import Note, ReleaseMode, Setpoint, Stage, Step, Telemetry
+from onboard.autopilot.mode_machine import ModeMachine, ModeStep
+from onboard.wire.mavlink import commands
+from onboard.wire.mavlink.commands import Outgoing, Target
+from onboard.wire.mavlink.ids import MessageId
+from onboard.wire.mavlink.modes import MODES, Kind
+from onboard.wire.mavlink.values import CommandAck
+
+FAULTS = {
+    "not_finite": "a setpoint that is no number was not sent",
+    "no_direction": "a plane cannot stand still: give no setpoint, or leave to loiter",
+}
+
+
+class Traits(NamedTuple):
+    """What an encoder says of itself."""
+
+    name: str  # in configuration: velocity | arduplane | arduplane-plain | mavsdk
+    kind: Kind  # the autopilot it is made for
+    guided_mode: str  # the mode in which setpoints count, in the autopilot's words
+    release: dict[ReleaseMode, str]  # the modes to leave into, in the autopilot's words
+    holds_airspeed: bool = False  # a constant speed means airspeed
+    stops_in_silence: bool = True  # the autopilot stops by itself when setpoints end
+
+
+class SetpointEncoder(Protocol):
+    """Setpoints → messages, for one way of flying one kind of autopilot."""
+
+    @property
+    def traits(self) -> Traits:
+        """What it is made for."""
+        ...
+
+    def ready(self, now: float) -> bool:
+        """Return whether the guided mode may be asked for: PX4 wants to see setpoints before."""
+        ...
+
+    def sends_in(self, stage: Stage) -> bool:
+        """Return whether setpoints are sent in a stage."""
+        ...
+
+    def fault(self, setpoint: Setpoint) -> str:
+        """Return the key into `FAULTS` of what is wrong with a setpoint; "" where nothing is."""
+        ...
+
+    def encode(self, now: float, telemetry: Telemetry, setpoint: Setpoint) -> list[Outgoing]:
+        """Return the messages that are due for a setpoint without fault."""
+        ...
+
+    def acknowledge(self, ack: CommandAck) -> list[Note]:
+        """Hear the answer to a command; return what a person should know of it."""
+        ...
+
+    def restart(self) -> None:
+        """Hear that the stream of setpoints has ended: the next one begins a new stream."""
+        ...
+
+
+class GuidedAdapter:
+    """See `base.Adapter`."""
+
+    def __init__(self, to: Target, encoder: SetpointEncoder, *, may_arm: bool = False) -> None:
+        traits = encoder.traits
+        self.name = traits.name
+        self.kind = traits.kind
+        self.guided_mode = traits.guided_mode
+        self.holds_airspeed = traits.holds_airspeed
+        self._to = to
+        self._encoder = encoder
+        self._machine = ModeMachine(to.system, traits.guided_mode, traits.release, may_arm=may_arm)
+        self._notes: list[Note] = []
+        self._fault = ""  # of the newest setpoint
+
+    @property
+    def stage(self) -> Stage:
+        """Who flies."""
+        return self._machine.stage
+
+    def enter(self, now: float) -> None:
+        """Ask for the guided mode; give setpoints meanwhile (zero to hover)."""
+        self._machine.enter()
+
+    def leave(self, now: float, mode: ReleaseMode) -> None:
+        """End the setpoints; ask for a mode that the autopilot holds alone."""
+        self._machine.leave(mode)
+
+    def end(self, now: float) -> None:
+        """End the stream: by silence where the autopilot then stops by itself, else by leaving to hold."""
+        self._encoder.restart()
+        if not self._encoder.traits.stops_in_silence and self.stage is Stage.ACTIVE:
+            self._machine.leave(ReleaseMode.HOLD)
+
+    def arm(self, now: float) -> bool:
+        """Ask for arming, if made with `may_arm`."""
+        return self._machine.arm()
+
+    def close(self) -> None:
+        """Nothing to release."""
+
+    def acknowledge(self, now: float, ack: CommandAck) -> None:
+        """Hear the answer to a command."""
+        self._machine.acknowledge(now, ack)
+        self._notes += self._encoder.acknowledge(ack)
+
+    def step(self, now: float, telemetry: Telemetry, setpoint: Setpoint | None) -> Step:
+        """Return mode commands that are due, and the setpoint's messages where setpoints count."""
+        asked = self._machine.step(now, telemetry, ready=self._encoder.ready(now))
+        messages = [*self._mode_messages(asked), *self._arming(asked)]
+        notes = [*asked.notes, *self._notes]
+        self._notes = []
+        sound = self._sound(setpoint, notes)
+        if sound is not None:
+            messages += self._encoder.encode(now, telemetry, sound)
+        return Step(tuple(messages), tuple(notes))
+
+    def _sound(self, setpoint: Setpoint | None, notes: list[Note]) -> Setpoint | None:
+        """The setpoint, if it may be sent now; a fault is told once, until another setpoint."""
+        if setpoint is None or not self._encoder.sends_in(self.stage):
+            return None
+        fault = self._encoder.fault(setpoint)
+        if fault and fault != self._fault:
+            notes.append(Note("error", fault, FAULTS[fault]))
+        self._fault = fault
+        return None if fault else setpoint
+
+    def _mode_messages(self, asked: ModeStep) -> list[Outgoing]:
+        messages: list[Outgoing] = []
+        if asked.mode:
+            number, px4 = MODES[self.kind][asked.mode], self.kind is Kind.PX4_MULTICOPTER
+            command = commands.set_mode(self._to, number, px4=px4)
+            messages.append(command._replace(confirmation=asked.mode_tries - 1))
+        if asked.prove:
+            messages.append(commands.request_message(self._to, MessageId.HEARTBEAT))
+        return messages
+
+    def _arming(self, asked: ModeStep) -> list[Outgoing]:
+        if not asked.arm_tries:
+            return []
+        return [commands.arm(self._to)._replace(confirmation=asked.arm_tries - 1)]

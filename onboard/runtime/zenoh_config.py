@@ -1,0 +1,62 @@
+"""Configurations of Zenoh sessions: this product's defaults, a file of the user's, what was asked for."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import NamedTuple
+
+import zenoh
+
+from onboard.config.strict import ConfigError
+
+DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
+LEASE_MS = 2000  # a silent partner is given up after this
+ALWAYS: dict[str, object] = {
+    "timestamping/enabled": True,
+    "transport/link/tx/lease": LEASE_MS,
+    "connect/retry": {"period_init_ms": 500, "period_max_ms": 500, "period_increase_factor": 1},
+    "connect/timeout_ms": 0,
+    "connect/exit_on_failure": True,
+}
+NO_SCOUTING: dict[str, object] = {"scouting/multicast/enabled": False, "scouting/gossip/enabled": False}
+
+
+class Candidate(NamedTuple):
+    """A session that may be opened."""
+
+    how: str  # what it then is: `listening`, `joined` or `client`
+    config: zenoh.Config
+
+
+def sessions_of(endpoint: str | None, listen: bool, config_file: Path | None) -> list[Candidate]:
+    """The sessions to try, in order, for the arguments of `open_zenoh`. Raises ConfigError."""
+    if config_file is not None and endpoint is None:
+        return [Candidate("client", _config(config_file, ALWAYS))]
+    where = endpoint or DEFAULT_ENDPOINT
+    common = ALWAYS | NO_SCOUTING
+    client = {"mode": "client", "connect/endpoints": [where], "listen/endpoints": []}
+    sessions = [Candidate("joined" if listen else "client", _config(config_file, common | client))]
+    if listen:
+        router = {"mode": "router", "listen/endpoints": [where], "connect/endpoints": []}
+        sessions.insert(0, Candidate("listening", _config(config_file, common | router)))
+    return sessions
+
+
+def first_sentence(error: Exception) -> str:
+    """An error of Zenoh's for people: without the line of its source, which follows ` at /`."""
+    return str(error).split(" at /")[0].strip()
+
+
+def _config(file: Path | None, settings: dict[str, object]) -> zenoh.Config:
+    """The file's configuration (None: Zenoh's own) with `settings` over it."""
+    try:
+        config = zenoh.Config.from_file(str(file)) if file else zenoh.Config()
+    except zenoh.ZError as error:
+        raise ConfigError(f"{file}: {first_sentence(error)}") from None
+    for name, value in settings.items():
+        try:
+            config.insert_json5(name, json.dumps(value))
+        except zenoh.ZError:
+            raise ConfigError(f"bus: {name}: found {value!r}, expected e.g. {DEFAULT_ENDPOINT}") from None
+    return config

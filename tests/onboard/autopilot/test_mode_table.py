@@ -1,0 +1,214 @@
+"""The table of modes, walked whole: what may lead where, that the machine runs it, and that it is drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import product
+from pathlib import Path
+
+import pytest
+
+from onboard.autopilot.base import ReleaseMode, Stage, Telemetry
+from onboard.autopilot.mode_machine import ModeMachine
+from onboard.autopilot.mode_table import TABLE, ModeAction, ModeEvent, drawn_into, main, transition
+from onboard.wire.mavlink.values import CommandAck
+from tests.support.paths import ROOT
+
+PAIRS = list(product(Stage, ModeEvent))
+GUIDED_HEARD = {ModeEvent.GUIDED, ModeEvent.GUIDED_AGAIN}
+LEAVING = {ModeEvent.LEAVE, ModeEvent.LEAVE_AGAIN}
+REBOOTED = {ModeEvent.REBOOT, ModeEvent.REBOOT_AFTER_TAKING}
+MODES = {ReleaseMode.HOLD: "LOITER", ReleaseMode.RETURN: "RTL", ReleaseMode.LAND: "LAND"}
+
+
+@pytest.mark.parametrize(("stage", "event"), PAIRS, ids=lambda one: one.name)
+def test_no_row_breaks_a_rule_of_flight(stage: Stage, event: ModeEvent) -> None:
+    to, actions = transition(stage, event)
+    if event in LEAVING:  # leaving is always allowed
+        assert to is Stage.LEAVING or (event is ModeEvent.LEAVE_AGAIN and to is stage is Stage.LEFT)
+    if event is ModeEvent.ENTER:
+        assert to in (Stage.ENTERING, Stage.ACTIVE)
+    if to is Stage.ACTIVE and stage is not Stage.ACTIVE:  # setpoints count only where the heartbeat says so
+        assert event in GUIDED_HEARD
+    if stage in (Stage.LEFT, Stage.TAKEN) and to is Stage.ACTIVE:  # one heartbeat may be an old one, late
+        assert event is ModeEvent.GUIDED_AGAIN
+    if stage is Stage.TAKEN and to is not Stage.TAKEN:  # hands off means hands off
+        assert event in {ModeEvent.ENTER, ModeEvent.GUIDED_AGAIN, *LEAVING, ModeEvent.REBOOT_AFTER_TAKING}
+    if to is Stage.LEFT and stage is not Stage.LEFT:
+        assert event is ModeEvent.RELEASED
+    if to is Stage.TAKEN and stage is not Stage.TAKEN:
+        assert event in {ModeEvent.RELEASED, ModeEvent.UNCHANGED, ModeEvent.OTHER}
+        assert ModeAction.STOP_ARMING in actions
+    if stage is Stage.ACTIVE:  # whatever ends control is heard
+        assert (to is Stage.ACTIVE) == (event in GUIDED_HEARD or event is ModeEvent.ENTER)
+    asks = event is ModeEvent.ENTER and stage not in (Stage.ENTERING, Stage.ACTIVE)
+    assert (ModeAction.ASK_GUIDED in actions) == asks
+    if to is not stage:  # a person hears of each change that nobody on board asked for
+        told = any(action.name.startswith("TELL") for action in actions)
+        assert told or event in {ModeEvent.ENTER, ModeEvent.GIVE_UP, *LEAVING}
+    if to is stage and (stage, event) not in TABLE:
+        assert actions == ()
+
+
+def test_every_stage_can_be_reached_and_left() -> None:
+    reached, before = {Stage.IDLE}, set()
+    while reached != before:
+        before = set(reached)
+        reached |= {transition(stage, event).to for stage in before for event in ModeEvent}
+    assert reached == set(Stage)
+    for stage in Stage:
+        assert any(transition(stage, event).to is not stage for event in ModeEvent)
+
+
+class Flight:
+    """A machine and the heartbeats that it hears, one a second; time moves with them."""
+
+    def __init__(self) -> None:
+        self.machine = ModeMachine(1, "GUIDED", MODES)
+        self.now = 100.0
+        self.reboots = 0
+        self.kinds: list[str] = []
+
+    def beat(self, mode: str) -> None:
+        self.now += 1.0
+        telemetry = Telemetry(mode=mode, heartbeat_at=self.now, reboots=self.reboots)
+        self.kinds += [note.kind for note in self.machine.step(self.now, telemetry).notes]
+
+    def enter(self) -> None:
+        self.machine.enter()
+
+    def leave(self) -> None:
+        self.machine.leave(ReleaseMode.HOLD)
+
+
+def idle(f: Flight) -> None:
+    f.beat("AUTO")
+
+
+def entering(f: Flight) -> None:
+    f.beat("AUTO")
+    f.enter()
+    f.beat("AUTO")
+
+
+def active(f: Flight) -> None:
+    entering(f)
+    f.beat("GUIDED")
+
+
+def leaving(f: Flight) -> None:
+    active(f)
+    f.leave()
+    f.beat("GUIDED")
+
+
+def left(f: Flight) -> None:
+    leaving(f)
+    f.beat("LOITER")
+
+
+def taken(f: Flight) -> None:
+    left(f)
+    f.enter()
+    f.beat("GUIDED")
+    f.beat("FBWA")
+
+
+def reboot(f: Flight) -> None:
+    f.reboots += 1
+    f.beat("STABILIZE")
+
+
+def late_reboot(f: Flight) -> None:
+    f.now += 10.0
+    reboot(f)
+
+
+# How a stage is come into, and what then happens: (way there, what happens, the row that it must run).
+STORIES: list[tuple[Callable[[Flight], None], Callable[[Flight], None], Stage, ModeEvent]] = [
+    (idle, lambda f: f.enter(), Stage.IDLE, ModeEvent.ENTER),
+    (idle, lambda f: f.leave(), Stage.IDLE, ModeEvent.LEAVE),
+    (idle, lambda f: f.beat("GUIDED"), Stage.IDLE, ModeEvent.GUIDED),
+    (idle, lambda f: f.beat("RTL"), Stage.IDLE, ModeEvent.OTHER),
+    (idle, late_reboot, Stage.IDLE, ModeEvent.REBOOT),
+    (entering, lambda f: f.beat("GUIDED"), Stage.ENTERING, ModeEvent.GUIDED),
+    (entering, lambda f: f.beat("AUTO"), Stage.ENTERING, ModeEvent.UNCHANGED),
+    (entering, lambda f: f.beat("RTL"), Stage.ENTERING, ModeEvent.OTHER),
+    (entering, lambda f: f.leave(), Stage.ENTERING, ModeEvent.LEAVE),
+    (entering, lambda f: f.enter(), Stage.ENTERING, ModeEvent.ENTER),
+    (active, lambda f: f.beat("GUIDED"), Stage.ACTIVE, ModeEvent.GUIDED_AGAIN),
+    (active, lambda f: f.beat("AUTO"), Stage.ACTIVE, ModeEvent.UNCHANGED),
+    (active, lambda f: f.beat("RTL"), Stage.ACTIVE, ModeEvent.OTHER),
+    (active, lambda f: f.leave(), Stage.ACTIVE, ModeEvent.LEAVE),
+    (active, late_reboot, Stage.ACTIVE, ModeEvent.REBOOT),
+    (active, lambda f: f.machine.give_up(), Stage.ACTIVE, ModeEvent.GIVE_UP),
+    (leaving, lambda f: f.beat("LOITER"), Stage.LEAVING, ModeEvent.RELEASED),
+    (leaving, lambda f: f.beat("GUIDED"), Stage.LEAVING, ModeEvent.GUIDED_AGAIN),
+    (leaving, lambda f: f.beat("RTL"), Stage.LEAVING, ModeEvent.OTHER),
+    (leaving, lambda f: f.enter(), Stage.LEAVING, ModeEvent.ENTER),
+    (leaving, lambda f: f.leave(), Stage.LEAVING, ModeEvent.LEAVE_AGAIN),
+    (left, lambda f: f.beat("GUIDED"), Stage.LEFT, ModeEvent.GUIDED),
+    (left, lambda f: (f.beat("GUIDED"), f.beat("GUIDED"))[0], Stage.LEFT, ModeEvent.GUIDED_AGAIN),
+    (left, lambda f: f.beat("RTL"), Stage.LEFT, ModeEvent.OTHER),
+    (left, lambda f: f.leave(), Stage.LEFT, ModeEvent.LEAVE_AGAIN),
+    (left, lambda f: f.machine.leave(ReleaseMode.RETURN), Stage.LEFT, ModeEvent.LEAVE),
+    (left, lambda f: f.enter(), Stage.LEFT, ModeEvent.ENTER),
+    (taken, lambda f: f.beat("GUIDED"), Stage.TAKEN, ModeEvent.GUIDED),
+    (taken, lambda f: (f.beat("GUIDED"), f.beat("GUIDED"))[0], Stage.TAKEN, ModeEvent.GUIDED_AGAIN),
+    (taken, lambda f: f.beat("RTL"), Stage.TAKEN, ModeEvent.OTHER),
+    (taken, lambda f: f.enter(), Stage.TAKEN, ModeEvent.ENTER),
+    (taken, lambda f: f.leave(), Stage.TAKEN, ModeEvent.LEAVE),
+    (taken, reboot, Stage.TAKEN, ModeEvent.REBOOT_AFTER_TAKING),
+    (taken, late_reboot, Stage.TAKEN, ModeEvent.REBOOT),
+]
+
+
+@pytest.mark.parametrize(
+    ("there", "then", "stage", "event"), STORIES, ids=[f"{s[2].name}-{s[3].name}" for s in STORIES]
+)
+def test_the_machine_does_what_the_table_says(
+    there: Callable[[Flight], None], then: Callable[[Flight], None], stage: Stage, event: ModeEvent
+) -> None:
+    flight = Flight()
+    there(flight)
+    assert flight.machine.stage is stage
+    flight.kinds.clear()
+    then(flight)
+    to, actions = transition(stage, event)
+    assert flight.machine.stage is to
+    kinds = {
+        ModeAction.TELL_CONTROL: "control",
+        ModeAction.TELL_FOUND: "control",
+        ModeAction.TELL_HANDED_BACK: "handed_back",
+        ModeAction.TELL_RELEASED: "released",
+        ModeAction.TELL_TAKE_OVER: "take_over",
+        ModeAction.TELL_REBOOT: "reboot",
+    }
+    assert flight.kinds == [kinds[action] for action in actions if action in kinds]
+
+
+def test_a_try_says_how_often_the_mode_was_asked_for() -> None:
+    machine = ModeMachine(1, "GUIDED", MODES)
+    machine.enter()
+    steps = [machine.step(k * 0.1, Telemetry(mode="AUTO", heartbeat_at=0.0)) for k in range(3)]
+    assert [(step.mode, step.mode_tries) for step in steps] == [("GUIDED", 1), ("GUIDED", 2), ("GUIDED", 3)]
+    machine.acknowledge(0.3, CommandAck(176, 0, 1, 191))
+    after = machine.step(0.4, Telemetry(mode="AUTO", heartbeat_at=0.0))
+    assert (after.mode, after.prove) == ("", True)
+
+
+def test_the_diagram_in_the_handbook_is_the_tables() -> None:
+    """`python -m onboard.autopilot.mode_table --into docs/safety.md` draws it again."""
+    text = (ROOT / "docs" / "safety.md").read_text(encoding="utf-8")
+    assert drawn_into(text) == text
+
+
+def test_the_command_draws_and_says_what_it_lacks(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([]) == 0
+    drawn = capsys.readouterr().out
+    assert all(f" {stage.value} --> " in drawn for stage in Stage)
+    file = tmp_path / "page.md"
+    file.write_text("no marks here")
+    with pytest.raises(ValueError, match="found no place for the diagram"):
+        main(["--into", str(file)])
+    assert main(["--onto", str(file)]) == 2

@@ -1,0 +1,148 @@
+"""How commands end, seen from outside: real processes, their exit codes and what they print."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+BODY = """
+import sys
+from onboard.runtime.program import run
+{imports}
+
+def main():
+{body}
+
+{app}
+"""
+PLAIN = "run(main, 'prog')"
+TYPER = "app = typer.Typer(pretty_exceptions_enable=False)\napp.command()(main)\nrun(app, 'prog')"
+KINDS = [("", PLAIN), ("import typer", TYPER)]
+BOTH = pytest.mark.parametrize(("imports", "app"), KINDS, ids=["plain", "typer"])
+
+
+def script(body: str, imports: str = "", app: str = PLAIN) -> list[str]:
+    indented = "\n".join(f"    {line}" for line in body.splitlines())
+    return [sys.executable, "-c", BODY.format(imports=imports, body=indented, app=app)]
+
+
+def ended(command: list[str], **environment: str) -> tuple[int, str, str]:
+    env = os.environ | environment
+    done = subprocess.run(command, capture_output=True, env=env, timeout=60, check=False)
+    return done.returncode, done.stdout.decode("latin-1"), done.stderr.decode("latin-1")
+
+
+@BOTH
+@pytest.mark.parametrize(
+    ("body", "code", "out", "err"),
+    [
+        ("print('done')", 0, "done\n", ""),
+        ("return 3", 3, "", ""),
+        ("sys.exit(5)", 5, "", ""),
+        ("from onboard.config.strict import ConfigError\nraise ConfigError('a.toml: no\\n  good')", 2, "",
+         "prog: a.toml: no good\n"),
+        ("raise KeyboardInterrupt", 130, "", "prog: interrupted\n"),
+        ("import errno\nraise OSError(errno.ENOSPC, 'No space left on device', 'runs/1.tlog')", 74, "",
+         "prog: runs/1.tlog: no space left on device\n"),
+    ],
+)  # fmt: skip
+def test_every_end_has_its_code_and_at_most_one_line(
+    imports: str, app: str, body: str, code: int, out: str, err: str
+) -> None:
+    assert ended(script(body, imports, app)) == (code, out, err)
+
+
+def test_a_mistake_found_within_tasks_is_told_like_any_other() -> None:
+    body = """
+import asyncio
+from onboard.config.strict import ConfigError
+async def fails():
+    raise ConfigError("link: found nobody")
+async def both():
+    async with asyncio.TaskGroup() as group:
+        group.create_task(fails())
+        group.create_task(asyncio.sleep(60))
+asyncio.run(both())"""
+    assert ended(script(body)) == (2, "", "prog: link: found nobody\n")
+
+
+def test_a_fault_of_the_program_keeps_its_traceback() -> None:
+    code, _, err = ended(script("raise ZeroDivisionError('oops')"))
+    assert code == 1
+    assert "Traceback" in err
+    code, _, err = ended(script("raise OSError(2, 'No such file or directory', 'gone')"))
+    assert code == 1
+    assert "Traceback" in err
+
+
+def test_wrong_options_and_help_of_typer() -> None:
+    command = script("print('ran')", "import typer", TYPER)
+    code, out, err = ended([*command, "--wrong"])
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert err.startswith("prog: No such option: --wrong")
+    assert err.endswith("(see prog --help)\n")
+    assert ended([*command, "--help"])[0] == 0
+
+
+@BOTH
+def test_a_reader_who_leaves_ends_the_program_quietly(imports: str, app: str) -> None:
+    body = "for n in range(100_000): print('line', n)"
+    reading, writing = os.pipe()
+    child = subprocess.Popen(script(body, imports, app), stdout=writing, stderr=subprocess.PIPE)
+    os.close(writing)
+    os.read(reading, 10)
+    os.close(reading)
+    _, err = child.communicate(timeout=60)
+    assert (child.returncode, err) == (141, b"")
+
+
+@BOTH
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full here")
+@pytest.mark.parametrize("body", ["print('short')", "for n in range(100_000): print('line', n)"])
+def test_output_that_cannot_be_written_costs_one_line(imports: str, app: str, body: str) -> None:
+    with open("/dev/full", "wb") as full:
+        command = script(body, imports, app)
+        done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, timeout=60, check=False)
+    assert (done.returncode, done.stderr) == (74, b"prog: cannot write: no space left on device\n")
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full here")
+def test_a_full_standard_error_does_not_change_the_exit_code() -> None:
+    body = "from onboard.config.strict import ConfigError\nraise ConfigError('x')"
+    with open("/dev/full", "wb") as full:
+        assert subprocess.run(script(body), stderr=full, timeout=60, check=False).returncode == 2
+
+
+@pytest.mark.parametrize(("encoding", "shown"), [("ascii", "\\u03c8 \\xb2\n"), ("latin-1", "\\u03c8 \xb2\n")])
+def test_a_character_that_the_terminal_lacks_is_escaped(encoding: str, shown: str) -> None:
+    body = "print('\\u03c8 \\xb2')"
+    assert ended(script(body), PYTHONIOENCODING=encoding, PYTHONUTF8="0") == (0, shown, "")
+
+
+def test_ctrl_c_ends_with_one_line() -> None:
+    body = "import time\nprint('up', flush=True)\ntime.sleep(60)"
+    child = subprocess.Popen(script(body), stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    assert child.stdout is not None
+    assert child.stdout.readline() == b"up\n"
+    child.send_signal(signal.SIGINT)
+    _, err = child.communicate(timeout=60)
+    assert (child.returncode, err) == (130, b"prog: interrupted\n")
+
+
+@pytest.mark.parametrize("program", ["onboard.cli", "gcs.cli", "sim_bridge.cli"])
+def test_the_three_programs_have_this_host(program: str) -> None:
+    command = [sys.executable, "-m", program]
+    with open("/dev/full", "wb") as full:
+        done = subprocess.run(
+            [*command, "--help"], stdout=full, stderr=subprocess.PIPE, timeout=60, check=False
+        )
+    assert done.returncode == 74
+    assert done.stderr.endswith(b": cannot write: no space left on device\n")
+    assert done.stderr.count(b"\n") == 1
+    code, out, err = ended([*command, "--no-such-option"], PYTHONIOENCODING="ascii", PYTHONUTF8="0")
+    assert (code, out, err.count("\n")) == (2, "", 1)
