@@ -311,7 +311,17 @@ def test_words_from_the_network_cannot_become_markup(tmp_path: Path) -> None:
     evil = "</script><img src=http://x/y onerror=alert(1)>"
     event = messages.Event(2, 1, EPOCH_NS, messages.Severity.ERROR, evil, evil)
     report = messages.DecisionReport(
-        2, EPOCH_NS, 0.0, evil, evil, evil, evil, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0, 0.0
+        2,
+        EPOCH_NS,
+        0.0,
+        messages.DecisionLevel.TACTICAL,
+        messages.DecisionModule.GEOMETRIC,
+        evil,
+        evil,
+        (0.0, 0.0, 0.0),
+        (0.0, 0.0, 0.0),
+        0.0,
+        0.0,
     )
     items = [
         *flight(3.0),
