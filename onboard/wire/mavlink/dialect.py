@@ -124,8 +124,8 @@ def dialect_packet(raw: bytes) -> DialectPacket:
 class DialectSender:
     """One MAVLink component: the dialect's messages → frames, with the running sequence number.
 
-    `sequence` is the number of the first frame. With `signing` every frame is signed for `link_id`, stamped by
-    max(last + 1, clock).
+    `sequence` is the number of the first frame. With `signing` every frame is signed for `link_id`, stamped
+    by max(last + 1, clock).
     """
 
     def __init__(
