@@ -18,8 +18,8 @@ SLOWNESS_MAX = 40.0
 def slowness() -> float:
     """How much longer this machine takes for a fixed piece of work than a quiet one, 1 to `SLOWNESS_MAX`.
 
-    The greater of what the work takes and of the processes that wait for each core. Measured once per process,
-    where it is first asked for: at the start of a session of tests.
+    The greater of what the work takes and of the processes that wait for each core. Measured once in each
+    process, where it is first asked for: at the start of a session of tests.
     """
     waiting = os.getloadavg()[0] / (os.cpu_count() or 1)
     begun = time.perf_counter()
