@@ -94,7 +94,6 @@ class Tracking(Acting):
         )  # fmt: skip
         envelope = limits.envelope_of(self.config, member, craft.hovers)
         self.policy = limits.policy_of(self.config, setup, craft.hovers)._replace(envelope=envelope)
-        craft.envelope(limits.adapter_envelope(self.config, envelope))
         self._placed = True
         last = self.route.waypoints[-1]
         count = len(self.route.waypoints)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
+from math import radians
 
 from onboard.agent.config import AgentConfig
 from onboard.agent.journal import Journal
 from onboard.agent.mavlink_radio import Radio
 from onboard.agent.telemetry_requests import Requests
-from onboard.autopilot.base import Adapter, Envelope, Refusal, Setpoint, Stage, Telemetry
+from onboard.autopilot.base import Adapter, Refusal, Setpoint, Stage, Telemetry
 from onboard.autopilot.choose import AdapterOptions, adapter_for
 from onboard.autopilot.mavsdk import MavsdkAdapter
 from onboard.autopilot.telemetry_state import Observer
@@ -75,7 +76,6 @@ class Craft:
         self.to = Target(config.id)
         self._journal = journal
         self._heartbeat: Heartbeat | None = None
-        self._envelope = Envelope()
         self._asking: Requests | None = None
         self._reboots = 0
         self._stepped_at = NEVER
@@ -140,13 +140,6 @@ class Craft:
             if self._asking is not None:
                 self._asking.again()
         return self.telemetry
-
-    def envelope(self, envelope: Envelope) -> None:
-        """Another game, another envelope: a new adapter, unless the present one is flying."""
-        self._envelope = envelope
-        if self._heartbeat is not None and self.stage in (Stage.IDLE, Stage.LEFT):
-            self.adapter = None
-            self._discover(self._heartbeat)
 
     def step(self, now: float, setpoint: Setpoint | None) -> None:
         """Send what the adapter wants sent, and publish its notes."""
@@ -218,7 +211,7 @@ class Craft:
                 self.config.may_arm,
                 self.config.hold_mode,
                 self.config.mavsdk,
-                self._envelope,
+                radians(self.config.envelope.bank_max_deg),
             ),
             self.parameters,
         )
