@@ -16,7 +16,7 @@ help:
 	@echo "make demo      set everything up and play a whole game end to end"
 	@echo "make test      set everything up and pass the tests"
 	@echo "make check     ruff, mypy strict, import contracts, closed locks"
-	@echo "make check-long   the long tests, and every property with ten times the examples, drawn anew"
+	@echo "make check-long   the long tests, and every property with five times other examples"
 	@echo "make bench     benchmarks; results go to benchmarks/results/"
 	@echo "make bench-games, bench-predictor   the long comparisons"
 	@echo "make golden    what whole games, agents and campaigns do, against what was recorded of them"
@@ -53,7 +53,10 @@ check: install
 	$(BIN)/python locks/closed.py
 
 check-long: install
-	HYPOTHESIS_PROFILE=long $(BIN)/python -m pytest -m "long or hypothesis" -n 2 --dist worksteal --timeout 1200
+	$(BIN)/python -m pytest -m long -n 2 --dist worksteal --timeout 1200
+	for seed in 1 2 3 4 5; do \
+	  HYPOTHESIS_PROFILE=long $(BIN)/python -m pytest -m hypothesis -n 2 --dist worksteal --timeout 1200 \
+	    --hypothesis-seed $$seed || exit 1; done
 
 bench: install
 	$(BIN)/python -m pytest tests/benchmarks -n 0 --timeout 1800 -o python_files="test_*.py bench_*.py" --benchmark-json benchmarks/results/latest.json

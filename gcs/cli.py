@@ -148,7 +148,7 @@ def game_run(
 
 
 def main() -> None:
-    """Entry point."""
+    """Run `gcs` and exit with its code."""
     run(app, "gcs")
 
 

@@ -9,22 +9,30 @@ from __future__ import annotations
 
 import asyncio
 import secrets
-from collections import Counter, deque
-from collections.abc import Callable, Mapping
+from collections import deque
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from gcs.picture import journal
-from gcs.picture.journal import Sent
+from gcs.picture.station_journal import SENT, Sent
 from gcs.station import Station
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec, along, sub
 from onboard.game.master import GameMaster, Standing, Timing
 from onboard.game.scenario import Scenario
 from onboard.game.staging import setup_of, target_of
-from onboard.runtime.protocols import Sample, Subscription
-from onboard.wire.bus import messages as swarm
 from onboard.wire.bus import topics
-from onboard.wire.bus.messages import CommandKind, Phase, Role, Severity
+from onboard.wire.bus.messages import (
+    CommandKind,
+    Health,
+    Master,
+    OutcomeResult,
+    Phase,
+    Role,
+    Severity,
+    State,
+    Track,
+)
+from onboard.wire.bus.topics import Heard, Topic
 
 NAME = "gcs"
 STEP_S = 0.05
@@ -32,13 +40,6 @@ LAG_NS = 300_000_000  # the instant judged lies so far back; most messages are t
 KEPT = 64  # positions of each vehicle
 LATE_NS = 1 * NS_PER_S  # a position is carried forward at most so far; then the vehicle is not judged
 RECOVERY_S = 3.0
-CODECS: Mapping[topics.Topic, swarm.Codec[Any]] = {
-    topics.SETUP: swarm.SETUP,
-    topics.PHASE: swarm.PHASE,
-    topics.OUTCOME: swarm.OUTCOME,
-    topics.MASTER: swarm.MASTER,
-    topics.EVADER_BRIEF: swarm.EVADER_BRIEF,
-}
 
 
 class Fix(NamedTuple):
@@ -108,14 +109,19 @@ class FieldMaster:
             secrets.randbits(48) if nonce is None else nonce,
             timing,
         )
-        self.drops: Counter[str] = Counter()
         self._station = station
         self._say = say
         self._positions = Positions()
         self._offsets: dict[int, int] = {}  # agents' clocks − the master's [ns], as they measure it
         self._roles = {member.id: member.role for member in self.rules.setup.roster}
         self._heard_own: dict[int, int] = {}  # vehicle → its last own state
-        self._subscriptions: list[Subscription] = []
+        self._takers: dict[Topic[Any], Callable[[Any, int], None]] = {
+            topics.MASTER: self._on_master,
+            topics.HEALTH: self._on_health,
+            topics.STATE: self._on_state,
+            topics.TRACK: self._on_track,
+            SENT: self._on_sent,
+        }
 
     @property
     def over(self) -> bool:
@@ -126,7 +132,7 @@ class FieldMaster:
     def exit_code(self) -> int:
         """0 where the game ended with a verdict."""
         outcome = self.rules.outcome
-        return 0 if outcome is not None and outcome.verdict != "aborted" else 1
+        return 0 if outcome is not None and outcome.verdict is not OutcomeResult.ABORTED else 1
 
     def status(self) -> str:
         """For people: what it waits for."""
@@ -140,25 +146,16 @@ class FieldMaster:
 
     async def run(self) -> None:
         """Be the master until cancelled; who leaves in mid-game ends it."""
-        bus, game = self._station.bus, self._station.game
-        self._subscriptions = [
-            bus.subscribe(topics.key(game, topics.MASTER), self._on_master),
-            bus.subscribe(topics.key(game, topics.HEALTH), self._on_health),
-            bus.subscribe(topics.key(game, topics.STATE), self._on_state),
-            bus.subscribe(topics.key(game, topics.TRACK), self._on_track),
-        ]
-        self._station.tap(self._on_journal)
         try:
-            while True:
-                self.step()
-                await asyncio.sleep(STEP_S)
+            with self._station.heard_by(self._hear):
+                while True:
+                    self.step()
+                    await asyncio.sleep(STEP_S)
         finally:
             if self.rules.standing is Standing.HOLDING and self.rules.outcome is None:
                 now_ns = self._station.now_ns()
                 self.rules.abort(now_ns, now_ns, "the ground station left")
                 self.step()
-            for subscription in self._subscriptions:
-                subscription.close()
 
     def step(self) -> None:
         """Judge what is due, and say what is due."""
@@ -168,47 +165,40 @@ class FieldMaster:
         if judged_ns >= self.rules.t0_ns:
             self.rules.observe(judged_ns, now_ns, self._positions.at(judged_ns))
         for topic, message in self.rules.outgoing():
-            key = topics.key(self._station.game, topic)
-            self._station.bus.publish(key, CODECS[topic].encode(message), topic.delivery)
+            key = topic.key(self._station.game)
+            self._station.bus.publish(key, topic.encode(message), topic.delivery)
         for line in self.rules.news():
             self._say(line)
             self._station.remark(Severity.INFO, "master", line)
 
-    def _on_master(self, sample: Sample) -> None:
-        message = swarm.MASTER.decode(sample.payload, self.drops)
-        if message is not None:
-            self.rules.heard_master(message, self._station.now_ns())
+    def _hear(self, heard: Heard, now_ns: int) -> None:
+        take = self._takers.get(heard.topic)
+        if take is not None:
+            take(heard.message, now_ns)
 
-    def _on_health(self, sample: Sample) -> None:
-        health = swarm.HEALTH.decode(sample.payload, self.drops)
-        if health is not None:
-            self._offsets[health.id] = round(health.clock_offset_s * NS_PER_S)
-            self.rules.heard_health(health, self._station.now_ns())
+    def _on_master(self, master: Master, now_ns: int) -> None:
+        self.rules.heard_master(master, now_ns)
 
-    def _on_state(self, sample: Sample) -> None:
-        state = swarm.STATE.decode(sample.payload, self.drops)
-        if state is None or state.id not in self._roles:
+    def _on_health(self, health: Health, now_ns: int) -> None:
+        self._offsets[health.id] = round(health.clock_offset_s * NS_PER_S)
+        self.rules.heard_health(health, now_ns)
+
+    def _on_state(self, state: State, now_ns: int) -> None:
+        if state.id not in self._roles:
             return
-        self._heard_own[state.id] = self._station.now_ns()
-        at_ns = min(state.stamp_ns - self._offsets.get(state.id, 0), self._station.now_ns())
+        self._heard_own[state.id] = now_ns
+        at_ns = min(state.stamp_ns - self._offsets.get(state.id, 0), now_ns)
         self._positions.add(state.id, Fix(at_ns, Vec(*state.position), Vec(*state.velocity)))
 
-    def _on_track(self, sample: Sample) -> None:
-        track = swarm.TRACK.decode(sample.payload, self.drops)
-        if track is None or self._roles.get(track.id) is not Role.EVADER:
+    def _on_track(self, track: Track, now_ns: int) -> None:
+        if self._roles.get(track.id) is not Role.EVADER:
             return
-        now_ns = self._station.now_ns()
         if now_ns - self._heard_own.get(track.id, 0) < LATE_NS:
             return  # its own state is the better word
         self._positions.add(track.id, Fix(track.stamp_ns, Vec(*track.position), Vec(*track.velocity)))
 
-    def _on_journal(self, key: str, payload: bytes, now_ns: int) -> None:
+    def _on_sent(self, sent: Sent, now_ns: int) -> None:
         """The operator's `start` starts, and an abort of everybody ends the game."""
-        if key != journal.key(self._station.game, "sent"):
-            return
-        sent: Sent | None = journal.SENT.decode(payload, self.drops)
-        if sent is None:
-            return
         if sent.command.kind is CommandKind.START:
             self.rules.start()
         elif sent.command.kind is CommandKind.ABORT and set(self._roles) <= set(sent.ids):

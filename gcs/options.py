@@ -38,7 +38,7 @@ class Options(NamedTuple):
             recording=msgspec.structs.replace(found.recording, **_given(recording)),
             **_given({"game": self.game, "operator": self.operator}),
         )
-        return settings.check(found, "options" if self.config is None else str(self.config))
+        return settings.check(found, "options")
 
 
 DECLARED: dict[str, Any] = {

@@ -8,15 +8,15 @@ import sys
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TextIO
 
-from gcs.console.plain_lines import Plain
+from gcs.console.plain_lines import PlainLines
 from gcs.console.plain_lines import status as status_lines
 from gcs.picture.alert_rules import Thresholds
-from gcs.picture.commands import ENDS_A_FLIGHT
-from gcs.picture.plain_data import to_json
+from gcs.picture.command_book import ENDS_A_FLIGHT
+from gcs.picture.json_document import to_json
 from gcs.picture.terminal_text import printable
-from gcs.picture.values import Leg, Picture
+from gcs.picture.values import Leg, LegState, Picture
 from gcs.session import Session, on_air, version
 from gcs.settings import Settings
 from onboard.config.strict import ConfigError
@@ -68,7 +68,7 @@ async def print_lines(session: Session, over: Callable[[], bool] = lambda: False
     loop = asyncio.get_running_loop()
     for number in (signal.SIGINT, signal.SIGTERM):
         loop.add_signal_handler(number, stop.set)
-    lines = Plain()
+    lines = PlainLines()
     print(session.status(), flush=True)
     try:
         while not stop.is_set():
@@ -86,7 +86,7 @@ async def print_lines(session: Session, over: Callable[[], bool] = lambda: False
 
 
 async def status(settings: Settings, *, json: bool, wait_s: float) -> int:
-    """The picture once."""
+    """Print the picture once, after listening for `wait_s`; exit code 1 when nobody is heard."""
     async with on_air(settings, listen=False, record=False) as session:
         await asyncio.sleep(wait_s)
         picture = session.picture()
@@ -129,7 +129,7 @@ def _legs(session: Session, told: dict[int, str]) -> list[Leg]:
     """How each vehicle has answered so far."""
     legs = []
     for vehicle_id, command_id in sorted(told.items()):
-        view = session.station.watch.book.view(command_id, session.station.now_ns())
+        view = session.station.reducer.book.view(command_id, session.station.now_ns())
         legs += [leg for leg in view.legs if leg.id == vehicle_id] if view else []
     return legs
 
@@ -140,11 +140,10 @@ def _told(session: Session, order: Order, told: dict[int, str], game: str) -> in
         print(f"gcs: nobody to command in game {game}: {session.bus.status()}", file=sys.stderr)
         return 1
     legs = _legs(session, told)
-    confirmed = sum(leg.state == "confirmed" for leg in legs)
+    confirmed = sum(leg.state is LegState.CONFIRMED for leg in legs)
     print(f"{order.kind.value}: {confirmed} of {len(legs)} confirmed", flush=True)
     for leg in legs:
-        state = "no answer" if leg.state == "sent" else leg.state
-        parts = [f"  vehicle {leg.id}: {state}", f"({leg.reason})" if leg.reason else "", leg.mode]
+        parts = [f"  vehicle {leg.id}: {leg.state.words}", f"({leg.reason})" if leg.reason else "", leg.mode]
         print(printable(" ".join(part for part in (*parts, f"after {leg.took_s:.2f} s") if part)), flush=True)
     return 0 if confirmed == len(legs) else 1
 
@@ -192,7 +191,7 @@ async def play(settings: Settings, scenario: Scenario, *, plain: bool, auto_star
         picture: Picture = session.picture()
         if picture.game.outcome is not None:
             by = f" by {picture.game.outcome.captor}" if picture.game.outcome.captor else ""
-            print(f"evader {picture.game.outcome.verdict}{by} after {picture.game.outcome.time:.1f} s")
+            print(f"evader {picture.game.outcome.verdict.value}{by} after {picture.game.outcome.time:.1f} s")
         return master.exit_code
 
 
@@ -220,7 +219,7 @@ def replay(run: Path, limits: Thresholds, *, plain: bool) -> int:
 
 def _print_through(player: Player) -> None:
     """Every line of the log, and how all were every five seconds, without waiting."""
-    lines = Plain()
+    lines = PlainLines()
     at_ns = player.start_ns
     while True:
         player.seek(at_ns)
@@ -232,19 +231,41 @@ def _print_through(player: Player) -> None:
 
 
 def decide_again(run: Path, strategies: dict[Role, str]) -> int:
-    """The strategies again over a recording: where they decide otherwise."""
+    """The agents of a run fed again: where they do or decide otherwise. 1 where an agent does."""
     from gcs.replay.decide import decide
-    from gcs.replay.source import open_run
 
-    recording = open_run(run)
-    try:
-        for remark in recording.remarks:
-            print(f"gcs: {remark}", file=sys.stderr)
-        given = {role: name for role, name in strategies.items() if name}
-        print("\n".join(decide(recording.entries(), given).lines()))
-    finally:
-        recording.close()
-    return 0
+    progress = Progress(sys.stderr)
+    comparison = decide(run, strategies, progress.show)
+    progress.end()
+    print("\n".join(comparison.lines()))
+    return 1 if any(fed.otherwise for fed in comparison.fed) else 0
+
+
+class Progress:
+    """Tells how far a long command is: on one line of a terminal, else on a line every few seconds."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+        self._terminal = stream.isatty()
+        self._clock = RealClock()
+        self._said_ns = self._clock.monotonic_ns()
+        self._open = False
+
+    def show(self, share: float, what: str) -> None:
+        """Tell that `share` of the work is done."""
+        now = self._clock.monotonic_ns()
+        if now - self._said_ns < (0.2 if self._terminal else 3.0) * NS_PER_S:
+            return
+        self._said_ns = now
+        text = f"gcs: {100 * share:3.0f} % ({what})"
+        self._open = self._terminal
+        print(f"\r{text}" if self._terminal else text, end="" if self._terminal else "\n", file=self._stream,
+              flush=True)  # fmt: skip
+
+    def end(self) -> None:
+        """The work is done."""
+        if self._open:
+            print(file=self._stream)
 
 
 def report(run: Path, limits: Thresholds) -> int:

@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING
 from gcs.console.source import Key
 from gcs.picture.values import Picture
 from gcs.settings import Settings
-from gcs.station import Station
+from gcs.station import Station, StationSetup
 from onboard.runtime.bus_zenoh import ZenohBus, open_zenoh
 from onboard.runtime.clock import RealClock
 from onboard.wire.bus.messages import CommandKind, Severity
 
 if TYPE_CHECKING:
-    from gcs.recording.shell import Keeper
+    from gcs.recording.shell import StationRecorder
 
 
 def version() -> str:
@@ -35,10 +35,10 @@ class Session:
     title = "live"
     keys: tuple[Key, ...] = ()
 
-    def __init__(self, bus: ZenohBus, station: Station, keeper: Keeper | None) -> None:
+    def __init__(self, bus: ZenohBus, station: Station, recorder: StationRecorder | None) -> None:
         self.bus = bus
         self.station = station
-        self.keeper = keeper
+        self.recorder = recorder
         self.extra: Callable[[], str] = str  # the master's line, where there is one
 
     def picture(self) -> Picture:
@@ -48,8 +48,8 @@ class Session:
     def status(self) -> str:
         """Bus and recording in a line."""
         parts = [self.extra(), self.bus.status()]
-        if self.keeper is not None:
-            status = self.keeper.status()
+        if self.recorder is not None:
+            status = self.recorder.status()
             parts.append(f"recording {status.size / 1e6:.1f} MB" if not status.trouble else "NOT RECORDING")
         return ", ".join(part for part in parts if part)
 
@@ -70,7 +70,7 @@ class Session:
 @asynccontextmanager
 async def on_air(settings: Settings, *, listen: bool, record: bool) -> AsyncIterator[Session]:
     """A station on the bus, recording if asked; all of it ends with the block. Raises ConfigError."""
-    from gcs.recording.shell import Keeper
+    from gcs.recording.shell import StationRecorder
     from onboard.runtime.links import open_link
     from onboard.runtime.run_folder import new_run
 
@@ -79,10 +79,9 @@ async def on_air(settings: Settings, *, listen: bool, record: bool) -> AsyncIter
     async with AsyncExitStack() as stack:
         bus = await open_zenoh(settings.bus.endpoint or None, listen=listen, config_file=zenoh)
         stack.push_async_callback(bus.close)
-        station = Station(
-            bus, clock, settings.game, operator=settings.signature, limits=settings.alerts, version=version()
-        )
-        keeper = None
+        who = StationSetup(settings.game, settings.signature, version(), settings.alerts)
+        station = Station(bus, clock, who)
+        recorder = None
         if record:
             links = []
             for url in settings.recording.mavlink:
@@ -90,18 +89,18 @@ async def on_air(settings: Settings, *, listen: bool, record: bool) -> AsyncIter
                 stack.callback(link.close)
                 links.append(link)
             folder = new_run(Path(settings.recording.folder), settings.game, station.now_ns())
-            keeper = Keeper(station, folder, links)
-            stack.callback(keeper.close)
+            recorder = StationRecorder(station, folder, links)
+            stack.callback(recorder.close)
             station.remark(Severity.INFO, "recording", f"recording into {folder}")
         if bus.how == "joined":
             station.remark(Severity.INFO, "bus", bus.status())
         station.open()
         tasks = await stack.enter_async_context(asyncio.TaskGroup())
         running = [tasks.create_task(station.run(), name="station")]
-        if keeper is not None:
-            running.append(tasks.create_task(keeper.run(), name="recorder"))
+        if recorder is not None:
+            running.append(tasks.create_task(recorder.run(), name="recorder"))
         try:
-            yield Session(bus, station, keeper)
+            yield Session(bus, station, recorder)
         finally:
             for task in running:
                 task.cancel()

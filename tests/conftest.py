@@ -1,7 +1,7 @@
 """One BLAS thread, as every program sets it; the same examples every time; time limits that fit the machine.
 
-With more threads small matrices take ten times as long. `HYPOTHESIS_PROFILE=long` (`make check-long`) draws
-new examples each time, and many more.
+With more threads small matrices take ten times as long. With `HYPOTHESIS_PROFILE=long` (`make check-long`)
+the examples are others with each `--hypothesis-seed`.
 """
 
 from __future__ import annotations

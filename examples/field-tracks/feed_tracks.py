@@ -27,9 +27,8 @@ from onboard.runtime.bus_zenoh import open_zenoh
 from onboard.runtime.clock import RealClock
 from onboard.runtime.links import open_link
 from onboard.runtime.protocols import Bus
-from onboard.wire.bus import messages as swarm
 from onboard.wire.bus.messages import Track
-from onboard.wire.bus.topics import DEFAULT_GAME, TRACK, key
+from onboard.wire.bus.topics import DEFAULT_GAME, TRACK
 from onboard.wire.geodesy import Frame
 from onboard.wire.mavlink.frames import Framer
 from onboard.wire.mavlink.values import AdsbVehicle
@@ -188,7 +187,7 @@ async def hear_adsb(feed: Feed, url: str, bus: Bus, game: str) -> None:
 def publish(track: Track | None, bus: Bus, game: str) -> None:
     """Put a track on the bus."""
     if track is not None:
-        bus.publish(key(game, TRACK, track.id), swarm.TRACK.encode(track), TRACK.delivery)
+        bus.publish(TRACK.key(game, track.id), TRACK.encode(track), TRACK.delivery)
 
 
 async def main(arguments: list[str]) -> None:

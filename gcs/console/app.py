@@ -14,13 +14,12 @@ from textual.containers import Container
 from textual.css.query import NoMatches
 from textual.widgets import Input
 
-from gcs.console import command_parser as words
-from gcs.console import plan
+from gcs.console import command_parser, plan
 from gcs.console.help import HelpScreen
 from gcs.console.source import Source
 from gcs.console.vehicle_table import Row, rows
 from gcs.console.widgets import AlertBoard, Detail, LogPanel, Plan, Prompt, StatusBar, VehicleTable
-from gcs.picture.commands import ENDS_A_FLIGHT
+from gcs.picture.command_book import ENDS_A_FLIGHT
 from gcs.picture.values import Picture
 from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus.messages import CommandKind
@@ -92,13 +91,14 @@ class Console(App[int]):
         self.follows = False
         self.options = plan.Options()
         self.table: list[Row] = []
-        self.asked: words.Order | words.Do | None = None  # waits for a yes
+        self.asked: command_parser.Order | command_parser.Do | None = None  # waits for a yes
         self.asked_ns = 0
         self.picture: Picture = source.picture()
 
     # ---- what is on the screen
 
     def compose(self) -> ComposeResult:
+        """The panels, from top to bottom."""
         with Container(id="main"):
             yield StatusBar(id="status")
             yield VehicleTable(id="vehicles")
@@ -109,6 +109,7 @@ class Console(App[int]):
             yield Prompt(id="prompt")
 
     def on_mount(self) -> None:
+        """Take the source's own keys in, and begin to refresh."""
         for key in self.source.keys:
             self._bindings.key_to_bindings.pop(key.key, None)
             self._bindings.bind(key.key, f"source({key.action!r})", key.text, show=False)
@@ -142,13 +143,13 @@ class Console(App[int]):
         main.query_one(StatusBar).show(picture, self.source.title, self.source.status())
         main.query_one(VehicleTable).show(self.table, self.selected, self.sort, self.descending)
         area = main.query_one(Plan)
-        self.view = self._look(picture, area.size.width, area.size.height)
+        self.view = self._view_of(picture, area.size.width, area.size.height)
         area.show(picture, self.view, self.selected, self.options)
         main.query_one(Detail).show(picture, self.selected)
         main.query_one(AlertBoard).show(picture)
         main.query_one(LogPanel).show(picture)
 
-    def _look(self, picture: Picture, width: int, height: int) -> plan.View:
+    def _view_of(self, picture: Picture, width: int, height: int) -> plan.View:
         view = self.view
         if self.keeps_fitted:
             view = plan.fitted(view, picture, width, height)
@@ -175,14 +176,14 @@ class Console(App[int]):
         if not ids:
             self.say("no vehicle is known yet", "bold yellow")
             return
-        self._give(words.Order(CommandKind.ABORT, ids))
+        self._give(command_parser.Order(CommandKind.ABORT, ids))
 
     def action_order(self, kind: str) -> None:
         """A command to the selected vehicle; the same key again answers yes."""
         if self.selected is None:
             self.say("no vehicle is known yet", "bold yellow")
             return
-        order = words.Order(CommandKind(kind), (self.selected,))
+        order = command_parser.Order(CommandKind(kind), (self.selected,))
         if self.asked == order:
             self.action_yes()
         else:
@@ -215,9 +216,9 @@ class Console(App[int]):
     def action_yes(self) -> None:
         """Yes to what was asked."""
         asked, self.asked = self.asked, None
-        if isinstance(asked, words.Order):
+        if isinstance(asked, command_parser.Order):
             self._give(asked)
-        elif isinstance(asked, words.Do):
+        elif isinstance(asked, command_parser.Do):
             self.exit(0)
 
     def action_acknowledge(self, what: str) -> None:
@@ -231,8 +232,8 @@ class Console(App[int]):
 
     def action_sort(self, step: int) -> None:
         """Sort by the next column."""
-        at = words.SORTS.index(self.sort)
-        self.sort_by(words.SORTS[(at + step) % len(words.SORTS)])
+        at = command_parser.SORTS.index(self.sort)
+        self.sort_by(command_parser.SORTS[(at + step) % len(command_parser.SORTS)])
 
     def sort_by(self, column: str) -> None:
         """Sort by a column; by the same one again: the other way round."""
@@ -252,7 +253,7 @@ class Console(App[int]):
         self.show()
 
     def action_fit(self) -> None:
-        """Fit everything again."""
+        """Fit the plan to all vehicles again, and keep it fitted."""
         self.keeps_fitted, self.follows = True, False
         area = self.query_one(Plan).size
         self.view = plan.fitted(plan.View(1e9, 1e9, 1.0), self.picture, area.width, area.height)
@@ -282,13 +283,13 @@ class Console(App[int]):
 
     def action_leave(self) -> None:
         """Leave, after a question."""
-        if isinstance(self.asked, words.Do):
+        if isinstance(self.asked, command_parser.Do):
             self.action_yes()
         else:
-            self._ask(words.Do("quit"), "leave the console? vehicles fly on")
+            self._ask(command_parser.Do("quit"), "leave the console? vehicles fly on")
 
     def action_leave_now(self) -> None:
-        """Leave at once."""
+        """Leave the console at once, without a question."""
         self.exit(0)
 
     def on_vehicle_table_picked(self, event: VehicleTable.Picked) -> None:
@@ -304,15 +305,15 @@ class Console(App[int]):
     def on_input_submitted(self, event: Input.Submitted) -> None:
         """A line was typed."""
         self.query_one(Prompt).close()
-        meaning = words.parse(event.value, self.picture, self.selected)
-        if isinstance(meaning, words.Wrong):
+        meaning = command_parser.parse(event.value, self.picture, self.selected)
+        if isinstance(meaning, command_parser.Wrong):
             self.say(meaning.reason, "bold yellow")
-        elif isinstance(meaning, words.Order):
+        elif isinstance(meaning, command_parser.Order):
             self._order(meaning)
         else:
             self._do(meaning)
 
-    def _do(self, meaning: words.Do) -> None:
+    def _do(self, meaning: command_parser.Do) -> None:
         if meaning.what == "ack":
             self.action_acknowledge(meaning.argument)
         elif meaning.what == "select":
@@ -324,13 +325,13 @@ class Console(App[int]):
         else:
             self.exit(0)
 
-    def _order(self, order: words.Order) -> None:
+    def _order(self, order: command_parser.Order) -> None:
         if order.kind in ENDS_A_FLIGHT:
-            self._ask(order, f"{order.kind.value} {words.names(order.ids, self.picture)}?")
+            self._ask(order, f"{order.kind.value} {command_parser.names(order.ids, self.picture)}?")
         else:
             self._give(order)
 
-    def _ask(self, what: words.Order | words.Do, question: str) -> None:
+    def _ask(self, what: command_parser.Order | command_parser.Do, question: str) -> None:
         self.asked, self.asked_ns = what, self.picture.now_ns
         self.say(f"{question}  y: yes, esc: no", "bold reverse")
 
@@ -339,7 +340,7 @@ class Console(App[int]):
             self.asked = None
             self.say("not done")
 
-    def _give(self, order: words.Order) -> None:
+    def _give(self, order: command_parser.Order) -> None:
         said = self.source.command(order.kind, order.ids)
-        self.say(said or f"{order.kind.value} to {words.names(order.ids, self.picture)}", "bold")
+        self.say(said or f"{order.kind.value} to {command_parser.names(order.ids, self.picture)}", "bold")
         self.refresh_picture()

@@ -7,7 +7,7 @@ from math import atan2, degrees, hypot
 from gcs.console.vehicle_table import GRADE_WORDS, STYLES, age, evader_position, grades
 from gcs.picture.values import Picture, VehicleView
 from onboard.core.math.vectors import Vec, distance, dot, norm, scale, sub
-from onboard.wire.bus.messages import Role
+from onboard.wire.bus.messages import Role, SupervisorAction
 
 Line = tuple[str, str]  # text, style
 
@@ -20,9 +20,10 @@ def detail(picture: Picture, selected: int | None) -> list[Line]:
     grade = grades(picture)[vehicle.id]
     role = vehicle.role.value if vehicle.role else "role unknown"
     armed = "armed" if vehicle.armed else "disarmed"
+    kind = vehicle.health.autopilot if vehicle.health else None
     lines = [
         (f"{vehicle.id} {role}: {GRADE_WORDS[grade]}, heard {age(vehicle.age_s)} s ago", STYLES[grade]),
-        (f"{vehicle.mode or 'no mode'}, {armed}, {vehicle.health.autopilot if vehicle.health else ''}", ""),
+        (f"{vehicle.mode or 'no mode'}, {armed}, {kind.value if kind else ''}", ""),
     ]
     if vehicle.health is not None and vehicle.health.lacks:
         lines.append((f"waits for {', '.join(vehicle.health.lacks)}", "yellow"))
@@ -43,12 +44,12 @@ def _decision(vehicle: VehicleView) -> list[Line]:
     old = f" ({age(vehicle.decision_age_s)} s ago)" if vehicle.decision_age_s > 1.0 else ""
     lines = [
         (f"rule {decision.rule.replace('_', ' ')}{old}", "bold"),
-        (f"{decision.level}, {decision.module}, {decision.strategy}", ""),
+        (f"{decision.level.value}, {decision.module.value}, {decision.strategy}", ""),
         (f"aim N {north:.0f} E {east:.0f} up {-down:.0f} m", ""),
         (f"in {decision.time_to_aim:.1f} s, predicted miss {decision.miss:.1f} m", ""),
     ]
-    if decision.supervisor not in ("", "ok"):
-        lines.append((f"supervisor: {decision.supervisor}: {decision.reason}", "bold yellow"))
+    if decision.supervisor is not SupervisorAction.OK:
+        lines.append((f"supervisor: {decision.supervisor.value}: {decision.reason}", "bold yellow"))
     if decision.predictor:
         lines.append((f"predictor {decision.predictor}, σ {decision.predictor_sigma:.1f} m", ""))
     return lines

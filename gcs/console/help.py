@@ -12,8 +12,7 @@ from textual.containers import VerticalScroll
 from textual.screen import ModalScreen
 from textual.widgets import Static
 
-from gcs.console import command_parser as words
-from gcs.console import plan
+from gcs.console import command_parser, plan
 from gcs.console.source import Key
 
 KEY_NAMES = {
@@ -39,6 +38,7 @@ class HelpScreen(ModalScreen[None]):
         self.text = help_text(keys, own)
 
     def compose(self) -> ComposeResult:
+        """The text in a frame that scrolls."""
         with VerticalScroll(id="help"):
             yield Static(self.text)
 
@@ -54,9 +54,9 @@ def help_text(keys: Iterable[tuple[str, str, str]], own: Iterable[Key]) -> Text:
         _entry(text, _named(names), said)
     text.append("\nCommand line", "bold")
     text.append("  (: or enter opens it)\n")
-    for form, said in words.HELP_LINES:
+    for form, said in command_parser.HELP_LINES:
         _entry(text, form, said)
-    text.append(f"  {words.WHOM}\n")
+    text.append(f"  {command_parser.WHOM}\n")
     text.append("\nPlan\n", "bold")
     for sign, said in plan.LEGEND:
         _entry(text, sign, said)

@@ -13,7 +13,7 @@ STATUS_EVERY_S = 5.0
 WORDS = {Severity.ERROR: "ERROR ", Severity.WARNING: "WARNING ", Severity.INFO: ""}
 
 
-class Plain:
+class PlainLines:
     """Turns pictures into lines: each new entry of the log once, and now and then how all are."""
 
     def __init__(self) -> None:
@@ -65,7 +65,7 @@ def status(picture: Picture) -> list[str]:
             vehicle.role.value if vehicle.role else "role unknown",
             GRADE_WORDS[graded[vehicle.id]],
             vehicle.mode or "no mode",
-            health.stage if health else "no health",
+            health.stage.value if health else "no health",
             f"battery {health.battery:.0%}" if health and health.battery >= 0 else "battery unknown",
             f"heard {age(vehicle.age_s)} s ago",
         ]

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from gcs.console.vehicle_table import GRADE_WORDS, STYLES, Grade, grades
 from gcs.picture.values import Picture, Presence, VehicleView
+from onboard.game import palette
 from onboard.wire.bus.messages import Role
 
 Run = tuple[str, str]  # text, style
@@ -30,7 +31,7 @@ class View(NamedTuple):
 
 
 class Options(NamedTuple):
-    """What is drawn."""
+    """What the plan shows beside the vehicles."""
 
     trails: bool = True
     circles: bool = True
@@ -97,6 +98,7 @@ class _Canvas:
         return (east - v.east) / v.scale + self.width, (v.north - north) / v.scale + 2 * self.height
 
     def dot(self, x: float, y: float, style: str) -> None:
+        """A braille dot at dot coordinates; nothing outside the view."""
         if 0 <= x < 2 * self.width and 0 <= y < 4 * self.height:
             column, row = int(x), int(y)
             self.dots[row // 4][column // 2] |= BRAILLE[row % 4][column % 2]
@@ -116,6 +118,7 @@ class _Canvas:
             self.dot(x0 + (x1 - x0) * step / steps, y0 + (y1 - y0) * step / steps, style)
 
     def circle(self, north: float, east: float, radius: float, style: str) -> None:
+        """A circle about a place [m], unless it is too small or too large to be seen as one."""
         r = radius / self.view.scale
         if not 1.5 <= r < FAR:
             return
@@ -126,6 +129,7 @@ class _Canvas:
             self.dot(x + r * sin(angle), y - r * cos(angle), style)
 
     def text(self, column: int, row: int, text: str, style: str) -> None:
+        """Text from a character cell on to the right; what leaves the view is cut off."""
         if not 0 <= row < self.height:
             return
         for offset, sign in enumerate(text):
@@ -141,6 +145,7 @@ class _Canvas:
             self.text(max(0, min(column, self.width - len(text))), row, text, style)
 
     def rows(self) -> list[list[Run]]:
+        """All rows from the top, each as runs of one style."""
         rows = []
         for signs, dots, styles in zip(self.signs, self.dots, self.styles, strict=True):
             runs: list[Run] = []
@@ -195,15 +200,16 @@ def plan(
         canvas.line(chosen.position[:2], aim[:2], "bold", gap=3)
         canvas.sign(aim[0], aim[1], "×", "bold")
     if picture.game.target is not None:
-        canvas.sign(picture.game.target[0], picture.game.target[1], "◎", "bold green")
+        canvas.sign(picture.game.target[0], picture.game.target[1], "◎", f"bold {palette.TARGET.dark}")
     own = {v.id for v in picture.vehicles if v.presence is Presence.PRESENT and v.position}
     for track in picture.tracks:
         if track.id not in own:
-            canvas.sign(track.track.position[0], track.track.position[1], f"+{track.id}", "red")
+            canvas.sign(*track.track.position[:2], f"+{track.id}", _colour(picture, track.id))
     graded = grades(picture)
     for vehicle in sorted(picture.vehicles, key=lambda v: v.id == selected):
         if vehicle.position is not None:
-            label, style = _label(vehicle, graded[vehicle.id], vehicle.id == selected)
+            colour = _colour(picture, vehicle.id)
+            label, style = _label(vehicle, graded[vehicle.id], vehicle.id == selected, colour)
             canvas.sign(vehicle.position[0], vehicle.position[1], label, style)
     _scale(canvas)
     return canvas.rows()
@@ -213,26 +219,39 @@ def _circles(canvas: _Canvas, picture: Picture, chosen: VehicleView | None) -> N
     if picture.game.setup is not None:
         for vehicle in picture.vehicles:
             if vehicle.role is Role.PURSUER and vehicle.position is not None:
-                canvas.circle(*vehicle.position[:2], picture.game.setup.rules.R, "dim cyan")
+                style = f"dim {_colour(picture, vehicle.id)}"
+                canvas.circle(*vehicle.position[:2], picture.game.setup.rules.R, style)
     if chosen is not None and chosen.decision is not None and chosen.decision_age_s < 2.0:
         for north, east, _, radius in chosen.decision.circles:
-            canvas.circle(north, east, radius, "yellow")
+            canvas.circle(north, east, radius, palette.APOLLONIUS.dark)
 
 
 def _trails(canvas: _Canvas, picture: Picture) -> None:
     seen = set()
     for vehicle in picture.vehicles:
         seen.add(vehicle.id)
-        style = "red" if vehicle.role is Role.EVADER else "cyan"
+        style = _colour(picture, vehicle.id)
         for a, b in zip(vehicle.trail, vehicle.trail[1:], strict=False):
             canvas.line(a[:2], b[:2], style)
     for track in picture.tracks:
         if track.id not in seen:
             for place in track.trail:
-                canvas.dot(*canvas.place(*place[:2]), "red")
+                canvas.dot(*canvas.place(*place[:2]), _colour(picture, track.id))
 
 
-def _label(vehicle: VehicleView, grade: Grade, selected: bool) -> tuple[str, str]:
+def _colour(picture: Picture, vehicle_id: int) -> str:
+    """A vehicle's colour on a dark screen, the same as in reports; one of no side is grey."""
+    vehicle = picture.vehicle(vehicle_id)
+    role = vehicle.role if vehicle is not None else None
+    if role is None and picture.game.setup is not None:
+        role = next((member.role for member in picture.game.setup.roster if member.id == vehicle_id), None)
+    if role not in (Role.EVADER, Role.PURSUER):
+        return palette.FAINT.dark
+    return palette.vehicle(vehicle_id, role is Role.EVADER).dark
+
+
+def _label(vehicle: VehicleView, grade: Grade, selected: bool, colour: str) -> tuple[str, str]:
+    """The sign of a vehicle, and its style: what is wrong with it, else its own colour."""
     assert vehicle.state is not None
     name = f"E{vehicle.id}" if vehicle.role is Role.EVADER else str(vehicle.id)
     if selected:
@@ -243,8 +262,7 @@ def _label(vehicle: VehicleView, grade: Grade, selected: bool) -> tuple[str, str
     course = atan2(east, north) if hypot(north, east) > 0.5 else vehicle.state.yaw
     arrow = ARROWS[round(remainder(course, 2 * pi) / (pi / 4)) % 8]
     alarm = "!" if grade in (Grade.ERROR, Grade.WARN) else ""
-    style = "bold red" if vehicle.role is Role.EVADER else "bold cyan"
-    return f"{arrow}{name}{alarm}", STYLES[grade] if alarm else style
+    return f"{arrow}{name}{alarm}", STYLES[grade] if alarm else f"bold {colour}"
 
 
 def _scale(canvas: _Canvas) -> None:

@@ -5,8 +5,7 @@ from __future__ import annotations
 from datetime import UTC, datetime
 from math import degrees
 
-from gcs.picture.values import CommandView, Picture, Presence
-from onboard.core.math.constants import NS_PER_S
+from gcs.picture.values import CommandView, LegState, Picture, Presence
 from onboard.wire.bus.messages import Severity
 
 Runs = list[tuple[str, str]]
@@ -31,7 +30,7 @@ def _game(picture: Picture) -> list[str]:
     parts = [f"{name} {phase} {game.clock}"]
     if game.outcome is not None:
         by = f" by {game.outcome.captor}" if game.outcome.captor else ""
-        parts.append(f"evader {game.outcome.verdict}{by}")
+        parts.append(f"evader {game.outcome.verdict.value}{by}")
     elif picture.assessment is not None:
         found = picture.assessment
         gap = "encircled" if found.encircled else f"gap {degrees(found.largest_gap):.0f}°"
@@ -62,22 +61,21 @@ def alert_lines(picture: Picture, width: int, height: int) -> list[Runs]:
 def _shown(command: CommandView, picture: Picture) -> bool:
     """Open, or settled within the last five seconds."""
     return any(
-        leg.open or picture.now_ns - command.issued_ns < (leg.took_s + 5.0) * NS_PER_S for leg in command.legs
+        leg.open or picture.now_ns - command.issued_ns < (leg.took_s + 5.0) * 1e9 for leg in command.legs
     )
 
 
 def _command(command: CommandView) -> Runs:
-    done = sum(leg.state == "confirmed" for leg in command.legs)
-    text = f"{command.kind}: {done} of {len(command.legs)} confirmed"
+    done = sum(leg.state is LegState.CONFIRMED for leg in command.legs)
+    text = f"{command.kind.value}: {done} of {len(command.legs)} confirmed"
     if command.confirmed:
         slowest = max(leg.took_s for leg in command.legs)
         return [(f"{text} in {slowest:.1f} s", "green")]
     groups: dict[str, list[str]] = {}
     for leg in command.legs:
-        if leg.state != "confirmed":
-            word = "no answer" if leg.state == "sent" else leg.state
+        if leg.state is not LegState.CONFIRMED:
             said = f" ({leg.reason})" if leg.reason else ""
-            groups.setdefault(word, []).append(f"{leg.id}{said}")
+            groups.setdefault(leg.state.words, []).append(f"{leg.id}{said}")
     rest = "; ".join(f"{word}: {', '.join(ids)}" for word, ids in groups.items())
     return [(f"{text}; {rest}", "bold yellow")]
 
@@ -94,5 +92,4 @@ def log_lines(picture: Picture, width: int) -> list[Runs]:
 
 def clock(at_ns: int) -> str:
     """Time of day, UTC."""
-    return datetime.fromtimestamp(at_ns // NS_PER_S, UTC).strftime("%H:%M:%S")
-
+    return datetime.fromtimestamp(at_ns // 1_000_000_000, UTC).strftime("%H:%M:%S")

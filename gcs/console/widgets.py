@@ -47,6 +47,7 @@ class Lines(Widget):
             self.refresh(*changed)
 
     def render_line(self, y: int) -> Strip:
+        """One line of the panel as Textual draws it."""
         width = self.size.width
         runs = self.lines[y] if y < len(self.lines) else []
         base = self.rich_style
@@ -123,7 +124,7 @@ class Plan(Lines):
     """The field from above."""
 
     def show(self, picture: Picture, view: plan.View, selected: int | None, options: plan.Options) -> None:
-        """Draw it."""
+        """Show the part of the field that the view holds."""
         if self.size.width and self.size.height:
             self.put(plan.plan(picture, view, self.size.width, self.size.height, selected, options))
 
@@ -140,7 +141,7 @@ class AlertBoard(Lines):
     """Alerts in force, and commands that not everybody has confirmed."""
 
     def show(self, picture: Picture) -> None:
-        """The worst first."""
+        """Show open commands and alerts, the worst first."""
         self.put(alert_lines(picture, self.size.width, self.size.height))
 
 
@@ -185,6 +186,7 @@ class Prompt(Horizontal):
         self.said = ""
 
     def compose(self) -> ComposeResult:
+        """The hint and the command line, of which one is shown."""
         yield Static(self.HINT, id="hint", markup=False)
         example = "abort, hold 2 3, return pursuers, land all, ack, help …"
         yield Input(placeholder=example, id="line", disabled=True)
@@ -195,7 +197,7 @@ class Prompt(Horizontal):
         self.query_one("#hint", Static).update(Text(text or self.HINT, style or "none"))
 
     def open(self) -> None:
-        """Begin to type."""
+        """Show an empty command line, ready to be typed in."""
         self.add_class("typing")
         line = self.query_one(Input)
         line.value = ""
@@ -203,7 +205,7 @@ class Prompt(Horizontal):
         line.focus()
 
     def close(self) -> None:
-        """Stop typing."""
+        """Put the command line away and show the hint again."""
         self.remove_class("typing")
         self.query_one(Input).disabled = True
         self.screen.set_focus(None)

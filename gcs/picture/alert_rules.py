@@ -13,21 +13,30 @@ from typing import Annotated
 from msgspec import Meta
 
 from gcs.picture.alerts import Finding
-from gcs.picture.values import Picture, Presence, VehicleView
+from gcs.picture.values import LegState, Picture, Presence, VehicleView
 from onboard.config.bounds import Distance, Duration, GpsFix, Share
 from onboard.config.strict import StrictConfig, demand
 from onboard.core.math.vectors import Vec, distance
 from onboard.core.safety import fence as fences
-from onboard.core.safety.policy import Action, Cause, Policy
-from onboard.core.safety.words import ACTIONS, CAUSES
-from onboard.wire.bus.messages import SCHEMA, Fence, Phase, Role, Severity
+from onboard.core.safety.policy import Cause, Policy
+from onboard.core.safety.words import CAUSES
+from onboard.wire.bus.messages import (
+    SCHEMA,
+    AgentStage,
+    CommandKind,
+    Fence,
+    Phase,
+    Role,
+    Severity,
+    SupervisorAction,
+)
 
 InForce = Callable[[str], bool]
 SUPERVISOR = Policy()  # what both judge, they judge by the same thresholds and functions
 GUIDED_MODES = frozenset({"GUIDED", "OFFBOARD"})
 ACTIVE = frozenset({Phase.STAGING, Phase.READY, Phase.RUNNING})
 ERROR, WARNING = Severity.ERROR, Severity.WARNING
-NO_ALERT = frozenset({"", ACTIONS[Action.PASS], ACTIONS[Action.CLIP]})  # of the supervisor's actions
+NO_ALERT = frozenset({SupervisorAction.OK, SupervisorAction.CLIP})
 BAD_S = 5.0  # a bad message is an alert for so long
 
 
@@ -39,17 +48,17 @@ class Thresholds(StrictConfig, frozen=True):
 
     state_stale_s: Duration = SUPERVISOR.telemetry_age  # own state older than this
     telemetry_stale_s: Duration = SUPERVISOR.telemetry_age  # the autopilot's, as the agent reports it
-    heartbeat_stale_s: Duration = SUPERVISOR.heartbeat_age
-    track_stale_s: Duration = 1.0
+    heartbeat_stale_s: Duration = SUPERVISOR.heartbeat_age  # the autopilot's heartbeat, likewise
+    track_stale_s: Duration = 1.0  # the evader's track older than this, in a running game
     battery_low: Share = 0.30  # share left: go home
     battery_critical: Share = SUPERVISOR.battery  # the supervisor acts
     battery_margin: Share = 0.03  # above the limit, to clear
-    gps_fix: GpsFix = SUPERVISOR.gps_fix
+    gps_fix: GpsFix = SUPERVISOR.gps_fix  # the least, as MAVLink counts it: 3 = in space
     link_low: Share = 0.70  # share of expected telemetry that arrives
-    link_margin: Share = 0.10
-    clock_offset_s: Duration = 0.05
+    link_margin: Share = 0.10  # above the limit, to clear
+    clock_offset_s: Duration = 0.05  # an agent's clock against the master's
     clock_unready_s: Duration = 0.2  # an agent is not ready beyond this
-    fence_near_m: Distance = SUPERVISOR.fence_margin
+    fence_near_m: Distance = SUPERVISOR.fence_margin  # nearer than this to a wall, floor or ceiling
     fence_clear_m: Distance = 2.0  # beyond the limit, to clear
     separation_clear: ClearAt = 1.15  # clears at this multiple of the separation
     confirm_s: Duration = 2.0  # a command not confirmed by then
@@ -120,16 +129,17 @@ def _commands(picture: Picture, limits: Thresholds) -> Iterator[Finding]:
         if late:
             names = ", ".join(map(str, late))
             yield Finding(
-                f"unconfirmed_{command.kind}", 0, ERROR if command.kind == "abort" else WARNING,
-                f"{command.kind} not confirmed by {names}",
+                f"unconfirmed_{command.kind.value}", 0,
+                ERROR if command.kind is CommandKind.ABORT else WARNING,
+                f"{command.kind.value} not confirmed by {names}",
                 "still being repeated; take over with the pilot's transmitter if it is urgent",
                 detail=command.command_id,
             )  # fmt: skip
-        refused = [leg for leg in command.legs if leg.state == "refused"]
+        refused = [leg for leg in command.legs if leg.state is LegState.REFUSED]
         if refused and picture.now_ns - command.issued_ns < 10_000_000_000:
             reasons = "; ".join(f"{leg.id}: {leg.reason or 'no reason given'}" for leg in refused)
             yield Finding(
-                f"refused_{command.kind}", 0, WARNING, f"{command.kind} refused by {reasons}",
+                f"refused_{command.kind.value}", 0, WARNING, f"{command.kind.value} refused by {reasons}",
                 "mend the reason and command again", detail=command.command_id,
             )  # fmt: skip
 
@@ -201,12 +211,12 @@ def _autopilot(vehicle: VehicleView, in_force: InForce, limits: Thresholds) -> I
                 f"{name}'s battery is at {health.battery:.0%}",
                 "land it now" if critical else "bring it home soon: return", 1.0,
             )  # fmt: skip
-    if health.stage == "handed_over":
+    if health.stage is AgentStage.HANDED_OVER:
         yield Finding(
             "handed_over", vehicle.id, WARNING, f"{name} is in its pilot's hands",
             "the strategy is out of it; `resume` when the pilot gives it back",
         )  # fmt: skip
-    elif health.stage == "acting" and vehicle.mode not in GUIDED_MODES:
+    elif health.stage is AgentStage.ACTING and vehicle.mode not in GUIDED_MODES:
         yield Finding(
             "mode", vehicle.id, ERROR, f"{name} acts, but its autopilot is in {vehicle.mode or 'no mode'}",
             "it does not follow: enter GUIDED / OFFBOARD, or hold", 1.0,
@@ -219,12 +229,14 @@ def _autopilot(vehicle: VehicleView, in_force: InForce, limits: Thresholds) -> I
 
 
 def _supervisor(vehicle: VehicleView) -> Iterator[Finding]:
-    spoken = vehicle.decision.supervisor if vehicle.decision and vehicle.decision_age_s < 1.0 else ""
-    why = vehicle.decision.reason if vehicle.decision else ""
-    if spoken not in NO_ALERT and why != CAUSES[Cause.ORDER]:
+    if vehicle.decision is None or vehicle.decision_age_s >= 1.0:
+        return
+    action, why = vehicle.decision.supervisor, vehicle.decision.reason
+    if action not in NO_ALERT and why != CAUSES[Cause.ORDER]:
         reason = f": {why}" if why else ""
         yield Finding(
-            "supervisor", vehicle.id, WARNING, f"vehicle {vehicle.id}'s supervisor orders {spoken}{reason}",
+            "supervisor", vehicle.id, WARNING,
+            f"vehicle {vehicle.id}'s supervisor orders {action.value}{reason}",
             "it keeps the vehicle safe; mend the cause, then `resume`", 0.2,
         )  # fmt: skip
 

@@ -28,6 +28,7 @@ class Rate:
         self.last = -1.0
 
     def tick(self, now_ns: int) -> None:
+        """Count a message that came at `now_ns`."""
         passed = now_ns - self.start_ns
         if passed >= NS_PER_S:
             self.last = self.count * NS_PER_S / passed
@@ -50,12 +51,14 @@ class Trail:
         self.taken: tuple[tuple[float, float, float], ...] | None = ()
 
     def add(self, position: tuple[float, float, float], now_ns: int) -> None:
+        """Take a position [m; NED] in where the last one taken is half a second old."""
         if now_ns - self.last_ns >= TRAIL_STEP_NS:
             self.points.append(position)
             self.last_ns = now_ns
             self.taken = None
 
     def view(self) -> tuple[tuple[float, float, float], ...]:
+        """The positions kept [m; NED], oldest first."""
         if self.taken is None:
             self.taken = tuple(self.points)
         return self.taken

@@ -12,6 +12,7 @@ from math import sqrt
 import msgspec
 
 from onboard.wire.bus.messages import (
+    CommandKind,
     DecisionReport,
     Health,
     Master,
@@ -158,11 +159,27 @@ class LogLine(Value, frozen=True):
     text: str
 
 
+class LegState(Enum):
+    """How far a command to one vehicle has come: the agent's word, or the station's own."""
+
+    SENT = "sent"  # no answer yet
+    PENDING = "pending"
+    CONFIRMED = "confirmed"
+    REFUSED = "refused"
+    SUPERSEDED = "superseded"
+    EXPIRED = "expired"  # no longer repeated
+
+    @property
+    def words(self) -> str:
+        """For people."""
+        return "no answer" if self is LegState.SENT else self.value
+
+
 class Leg(Value, frozen=True):
     """A command's way to one vehicle."""
 
     id: int
-    state: str  # sent | accepted | pending | confirmed | refused | superseded | expired
+    state: LegState
     reason: str = ""
     mode: str = ""  # of the autopilot, as the answer gives it
     obeyed: str = ""  # whom the agent obeys now
@@ -171,14 +188,14 @@ class Leg(Value, frozen=True):
     @property
     def open(self) -> bool:
         """No final answer yet."""
-        return self.state in ("sent", "accepted", "pending")
+        return self.state in (LegState.SENT, LegState.PENDING)
 
 
 class CommandView(Value, frozen=True):
     """A command and who has confirmed it."""
 
     command_id: str
-    kind: str
+    kind: CommandKind
     sender: str
     issued_ns: int
     legs: tuple[Leg, ...]
@@ -186,12 +203,12 @@ class CommandView(Value, frozen=True):
     @property
     def confirmed(self) -> bool:
         """Every vehicle has confirmed."""
-        return all(leg.state == "confirmed" for leg in self.legs)
+        return all(leg.state is LegState.CONFIRMED for leg in self.legs)
 
     @property
     def unconfirmed(self) -> tuple[int, ...]:
         """Who has not confirmed."""
-        return tuple(leg.id for leg in self.legs if leg.state != "confirmed")
+        return tuple(leg.id for leg in self.legs if leg.state is not LegState.CONFIRMED)
 
 
 class ProspectView(Value, frozen=True):

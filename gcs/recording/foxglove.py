@@ -18,46 +18,60 @@ from onboard.wire.bus.messages import Triple
 WORLD = "field"
 
 
-class Part(msgspec.Struct, frozen=True):
-    """Base of all parts."""
+class ViewerMessage(msgspec.Struct, frozen=True):
+    """Base of all messages for viewers and of their parts."""
 
 
-class Time(Part, frozen=True):
+class Time(ViewerMessage, frozen=True):
+    """An instant since the epoch, or a duration: whole seconds and the nanoseconds beyond."""
+
     sec: int
     nsec: int
 
 
-class Vector3(Part, frozen=True):
+class Vector3(ViewerMessage, frozen=True):
+    """A place [m], a direction or a size [m] in the viewers' world."""
+
     x: float
     y: float
     z: float
 
 
-class Quaternion(Part, frozen=True):
+class Quaternion(ViewerMessage, frozen=True):
+    """An orientation as a unit quaternion, scalar last."""
+
     x: float = 0.0
     y: float = 0.0
     z: float = 0.0
     w: float = 1.0
 
 
-class Pose(Part, frozen=True):
+class Pose(ViewerMessage, frozen=True):
+    """Place and orientation."""
+
     position: Vector3
     orientation: Quaternion = Quaternion()
 
 
-class Color(Part, frozen=True):
+class Color(ViewerMessage, frozen=True):
+    """Red, green, blue and opacity, each 0…1."""
+
     r: float
     g: float
     b: float
     a: float = 1.0
 
 
-class KeyValuePair(Part, frozen=True):
+class KeyValuePair(ViewerMessage, frozen=True):
+    """A named word that a viewer shows beside an entity."""
+
     key: str
     value: str
 
 
-class Arrow(Part, frozen=True):
+class Arrow(ViewerMessage, frozen=True):
+    """An arrow along the x axis of its pose; lengths and diameters [m]."""
+
     pose: Pose
     shaft_length: float
     shaft_diameter: float
@@ -66,19 +80,25 @@ class Arrow(Part, frozen=True):
     color: Color
 
 
-class Cube(Part, frozen=True):
+class Cube(ViewerMessage, frozen=True):
+    """A box centred on its pose."""
+
     pose: Pose
     size: Vector3
     color: Color
 
 
-class Sphere(Part, frozen=True):
+class Sphere(ViewerMessage, frozen=True):
+    """An ellipsoid centred on its pose."""
+
     pose: Pose
     size: Vector3
     color: Color
 
 
-class Cylinder(Part, frozen=True):
+class Cylinder(ViewerMessage, frozen=True):
+    """A cylinder along the z axis of its pose; the scales (0…1) narrow its ends to a cone."""
+
     pose: Pose
     size: Vector3
     bottom_scale: float
@@ -86,7 +106,9 @@ class Cylinder(Part, frozen=True):
     color: Color
 
 
-class Line(Part, frozen=True):
+class Line(ViewerMessage, frozen=True):
+    """Points joined by lines; `thickness` in pixels where `scale_invariant`, otherwise [m]."""
+
     type: int  # 0 strip, 1 loop, 2 list
     pose: Pose
     thickness: float
@@ -97,7 +119,9 @@ class Line(Part, frozen=True):
     indices: tuple[int, ...] = ()
 
 
-class Triangles(Part, frozen=True):
+class Triangles(ViewerMessage, frozen=True):
+    """A surface of triangles."""
+
     pose: Pose
     points: tuple[Vector3, ...]
     color: Color
@@ -105,7 +129,9 @@ class Triangles(Part, frozen=True):
     indices: tuple[int, ...] = ()
 
 
-class Text(Part, frozen=True):
+class Text(ViewerMessage, frozen=True):
+    """Words at a place; `font_size` in pixels where `scale_invariant`, otherwise [m]."""
+
     pose: Pose
     billboard: bool
     font_size: float
@@ -114,7 +140,9 @@ class Text(Part, frozen=True):
     text: str
 
 
-class Model(Part, frozen=True):
+class Model(ViewerMessage, frozen=True):
+    """A 3-D model from a URL or from embedded data."""
+
     pose: Pose
     scale: Vector3
     color: Color
@@ -124,7 +152,9 @@ class Model(Part, frozen=True):
     data: str
 
 
-class Entity(Part, frozen=True, kw_only=True):
+class Entity(ViewerMessage, frozen=True, kw_only=True):
+    """Everything drawn under one id; a later entity of that id replaces it."""
+
     timestamp: Time
     frame_id: str = WORLD
     id: str
@@ -141,18 +171,24 @@ class Entity(Part, frozen=True, kw_only=True):
     models: tuple[Model, ...] = ()
 
 
-class Deletion(Part, frozen=True):
+class Deletion(ViewerMessage, frozen=True):
+    """Removes the entity of an id (`type` 0) or all entities (1)."""
+
     timestamp: Time
     type: int
     id: str
 
 
-class SceneUpdate(Part, frozen=True):
+class SceneUpdate(ViewerMessage, frozen=True):
+    """What changes in the scene."""
+
     entities: tuple[Entity, ...]
     deletions: tuple[Deletion, ...] = ()
 
 
-class FrameTransform(Part, frozen=True):
+class FrameTransform(ViewerMessage, frozen=True):
+    """Where a frame (a vehicle's body) lies in its parent."""
+
     timestamp: Time
     parent_frame_id: str
     child_frame_id: str
@@ -160,17 +196,23 @@ class FrameTransform(Part, frozen=True):
     rotation: Quaternion
 
 
-class FrameTransforms(Part, frozen=True):
+class FrameTransforms(ViewerMessage, frozen=True):
+    """Several transforms of one instant."""
+
     transforms: tuple[FrameTransform, ...]
 
 
-class PoseInFrame(Part, frozen=True):
+class PoseInFrame(ViewerMessage, frozen=True):
+    """A pose in a named frame."""
+
     timestamp: Time
     frame_id: str
     pose: Pose
 
 
-class LocationFix(Part, frozen=True):
+class LocationFix(ViewerMessage, frozen=True):
+    """A place on Earth: WGS-84 and height above mean sea level."""
+
     timestamp: Time
     frame_id: str
     latitude: float  # [deg]
@@ -180,7 +222,9 @@ class LocationFix(Part, frozen=True):
     position_covariance_type: int = 0  # unknown
 
 
-class Log(Part, frozen=True):
+class Log(ViewerMessage, frozen=True):
+    """One line of the log panel."""
+
     timestamp: Time
     level: int  # 1 debug, 2 info, 3 warning, 4 error
     message: str
@@ -189,9 +233,10 @@ class Log(Part, frozen=True):
     line: int = 0
 
 
-def layout(kind: type[Part]) -> Layout:
+def layout(kind: type[ViewerMessage]) -> Layout:
     """The channel layout of one of the messages above."""
-    return Layout(f"foxglove.{kind.__name__}", "json", as_bytes(_plain(inlined(msgspec.json.schema(kind)))))
+    schema = inlined(msgspec.json.schema(kind), {})
+    return Layout(f"foxglove.{kind.__name__}", "json", as_bytes(_plain(schema)))
 
 
 def _plain(node: Any) -> Any:

@@ -60,7 +60,7 @@ class Span(NamedTuple):
 class Recording:
     """An open recording. `entries` reads it; the file stays on the disk until then.
 
-    Raises ConfigError with one line for a file that is missing, empty, foreign, of a newer format or
+    Raises ConfigError with one line for a file that is missing, empty, foreign, of another format or
     schema, or without a single message.
     """
 
@@ -189,11 +189,11 @@ class Recording:
             return
         self.game = record.metadata.get("game", "")
         for key, known in (("format", FORMAT), ("schema", SCHEMA)):
-            found = record.metadata.get(key, "0")
-            if int(found) > known:
+            found = int(record.metadata.get(key, "0"))
+            if found != known:
+                which = "a newer gcs" if found > known else "the gcs that recorded it"
                 raise ConfigError(
-                    f"{self.path}: {key}: found version {found}, expected up to {known}: "
-                    "read it with a newer gcs"
+                    f"{self.path}: {key}: found version {found}, expected {known}: read it with {which}"
                 )
 
     def _take(self, start: int, length: int) -> bool:

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import msgspec
 
-from gcs.picture.journal import Remark
+from gcs.picture.station_journal import HEARD_HERE, Remark
 from gcs.recording.file import McapWriter, OpenDisk, OsFile, WholeFile
 from gcs.recording.schemas import Layout, layout_of
 from gcs.recording.views import Views
@@ -34,8 +34,8 @@ MOST_CHANNELS = 4096  # MCAP numbers channels with 16 bits, and keys come from t
 OTHER = "apollonius/other"  # what has no channel of its own: MessagePack of [key, payload]
 
 
-class Status(msgspec.Struct, frozen=True):
-    """How the recorder is doing."""
+class RecorderStatus(msgspec.Struct, frozen=True):
+    """How a recorder is doing."""
 
     path: str
     recorded: int  # messages taken in
@@ -133,10 +133,10 @@ class Recorder:
             self._file.settle(final=True)
         self._file.close()
 
-    def status(self) -> Status:
+    def status(self) -> RecorderStatus:
         """How it is doing."""
         waiting = self._file.waiting_bytes if self._file.trouble else 0
-        return Status(
+        return RecorderStatus(
             str(self.path), self._recorded, self._lost, self._file.size, waiting, self._file.trouble
         )
 
@@ -145,10 +145,10 @@ class Recorder:
         return bool(self._file.trouble) and self._file.waiting_bytes > self._most_waiting
 
     def _open_channel(self, key: str) -> int:
-        layout = layout_of(key)
-        if layout is None or len(self._channels) >= MOST_CHANNELS:
-            key, layout = OTHER, Layout("", "msgpack", b"")
-        return self._channel(key, layout)
+        place = HEARD_HERE.find(key)
+        if place is None or len(self._channels) >= MOST_CHANNELS:
+            return self._channel(OTHER, Layout("", "msgpack", b""))
+        return self._channel(key, layout_of(place.topic))
 
     def _put(self, topic: str, layout: Layout, payload: bytes, stamp_ns: int) -> None:
         self._writer.message(self._channel(topic, layout), stamp_ns, payload)
@@ -165,7 +165,7 @@ class Recorder:
         return channel
 
 
-def remark_of(before: Status, now: Status) -> Remark | None:
+def remark_of(before: RecorderStatus, now: RecorderStatus) -> Remark | None:
     """What the station should say about the recorder, given how it was doing before; None = nothing new."""
     if now.trouble and not before.trouble:
         return Remark(

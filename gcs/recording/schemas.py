@@ -7,14 +7,14 @@ JSON schemas of that pair, with the fields' names as titles. Channels for viewer
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import msgspec
+from msgspec import inspect
 
-from gcs.picture import journal
-from onboard.wire.bus import messages as swarm
-from onboard.wire.bus import topics
-from onboard.wire.bus.topics import ROOT, Topic
+from onboard.wire.bus.messages import Message
+from onboard.wire.bus.topics import Topic
 
 
 class Layout(NamedTuple):
@@ -25,49 +25,33 @@ class Layout(NamedTuple):
     schema: bytes  # JSON schema
 
 
-_BUS: dict[Topic, type[swarm.Message]] = {
-    topics.SETUP: swarm.Setup,
-    topics.PHASE: swarm.PhaseChange,
-    topics.OUTCOME: swarm.Outcome,
-    topics.MASTER: swarm.Master,
-    topics.EVADER_BRIEF: swarm.EvaderBrief,
-    topics.STATE: swarm.State,
-    topics.DECISION: swarm.DecisionReport,
-    topics.HEALTH: swarm.Health,
-    topics.EVENTS: swarm.Event,
-    topics.COMMAND: swarm.Command,
-    topics.TRACK: swarm.Track,
-}
-_JOURNAL: dict[str, type[swarm.Message]] = {
-    "presence": journal.Presence,
-    "sent": journal.Sent,
-    "replied": journal.Replied,
-    "acknowledged": journal.Acknowledged,
-    "remark": journal.Remark,
-}
-_LAYOUTS: dict[type[swarm.Message], Layout] = {}
+_LAYOUTS: dict[type[Message], Layout] = {}
 
 
-def layout_of(key: str) -> Layout | None:
-    """The layout of what travels on a key; None for a foreign key."""
-    kind = _kind(key)
-    if kind is None:
-        return None
+def layout_of(topic: Topic[Any]) -> Layout:
+    """The layout of what travels on a topic."""
+    kind = topic.message
     found = _LAYOUTS.get(kind)
     if found is None:
-        schema = inlined(msgspec.json.schema(tuple[int, kind]))  # type: ignore[valid-type]
+        schema = inlined(msgspec.json.schema(tuple[int, kind]), _fields(kind))  # type: ignore[valid-type]
         found = _LAYOUTS[kind] = Layout(f"apollonius.{kind.__name__}", "msgpack", as_bytes(schema))
     return found
 
 
-def _kind(key: str) -> type[swarm.Message] | None:
-    topic = topics.topic_of(key)
-    if topic is not None:
-        return _BUS.get(topic)
-    parts = key.split("/")
-    if len(parts) == 4 and parts[0] == ROOT and parts[2] == "gcs":
-        return _JOURNAL.get(parts[3])
-    return None
+def _fields(kind: type[Message]) -> dict[str, tuple[str, ...]]:
+    """The fields of a message and of all that it holds, by the names of their types."""
+    found: dict[str, tuple[str, ...]] = {}
+
+    def walk(node: Any) -> None:
+        if isinstance(node, (inspect.StructType, inspect.NamedTupleType)):
+            found[node.cls.__name__] = tuple(field.name for field in node.fields)
+        for part in ("fields", "types", "item_types", "item_type", "key_type", "value_type", "type"):
+            inner = getattr(node, part, ())
+            for child in inner if isinstance(inner, tuple) else (inner,):
+                walk(child)
+
+    walk(inspect.type_info(kind))
+    return found
 
 
 def as_bytes(schema: dict[str, Any]) -> bytes:
@@ -75,9 +59,9 @@ def as_bytes(schema: dict[str, Any]) -> bytes:
     return json.dumps(schema, sort_keys=True, separators=(",", ":")).encode()
 
 
-def inlined(schema: dict[str, Any]) -> dict[str, Any]:
+def inlined(schema: dict[str, Any], fields: Mapping[str, tuple[str, ...]]) -> dict[str, Any]:
     """The schema with every `$ref` replaced by what it names (viewers do not follow them), and
-    the items of array-like structs titled by their fields."""
+    the items of structs that travel as arrays titled by their `fields`."""
     definitions = schema.get("$defs", {})
 
     def walk(node: Any) -> Any:
@@ -87,17 +71,15 @@ def inlined(schema: dict[str, Any]) -> dict[str, Any]:
             return node
         if "$ref" in node:
             name = node["$ref"].rsplit("/", 1)[-1]
-            return walk(_titled(name, definitions[name]))
+            return walk(_titled(definitions[name], fields.get(name, ())))
         return {key: walk(value) for key, value in node.items() if key != "$defs"}
 
     result: dict[str, Any] = walk(schema)
     return result
 
 
-def _titled(name: str, definition: dict[str, Any]) -> dict[str, Any]:
-    struct = getattr(swarm, name, None) or getattr(journal, name, None)
+def _titled(definition: dict[str, Any], fields: tuple[str, ...]) -> dict[str, Any]:
     items = definition.get("prefixItems")
-    fields = getattr(struct, "__struct_fields__", ())
     if items is None or len(fields) != len(items):
         return definition
     titled = [

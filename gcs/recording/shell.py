@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from gcs.recording.file import OpenDisk, OsFile
-from gcs.recording.recorder import Recorder, Status, remark_of
+from gcs.recording.recorder import Recorder, RecorderStatus, remark_of
 from gcs.recording.tlog import TlogRecorder
 from gcs.station import Station
 from onboard.runtime.protocols import Link
@@ -16,7 +16,7 @@ RECORDING = "recording.mcap"
 TICK_S = 0.2
 
 
-class Keeper:
+class StationRecorder:
     """Records what a station hears into a folder; `run` it as a task beside the station's.
 
     Raises ConfigError where the recording cannot be made. `links` are MAVLink links to log; the
@@ -34,12 +34,12 @@ class Keeper:
         self._before = self.status()
         station.tap(self.recorder.record)
 
-    def status(self) -> Status:
+    def status(self) -> RecorderStatus:
         """How the recorder is doing."""
         status = self.recorder.status()
         if status.trouble or not self.tlogs.trouble:
             return status
-        return Status(
+        return RecorderStatus(
             str(self.tlogs.folder), status.recorded, status.lost, status.size, 0, self.tlogs.trouble
         )
 

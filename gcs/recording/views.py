@@ -7,20 +7,30 @@ not grow with the rates on the bus, and the same stream gives the same bytes.
 from __future__ import annotations
 
 from collections import Counter, deque
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from math import pi, sqrt, tan
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import msgspec
 
-from gcs.picture import journal
+from gcs.picture.station_journal import HEARD_HERE, REMARK, SENT, Remark, Sent
 from gcs.recording import foxglove as fox
 from gcs.recording.schemas import Layout
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec
-from onboard.wire.bus import messages as swarm
 from onboard.wire.bus import topics
-from onboard.wire.bus.messages import DecisionReport, Role, Setup, Severity, State
+from onboard.wire.bus.messages import (
+    DecisionReport,
+    EvaderBrief,
+    Event,
+    Outcome,
+    PhaseChange,
+    Role,
+    Setup,
+    Severity,
+    State,
+    Triple,
+)
 from onboard.wire.geodesy import Frame
 
 STEP_NS = NS_PER_S // 5
@@ -40,7 +50,8 @@ COLORS = {
 }
 TARGET = fox.Color(0.0, 0.62, 0.45)
 FENCE = fox.Color(0.8, 0.47, 0.65)
-LEVELS = {Severity.INFO: 2, Severity.WARNING: 3, Severity.ERROR: 4}
+INFO = 2
+LEVELS = {Severity.INFO: INFO, Severity.WARNING: 3, Severity.ERROR: 4}
 FOREVER = fox.Time(0, 0)
 
 
@@ -50,6 +61,14 @@ class View(NamedTuple):
     topic: str
     layout: Layout
     payload: bytes
+
+
+class _Line(NamedTuple):
+    """One line of the viewers' log."""
+
+    level: int
+    text: str
+    name: str  # who says it
 
 
 class _Drawn:
@@ -71,7 +90,7 @@ class Views:
         self._vehicles: dict[int, _Drawn] = {}
         self._setup: Setup | None = None
         self._frame: Frame | None = None
-        self._target: swarm.Triple | None = None
+        self._target: Triple | None = None
         self._changed = False  # what does not move
         self._next_ns = 0
         self._drops: Counter[str] = Counter()
@@ -79,61 +98,54 @@ class Views:
 
     def note(self, key: str, payload: bytes, stamp_ns: int) -> list[View]:
         """Take a message in; what is to be written at once (log lines)."""
-        topic = topics.topic_of(key)
-        if topic is topics.STATE or topic is topics.DECISION:
-            self._note_vehicle(topic is topics.STATE, topics.vehicle_of(key), payload, stamp_ns)
+        place = HEARD_HERE.find(key)
+        if place is None:
             return []
-        if topic is topics.SETUP:
-            setup = swarm.SETUP.decode(payload, self._drops)
-            if setup is not None:
-                self._setup, self._changed = setup, True
-                self._frame = Frame(
-                    setup.origin.latitude_deg, setup.origin.longitude_deg, setup.origin.altitude_m
-                )
-        elif topic is topics.EVADER_BRIEF:
-            brief = swarm.EVADER_BRIEF.decode(payload, self._drops)
-            if brief is not None:
-                self._target, self._changed = brief.target, True
-        line = self._line(key, topic, payload, stamp_ns)
-        return [] if line is None else [View("/log", LOG, self._encode(line))]
+        if place.topic is topics.STATE or place.topic is topics.DECISION:  # decoded when they are drawn
+            self._note_vehicle(place, payload, stamp_ns)
+            return []
+        take = _TAKERS.get(place.topic)
+        heard = HEARD_HERE.heard(key, payload, self._drops) if take is not None else None
+        line = take(self, heard.message) if heard is not None and take is not None else None
+        if line is None:
+            return []
+        log = fox.Log(fox.time_of(stamp_ns), line.level, line.text, line.name)
+        return [View("/log", LOG, self._encode(log))]
 
-    def _note_vehicle(self, state: bool, vehicle_id: int | None, payload: bytes, stamp_ns: int) -> None:
-        if vehicle_id is None or not 1 <= vehicle_id <= MOST_DRAWN:
+    def _note_vehicle(self, place: topics.Place, payload: bytes, stamp_ns: int) -> None:
+        if place.id is None or place.id > MOST_DRAWN:
             return
-        drawn = self._vehicles.get(vehicle_id)
+        drawn = self._vehicles.get(place.id)
         if drawn is None:
-            drawn = self._vehicles[vehicle_id] = _Drawn()
-        if state:
+            drawn = self._vehicles[place.id] = _Drawn()
+        if place.topic is topics.STATE:
             drawn.state, drawn.heard_ns = payload, stamp_ns
         else:
             drawn.decision = payload
 
-    def _line(self, key: str, topic: topics.Topic | None, payload: bytes, stamp_ns: int) -> fox.Log | None:
-        at = fox.time_of(stamp_ns)
-        if topic is topics.EVENTS:
-            event = swarm.EVENT.decode(payload, self._drops)
-            if event is not None:
-                return fox.Log(at, LEVELS[event.severity], event.text, f"vehicle-{event.id}")
-        elif topic is topics.PHASE:
-            phase = swarm.PHASE.decode(payload, self._drops)
-            if phase is not None:
-                why = f": {phase.reason}" if phase.reason else ""
-                return fox.Log(at, 2, f"game {phase.phase.value}{why}", "game")
-        elif topic is topics.OUTCOME:
-            outcome = swarm.OUTCOME.decode(payload, self._drops)
-            if outcome is not None:
-                return fox.Log(at, 2, f"evader {outcome.verdict} after {outcome.time:.1f} s", "game")
-        elif key.endswith("/gcs/remark"):
-            remark = journal.REMARK.decode(payload, self._drops)
-            if remark is not None:
-                return fox.Log(at, LEVELS[remark.severity], remark.text, "station")
-        elif key.endswith("/gcs/sent"):
-            sent = journal.SENT.decode(payload, self._drops)
-            if sent is not None:
-                to = ", ".join(map(str, sent.ids))
-                text = f"{sent.command.kind.value} to {to} by {sent.command.sender}"
-                return fox.Log(at, 2, text, "station")
-        return None
+    def _on_setup(self, setup: Setup) -> None:
+        self._setup, self._changed = setup, True
+        self._frame = Frame(setup.origin.latitude_deg, setup.origin.longitude_deg, setup.origin.altitude_m)
+
+    def _on_brief(self, brief: EvaderBrief) -> None:
+        self._target, self._changed = brief.target, True
+
+    def _on_event(self, event: Event) -> _Line:
+        return _Line(LEVELS[event.severity], event.text, f"vehicle-{event.id}")
+
+    def _on_phase(self, phase: PhaseChange) -> _Line:
+        why = f": {phase.reason}" if phase.reason else ""
+        return _Line(INFO, f"game {phase.phase.value}{why}", "game")
+
+    def _on_outcome(self, outcome: Outcome) -> _Line:
+        return _Line(INFO, f"evader {outcome.verdict.value} after {outcome.time:.1f} s", "game")
+
+    def _on_remark(self, remark: Remark) -> _Line:
+        return _Line(LEVELS[remark.severity], remark.text, "station")
+
+    def _on_sent(self, sent: Sent) -> _Line:
+        to = ", ".join(map(str, sent.ids))
+        return _Line(INFO, f"{sent.command.kind.value} to {to} by {sent.command.sender}", "station")
 
     def due(self, stamp_ns: int) -> Iterator[tuple[int, View]]:
         """What the stream's time reaching `stamp_ns` asks for, with the instant it is of."""
@@ -158,7 +170,7 @@ class Views:
         for vehicle_id, drawn in sorted(self._vehicles.items()):
             if not drawn.state or at_ns - drawn.heard_ns > SILENT_NS:
                 continue
-            state = swarm.STATE.decode(drawn.state, self._drops)
+            state = topics.STATE.decode(drawn.state, self._drops)
             if state is None:
                 continue
             place, turn = fox.enu(state.position), fox.attitude(state.roll, state.pitch, state.yaw)
@@ -171,7 +183,7 @@ class Views:
                 place_on_earth = (round(spot.latitude_deg, 8), round(spot.longitude_deg, 8))
                 fix = fox.LocationFix(at, name, *place_on_earth, round(spot.altitude_m, 3))
                 yield View(f"/location/{vehicle_id}", PLACE, self._encode(fix))
-            decision = swarm.DECISION.decode(drawn.decision, self._drops) if drawn.decision else None
+            decision = topics.DECISION.decode(drawn.decision, self._drops) if drawn.decision else None
             entities.append(self._vehicle(at, name, state, decision, fox.Pose(place, turn)))
             if whole_second:
                 drawn.trail.append(place)
@@ -251,3 +263,14 @@ def _cone(apex: fox.Vector3, north: float, east: float, down: float, half_angle:
     return fox.Cylinder(
         fox.Pose(middle, turn), fox.Vector3(across, across, length), 0.0, 1.0, fox.Color(0.8, 0.2, 0.2, 0.15)
     )
+
+
+_TAKERS: dict[topics.Topic[Any], Callable[[Views, Any], _Line | None]] = {
+    topics.SETUP: Views._on_setup,
+    topics.EVADER_BRIEF: Views._on_brief,
+    topics.EVENTS: Views._on_event,
+    topics.PHASE: Views._on_phase,
+    topics.OUTCOME: Views._on_outcome,
+    REMARK: Views._on_remark,
+    SENT: Views._on_sent,
+}

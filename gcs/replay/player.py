@@ -1,4 +1,4 @@
-"""Plays a recording: the recorded stream through the same watch as live, so the same picture and alerts.
+"""Plays a recording: the recorded stream through the same reducer as live, so the same picture and alerts.
 
 A plain class: real time comes in through `advance`. Pause, speed, seek and step change nothing about
 what is seen at an instant of the recording.
@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from copy import deepcopy
 
 from gcs.picture.alert_rules import Thresholds
+from gcs.picture.reducer import GRID_NS, PictureReducer
 from gcs.picture.values import Picture
-from gcs.picture.watch import GRID_NS, Watch
 from gcs.recording.reader import Entry, Recording
 from onboard.core.math.constants import NS_PER_S
 
@@ -30,9 +30,9 @@ class Player:
         self.recording = recording
         self.paused = False
         self.speed = 1.0
-        self._new = Watch(recording.game, limits, version)
+        self._new = PictureReducer(recording.game, limits, version)
         self._every_ns = max(CHECKPOINT_NS, (recording.end_ns - recording.start_ns) // CHECKPOINTS)
-        self._checkpoints: list[tuple[int, Watch]] = []  # by place, rising
+        self.checkpoints: list[tuple[int, PictureReducer]] = []  # by place, rising
         self._remainder = 0.0  # [ns] of recorded time not yet played
         self._place(recording.start_ns - 1, deepcopy(self._new))
         self._run_to(recording.start_ns)
@@ -84,11 +84,11 @@ class Player:
         at_ns = max(self.start_ns, min(at_ns, self.end_ns))
         self._remainder = 0.0
         if at_ns < self._at_ns:
-            place_ns, watch = self.start_ns - 1, self._new
-            for checkpoint_ns, saved in self._checkpoints:
+            place_ns, reducer = self.start_ns - 1, self._new
+            for checkpoint_ns, saved in self.checkpoints:
                 if checkpoint_ns <= at_ns:
-                    place_ns, watch = checkpoint_ns, saved
-            self._place(place_ns, deepcopy(watch))
+                    place_ns, reducer = checkpoint_ns, saved
+            self._place(place_ns, deepcopy(reducer))
         self._run_to(at_ns)
 
     def step(self, steps: int = 1) -> None:
@@ -98,25 +98,25 @@ class Player:
 
     def picture(self) -> Picture:
         """The picture at the instant shown: what the live station showed then."""
-        return self._watch.picture(self._at_ns)
+        return self._reducer.picture(self._at_ns)
 
-    def _place(self, at_ns: int, watch: Watch) -> None:
-        """Stand at `at_ns`, which `watch` has seen all of."""
+    def _place(self, at_ns: int, reducer: PictureReducer) -> None:
+        """Stand at `at_ns`, which `reducer` has seen all of."""
         self._at_ns = at_ns
-        self._watch = watch
+        self._reducer = reducer
         self._ahead: Iterator[Entry] = self.recording.entries(at_ns + 1)
         self._next: Entry | None = next(self._ahead, None)
 
     def _run_to(self, at_ns: int) -> None:
         while self._next is not None and self._next.stamp_ns <= at_ns:
             self._save(self._next.stamp_ns)
-            self._watch.apply(*self._next)
+            self._reducer.apply(*self._next)
             self._next = next(self._ahead, None)
-        self._watch.tick(at_ns)
+        self._reducer.tick(at_ns)
         self._at_ns = at_ns
 
     def _save(self, next_ns: int) -> None:
         """Keep a checkpoint before the message of `next_ns` where the last one is long ago."""
-        last_ns = self._checkpoints[-1][0] if self._checkpoints else self.start_ns
+        last_ns = self.checkpoints[-1][0] if self.checkpoints else self.start_ns
         if next_ns - last_ns > self._every_ns:
-            self._checkpoints.append((next_ns - 1, deepcopy(self._watch)))
+            self.checkpoints.append((next_ns - 1, deepcopy(self._reducer)))

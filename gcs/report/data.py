@@ -25,7 +25,7 @@ MOST_POINTS = 4000  # a vehicle's samples are thinned to so many
 
 
 class Flown(NamedTuple):
-    """One vehicle's way."""
+    """Where one vehicle flew, how fast, and how this is known. One row of each array is one sample."""
 
     id: int
     role: Role
@@ -111,21 +111,21 @@ class Run(NamedTuple):
 
     @property
     def capture_radius(self) -> float | None:
-        """R [m]."""
+        """The capture radius R [m] of the setup, else of the scenario; None where neither is known."""
         if self.setup is not None:
             return float(self.setup.rules.R)
         return self.scenario.rules.R if self.scenario is not None else None
 
     @property
     def safety_distance(self) -> float | None:
-        """ρ [m]."""
+        """The safety distance ρ [m] of the setup, else of the scenario; None where neither is known."""
         if self.setup is not None:
             return float(self.setup.rules.rho)
         return self.scenario.rules.rho if self.scenario is not None else None
 
     @property
     def fence(self) -> Fence | None:
-        """The geofence."""
+        """The geofence of the setup; None where there is none."""
         return self.setup.fence if self.setup is not None else None
 
     @property

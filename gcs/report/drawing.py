@@ -74,7 +74,7 @@ class Panel(NamedTuple):
 
 
 class Drawing(NamedTuple):
-    """One figure."""
+    """One figure with what the page needs to explain it and to answer a reader."""
 
     name: str  # also of its file and of its element in the page
     title: str

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from gcs.picture.alert_rules import Thresholds
-from gcs.picture.watch import Watch
+from gcs.picture.reducer import PictureReducer
 from gcs.recording.reader import Recording
 from gcs.report.data import Band, Beside, Flown, Link, Run, thinned
 from onboard.core.math.constants import NS_PER_S
@@ -20,6 +20,7 @@ from onboard.wire.bus.messages import (
     PhaseChange,
     Role,
     State,
+    SupervisorAction,
     Track,
 )
 
@@ -33,6 +34,7 @@ class _OpenBand:
         self.rule, self.why = rule, why
 
     def closed(self, zero_ns: int) -> Band:
+        """The band in seconds since the instant `zero_ns`."""
         start, end = (self.start_ns - zero_ns) / NS_PER_S, (self.end_ns - zero_ns) / NS_PER_S
         return Band(start, max(end, start + SHORTEST_S), self.rule, self.why)
 
@@ -57,6 +59,7 @@ class _Collector:
         self.outcome: Outcome | None = None
 
     def take(self, message: Message, now_ns: int) -> None:
+        """Keep what the report needs of a message that arrived at the wall instant `now_ns`."""
         if isinstance(message, State):
             self._state(message, now_ns)
         elif isinstance(message, Track):
@@ -85,9 +88,9 @@ class _Collector:
 
     def _decision(self, decision: DecisionReport) -> None:
         vehicle = self._vehicle(decision.id)
-        why = f"{decision.strategy}, {decision.level}, {decision.module}"
+        why = f"{decision.strategy}, {decision.level.value}, {decision.module.value}"
         _extend(vehicle.bands, decision.stamp_ns, decision.rule, why)
-        guarded = decision.supervisor if decision.supervisor != "ok" else ""
+        guarded = "" if decision.supervisor is SupervisorAction.OK else decision.supervisor.value
         _extend(vehicle.guards, decision.stamp_ns, guarded, decision.reason)
 
     def _health(self, health: Health) -> None:
@@ -108,13 +111,13 @@ def from_recording(
     path: Path, recording: Recording, files: Beside, limits: Thresholds | None = None, version: str = ""
 ) -> Run:
     """Everything of a run that was recorded."""
-    watch = Watch(recording.game, limits, version)
+    reducer = PictureReducer(recording.game, limits, version)
     collector = _Collector()
     for entry in recording.entries():
-        message = watch.apply(*entry)
-        if message is not None:
-            collector.take(message, entry.stamp_ns)
-    picture = watch.picture(recording.end_ns)
+        heard = reducer.apply(*entry)
+        if heard is not None:
+            collector.take(heard.message, entry.stamp_ns)
+    picture = reducer.picture(recording.end_ns)
     setup = picture.game.setup
     roles = {m.id: m.role for m in setup.roster} if setup is not None else {}
     zero_ns = collector.t0_ns or recording.start_ns

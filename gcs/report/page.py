@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from gcs.picture.values import LegState
 from gcs.report import drawing, theme
 from gcs.report.data import Run
 from gcs.report.drawing import Drawing
@@ -22,6 +23,7 @@ from onboard.wire.bus.messages import Role, Severity
 MOST_ROWS = 400  # places of a vehicle that the page's script knows
 CONFIRMED = "Confirmed means that the autopilot reports it."
 GLOSSARY = "What each rule and action of the figure of rules says, and where it comes from."
+TAGS = {LegState.CONFIRMED: "good", LegState.REFUSED: "error"}  # of others: warning
 
 
 def page(run: Run, drawings: list[Drawing]) -> str:
@@ -197,11 +199,11 @@ def commands(run: Run) -> str:
         at = f"{(command.issued_ns - run.t0_ns) / NS_PER_S:.1f}"
         legs = []
         for leg in command.legs:
-            kind = "good" if leg.state == "confirmed" else "error" if leg.state == "refused" else "warning"
-            took = f" in {leg.took_s:.2f} s" if leg.state == "confirmed" else ""
+            kind = TAGS.get(leg.state, "warning")
+            took = f" in {leg.took_s:.2f} s" if leg.state is LegState.CONFIRMED else ""
             why = f" ({escape(leg.reason)})" if leg.reason else ""
-            legs.append(f"<span class='tag {kind}'>{leg.id} {escape(leg.state)}{took}</span>{why}")
-        rows.append([at, escape(command.kind), escape(command.sender), " ".join(legs)])
+            legs.append(f"<span class='tag {kind}'>{leg.id} {escape(leg.state.value)}{took}</span>{why}")
+        rows.append([at, escape(command.kind.value), escape(command.sender), " ".join(legs)])
     return _table(["at s", "command", "from", "vehicles"], rows, numbers=(0,)) if rows else ""
 
 
@@ -225,7 +227,7 @@ def alerts(run: Run) -> str:
 
 
 def log(run: Run) -> str:
-    """What happened."""
+    """Every entry of the event log, oldest first."""
     rows = [
         [
             f"{(line.at_ns - run.t0_ns) / NS_PER_S:.2f}",

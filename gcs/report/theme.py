@@ -64,7 +64,7 @@ def verdict(run: Run) -> str:
         told = run.summary.get("verdict") or run.summary.get("outcome")
         return f"Outcome: {told}" if isinstance(told, str) else "No outcome was recorded"
     who = f" by pursuer {outcome.captor}" if outcome.captor else ""
-    return f"Evader {outcome.verdict}{who} after {outcome.time:.1f} s"
+    return f"Evader {outcome.verdict.value}{who} after {outcome.time:.1f} s"
 
 
 def clock(run: Run) -> str:

@@ -22,15 +22,19 @@ def shown(value: Any) -> str:
     return text if len(text) <= SHOWN else f"{text[:SHOWN]}…"
 
 
-def expected(kind: Any, steps: Sequence[int | str]) -> str:
+def expected(kind: Any, steps: Sequence[int | str], *, another_type: bool) -> str:
     """What a type allows at a place inside it: the description of the type there, or what its bounds say.
 
-    `steps` are keys of tables and indices of lists, from the outside in.
+    `steps` are keys of tables and indices of lists, from the outside in. Where a value of another type was
+    found, the type comes before its description: "a number: zero or more [m/s]".
     """
     node: inspect.Type | None = inspect.type_info(kind)
     for step in steps:
         node = _inside(node, step) if node is not None else None
-    return _described(node) if node is not None else "another value"
+    if node is None:
+        return "another value"
+    words, plain = _described(node), _described(_bare(node)).partition(" in ")[0].partition(" of ")[0]
+    return f"{plain}: {words}" if another_type and not words.startswith(plain) else words
 
 
 def _inside(node: inspect.Type, step: int | str) -> inspect.Type | None:

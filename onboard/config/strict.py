@@ -168,7 +168,8 @@ def _told(error: msgspec.ValidationError, data: Any, kind: Any, name: str) -> st
     from onboard.config.in_words import expected, shown  # only a faulty file needs it
 
     steps = _steps(key)
-    return f"{_at(name, key)}: found {shown(_value_at(data, steps))}, expected {expected(kind, steps)}"
+    words = expected(kind, steps, another_type=", got `" in body)
+    return f"{_at(name, key)}: found {shown(_value_at(data, steps))}, expected {words}"
 
 
 def _at(name: str, key: str) -> str:

@@ -10,24 +10,27 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from enum import Enum
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from onboard.core.game.referee import GameResult, Score, Step, judge, opening, passage
 from onboard.core.game.rules import Target
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import ZERO, Vec, along, sub
 from onboard.game.phases import TRANSITIONS, PhaseEvent
-from onboard.wire.bus import messages as swarm
+from onboard.wire.bus.codec import M
 from onboard.wire.bus.messages import (
+    AgentStage,
     EvaderBrief,
     Health,
     Master,
     Message,
     Outcome,
+    OutcomeResult,
     Phase,
     PhaseChange,
     Role,
     Setup,
+    Triple,
 )
 from onboard.wire.bus.topics import EVADER_BRIEF, MASTER, OUTCOME, PHASE, SETUP, Topic
 
@@ -36,8 +39,12 @@ LEASE_EVERY_NS = NS_PER_S // 2
 LISTEN_NS = 12 * NS_PER_S // 10  # a master that holds the lease speaks twice in this time
 HEALTH_NS = 3 * NS_PER_S  # an agent silent for longer is not there: six heartbeats lost in a row
 SUPERSEDED_NS = 15 * NS_PER_S // 10  # an agent's earlier process counts as gone after this silence
-READY_STAGES = ("ready", "acting")  # of agents that can begin
-_WORDS = {GameResult.CAPTURED: "captured", GameResult.ARRIVED: "arrived", GameResult.ESCAPED: "escaped"}
+READY_STAGES = (AgentStage.READY, AgentStage.ACTING)  # of agents that can begin
+_RESULTS = {
+    GameResult.CAPTURED: OutcomeResult.CAPTURED,
+    GameResult.ARRIVED: OutcomeResult.ARRIVED,
+    GameResult.ESCAPED: OutcomeResult.ESCAPED,
+}
 
 
 class Standing(Enum):
@@ -60,7 +67,7 @@ class Timing(NamedTuple):
 class Publication(NamedTuple):
     """Something to be put on the bus."""
 
-    topic: Topic
+    topic: Topic[Any]
     message: Message
 
 
@@ -146,7 +153,8 @@ class GameMaster:
     def abort(self, wall_ns: int, now_ns: int, reason: str) -> None:
         """End the game without a result, in any phase before its end."""
         if (self.phase, PhaseEvent.ABORT) in TRANSITIONS and self.standing is not Standing.YIELDED:
-            outcome = self._outcome("aborted", wall_ns, time=self._elapsed(wall_ns), reason=reason)
+            elapsed = self._elapsed(wall_ns)
+            outcome = self._outcome(OutcomeResult.ABORTED, wall_ns, time=elapsed, reason=reason)
             self._end(PhaseEvent.ABORT, outcome, now_ns)
 
     # ------------------------------------------------------------------ time passes
@@ -187,7 +195,8 @@ class GameMaster:
             elif len(agent.nonces) > 1:
                 lacking[id] = "two agents with this id"
             elif agent.health.stage not in READY_STAGES:
-                lacking[id] = f"{agent.health.stage}: {', '.join(agent.health.lacks) or 'no reason given'}"
+                why = ", ".join(agent.health.lacks) or "no reason given"
+                lacking[id] = f"{agent.health.stage.value}: {why}"
         return lacking
 
     def observe(self, wall_ns: int, now_ns: int, positions: Mapping[int, Vec]) -> None:
@@ -230,7 +239,7 @@ class GameMaster:
             self._follow(PhaseEvent.ALL_READY, wall_ns)
         elif lacking and patience_ns > 0 and now_ns - self._staged_ns > patience_ns:
             missing = "; ".join(f"vehicle {id}: {reason}" for id, reason in sorted(lacking.items()))
-            outcome = self._outcome("aborted", wall_ns, reason=f"not ready in time: {missing}")
+            outcome = self._outcome(OutcomeResult.ABORTED, wall_ns, reason=f"not ready in time: {missing}")
             self._end(PhaseEvent.PATIENCE_OVER, outcome, now_ns)
 
     def _count_down(self, wall_ns: int, now_ns: int) -> None:
@@ -255,7 +264,7 @@ class GameMaster:
             if silent or health is None:
                 continue
             if health.nonce == agent.acting_nonce:
-                if id in resume and health.stage == "acting":
+                if id in resume and health.stage is AgentStage.ACTING:
                     resume.discard(id)
             elif len(agent.nonces) == 1:
                 agent.acting_nonce = health.nonce
@@ -283,7 +292,7 @@ class GameMaster:
             self.nearest[id] = min(self.nearest.get(id, seen), seen)
         if score.verdict != GameResult.RUNNING:
             captor = ids[score.captor] if score.captor >= 0 else 0
-            result = _WORDS[GameResult(score.verdict)]
+            result = _RESULTS[GameResult(score.verdict)]
             outcome = self._outcome(result, wall_ns, time=score.time, captor=captor)
             self._end(PhaseEvent.RESULT, outcome, now_ns)
 
@@ -295,7 +304,7 @@ class GameMaster:
         return max(0.0, (wall_ns - self.t0_ns) / NS_PER_S) if self.phase is Phase.RUNNING else 0.0
 
     def _outcome(
-        self, result: str, wall_ns: int, *, time: float = 0.0, captor: int = 0, reason: str = ""
+        self, result: OutcomeResult, wall_ns: int, *, time: float = 0.0, captor: int = 0, reason: str = ""
     ) -> Outcome:
         smallest = self.score.smallest if self.score is not None else -1.0
         return Outcome(result, time, captor, smallest, wall_ns, reason)
@@ -305,7 +314,7 @@ class GameMaster:
         self._ended_ns = now_ns
         self._resume = ()
         self._put(OUTCOME, outcome)
-        self._follow(event, outcome.stamp_ns, outcome.reason or outcome.verdict)
+        self._follow(event, outcome.stamp_ns, outcome.reason or outcome.verdict.value)
 
     def _follow(self, event: PhaseEvent, wall_ns: int, reason: str = "") -> None:
         """Enter the phase that an event leads to, and tell of it."""
@@ -316,10 +325,10 @@ class GameMaster:
     def _publish_phase(self, wall_ns: int, reason: str) -> None:
         self._put(PHASE, PhaseChange(self.phase, self.t0_ns, wall_ns, self._resume, reason))
 
-    def _triple_target(self) -> swarm.Triple | None:
+    def _triple_target(self) -> Triple | None:
         return None if self._target is None else (self._target.x, self._target.y, self._target.z)
 
-    def _put(self, topic: Topic, message: Message) -> None:
+    def _put(self, topic: Topic[M], message: M) -> None:
         self._outgoing.append(Publication(topic, message))
 
     def _say(self, line: str) -> None:

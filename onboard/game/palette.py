@@ -35,6 +35,7 @@ CAPTURE = Colour("#2f3641", "#d5dae3")  # the capture radius R
 SAFETY = Colour("#8a8a8a", "#8f8f8f")  # the safety distance ρ
 FENCE = Colour("#7b8794", "#8b98a8")  # the geofence
 APOLLONIUS = Colour("#17aebf", "#3fd5e6")  # Apollonius circles
+FORCE = Colour("#9467bd", "#b99be0")  # the resultant force F_res
 CONE = Colour("#e3a35b", "#e8b06c")  # headings that a pursuer blocks
 
 # Fills wide enough to need no second shade on a dark screen. Rules of routes fly apart from those of games.
@@ -90,6 +91,6 @@ def action(name: str) -> Colour:
 
 def every_colour() -> tuple[Colour, ...]:
     """All colours there are, each once; no two have the same light shade."""
-    single = (INK, FAINT, PAPER, GRID, EVADER, TARGET, CAPTURE, SAFETY, FENCE, APOLLONIUS, CONE)
+    single = (INK, FAINT, PAPER, GRID, EVADER, TARGET, CAPTURE, SAFETY, FENCE, APOLLONIUS, FORCE, CONE)
     rules = tuple(Colour(value, value) for value in (*RULES.values(), *OTHER_RULES))
     return (*single, *PURSUERS, *rules, *ACTIONS.values())

@@ -106,7 +106,7 @@ class Player(StrictConfig, frozen=True):
     id: SystemId | None = None  # evader 1, pursuers from 2 where not given
     strategy: str = ""  # "" = the default of the role
     target: Point | None = None  # the evader's alone
-    heading_deg: float | None = None  # at the start; None = towards the target or the evader
+    heading_deg: YawDeg | None = None  # at the start; None = towards the target or the evader
 
 
 class VehicleSpec(struct_from(VehicleLimits, Player, LIMIT_KEYS)):  # type: ignore[misc]
@@ -170,7 +170,7 @@ class WindSpec(StrictConfig, frozen=True):
     """Wind. `from_deg` is the direction it comes from, as pilots say it."""
 
     speed: Speed = 0.0  # mean, at 6 m (20 ft) above ground [m/s]
-    from_deg: float = 0.0
+    from_deg: YawDeg = 0.0
     shear: bool = False  # MIL-F-8785C profile
     gust_sigma: Speed = 0.0  # σ of the Dryden gusts [m/s]
     correlation_m: Distance = 0.0  # 0 = each vehicle its own gusts

@@ -23,7 +23,7 @@ from onboard.runtime.inbox import Inbox
 from onboard.runtime.patterns import intersects
 from onboard.runtime.protocols import Sample, Subscription
 from onboard.runtime.zenoh_config import DEFAULT_ENDPOINT, Candidate, first_sentence, sessions_of
-from onboard.wire.bus.topics import ROOT, TOPICS, Delivery, topic_of
+from onboard.wire.bus.topics import TOPICS, Delivery
 
 EVENTS_KEPT = 256  # events a publisher keeps of each key
 RETRY_S = 0.5  # between attempts to connect
@@ -31,9 +31,7 @@ FIRST_ATTEMPT_S = 2.0  # `open_zenoh` returns at the latest after this, connecte
 CLOSE_S = 2.0
 _HEARTBEAT_S = 0.5  # of advanced publishers: how soon a lost last event is noticed
 _KEPT = (Delivery.CACHED, Delivery.EVENT)
-_KEPT_PATTERNS = tuple(
-    f"{ROOT}/*/{topic.suffix.format(id='*')}" for topic in TOPICS if topic.delivery in _KEPT
-)
+_KEPT_PATTERNS = tuple(topic.key("*") for topic in TOPICS if topic.delivery in _KEPT)
 
 
 class _Declared:
@@ -145,8 +143,8 @@ class ZenohBus:
                 return
             key = str(sample.key_expr)
             call = partial(deliver, Sample(key, sample.payload.to_bytes()))
-            topic = topic_of(key)
-            if topic is not None and topic.delivery is Delivery.LATEST and not every:
+            place = TOPICS.find(key)
+            if place is not None and place.topic.delivery is Delivery.LATEST and not every:
                 inbox.latest((slot, key), call)
             else:
                 inbox.queue(call)

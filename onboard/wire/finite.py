@@ -13,11 +13,10 @@ def all_finite(items: tuple[Any, ...]) -> bool:
     Every message that arrives passes this function, so it is lean.
     """
     for item in items:
-        kind = type(item)
-        if kind is float:
+        if type(item) is float:
             if item - item != 0.0:  # NaN for NaN and for infinity
                 return False
-        elif kind is tuple:
+        elif isinstance(item, tuple):
             if item and not all_finite(item):
                 return False
         elif isinstance(item, msgspec.Struct) and not all_finite(msgspec.structs.astuple(item)):

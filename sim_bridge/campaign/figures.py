@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from onboard.game import palette
 from onboard.game.scenario import Scenario
 from sim_bridge.campaign.spatial_campaign import Played
 
-EVADER, PURSUER, TARGET = "crimson", "0.45", "green"
 ARROW = 0.05  # length of an arrow's barbs, as a share of the picture
 BARB = 0.45  # [rad] between barb and shaft
 
@@ -32,6 +32,7 @@ def draw_stages(scenario: Scenario, played: Played, folder: Path, name: str) -> 
         _stage(axes, scenario, played, steps)
         time = min(steps * scenario.parameters.dt, played.time)
         axes.set_title(f"{title}, t = {time:.0f} s")
+    figure.legend(*axes.get_legend_handles_labels(), loc="lower center", ncols=8, frameon=False)
     figure.suptitle(
         f"{scenario.name}: {played.verdict.name.lower()} at {played.time:.0f} s,"
         f" nearest pursuer ever {played.smallest:.0f} m"
@@ -50,13 +51,13 @@ def _stage(axes: Any, scenario: Scenario, played: Played, steps: int) -> None:
     target = scenario.evader.target
     if target is not None and len(target) == 3:
         goal = np.array([target[1], target[0], target[2]]) / 1000.0
-        axes.scatter(*goal, color=TARGET, s=50, label="target")
+        axes.scatter(*goal, color=palette.TARGET.light, s=110, marker="*", label="target")
         low, high = np.minimum(low, goal), np.maximum(high, goal)
     for player in range(path.shape[1]):
         line = path[:, player]
         evader = player == 0
-        color = EVADER if evader else PURSUER
-        label = "evader" if evader else ("pursuers" if player == 1 else None)
+        color = palette.vehicle(player + 1, evader).light
+        label = f"{'evader' if evader else 'pursuer'} {player + 1}"
         axes.plot(*line.T, color=color, linestyle="--" if evader else "-", linewidth=1.3, label=label)
         axes.scatter(*line[0], facecolors="none", edgecolors=color, s=35)
         ahead = line[-1] - line[-min(len(line), 10)]
@@ -74,4 +75,3 @@ def _stage(axes: Any, scenario: Scenario, played: Played, steps: int) -> None:
         (*(np.maximum(high - low, 0.3)[:2]), 0.45 * float(np.max((high - low)[:2]))), zoom=0.9
     )
     axes.view_init(elev=32, azim=-60)
-    axes.legend(loc="upper left")

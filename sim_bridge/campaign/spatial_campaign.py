@@ -17,14 +17,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from onboard.core.game.referee import GameResult
-from onboard.core.math.vectors import NORTH, Vec, add, sub, unit, yaw_of
+from onboard.core.math.vectors import Vec, add, yaw_of
 from onboard.game.scenario import Scenario, load
 from onboard.runtime.resources import configs
 from sim_bridge.campaign.compiled import KERNELS as CORE
 from sim_bridge.campaign.compiled import register
 from sim_bridge.campaign.plane_in_wind import GUST_EVERY, Flown, climate_of, launched, wind_at
 from sim_bridge.campaign.spatial_game import Band, Evasion, Fleet, Noise, Sensor, SpatialPlay, Start, play
-from sim_bridge.plane_game.setup import conditions_of, game_of, places_of
+from sim_bridge.plane_game.setup import conditions_of, game_of, places_of, start_headings
 from sim_bridge.vehicle.flight import KERNELS as FLIGHT
 from sim_bridge.vehicle.flight.aircraft import named, within
 from sim_bridge.vehicle.flight.plane import Command, Steer, start_state, trimmed
@@ -89,13 +89,10 @@ def draw(scenario: Scenario, seed: int) -> Draw:
     tracks = filtered(rng.standard_normal((int(horizon / dt) + 8, len(places), 6)), dt)
     game = game_of(scenario, places)
     players: list[Flown] = []
-    for index, vehicle in enumerate((game.evader, *game.pursuers)):
-        start = vehicle.position
-        aim = places[0] if index else conditions.target.position
-        spec = scenario.vehicles[index]
-        yaw = yaw_of(unit(sub(aim, start), NORTH)) if spec.heading_deg is None else radians(spec.heading_deg)
+    headings = start_headings(scenario, places)
+    for index, (start, heading, spec) in enumerate(zip(places, headings, scenario.vehicles, strict=True)):
         model = fleet.pursuer if index else fleet.evader
-        plane = trimmed(start_state(start, yaw, vehicle.speed, wind_at(climate, start)), model)
+        plane = trimmed(start_state(start, yaw_of(heading), spec.speed, wind_at(climate, start)), model)
         players.append(launched(plane, GustNoise(*map(float, gusts[0, index]))))
     sensor = scenario.flight.sensor
     # What a constant-velocity filter leaves of white noise.

@@ -15,9 +15,12 @@ from onboard.core.geometry.apollonius import apollonius_sphere
 from onboard.core.geometry.assessment import half_angle
 from onboard.core.math.vectors import Vec, norm
 from onboard.core.strategy.evasion import resultant_force, target_direction
+from onboard.game import palette
 from sim_bridge.plane_game.program import Frame, Played
 
-EVADER, PURSUER, TARGET, CIRCLE, CONE = "#d62728", "#555555", "#2ca02c", "#17becf", "#ff7f0e"
+EVADER, TARGET, CIRCLE, CONE = (
+    colour.light for colour in (palette.EVADER, palette.TARGET, palette.APOLLONIUS, palette.CONE)
+)
 STRATEGY_NAMES = {"paper": "strategy of this paper", "earlier": "strategy of the earlier paper [37]"}
 
 
@@ -72,11 +75,11 @@ def draw_stage(axis: Any, played: Played, index: int) -> None:
             axis.add_patch(_circle(sphere.centre, sphere.radius, CIRCLE))
             axis.plot(sphere.centre.y, sphere.centre.x, "+", color=CIRCLE, ms=7,
                       label="Apollonius circle and its centre" if number == 0 else None)
-        axis.plot(pursuer.position.y, pursuer.position.x, "o", color=PURSUER, ms=7,
-                  label="pursuer" if number == 0 else None)
-        axis.annotate(str(number + 1), (pursuer.position.y, pursuer.position.x), textcoords="offset points",
-                      xytext=(6, 5), fontsize=9, color=PURSUER)
-        _arrow(axis, pursuer.position, frame.decisions.pursuers[number].direction, 0.05 * span, PURSUER, None)
+        vehicle, colour = number + 2, _pursuer(number)  # ids as on the bus: the evader is 1
+        axis.plot(pursuer.position.y, pursuer.position.x, "o", color=colour, ms=7, label=f"pursuer {vehicle}")
+        start = played.frames[0].game.pursuers[number].position  # where no two are in one place
+        axis.annotate(str(vehicle), (start.y, start.x), (6, 5), textcoords="offset points", color=colour)
+        _arrow(axis, pursuer.position, frame.decisions.pursuers[number].direction, 0.05 * span, colour, None)
     e = game.evader.position
     for number, cone in enumerate(view.cones):
         half, middle = half_angle(cone), atan2(cone.axis.x, cone.axis.y)
@@ -84,19 +87,20 @@ def draw_stage(axis: Any, played: Played, index: int) -> None:
             axis.add_patch(_wedge(e, 0.14 * span, middle, half))
             if number == 0:
                 axis.plot([], [], color=CONE, lw=8, alpha=0.25, label="headings blocked by a pursuer")
-    axis.plot(e.y, e.x, "o", color=EVADER, ms=8, label="evader")
+    axis.plot(e.y, e.x, "o", color=EVADER, ms=8, label="evader 1")
     _arrow(axis, e, frame.decisions.evader.direction, 0.13 * span, EVADER, "chosen heading")
     force = resultant_force(view)
     if norm(force) > 0.0:
         size = 1.0 / norm(force)
         way = Vec(force.x * size, force.y * size, 0.0)
-        _arrow(axis, e, way, 0.09 * span, "#9467bd", "resultant force F_res")
+        _arrow(axis, e, way, 0.09 * span, palette.FORCE.light, "resultant force F_res")
     if target.exists:
         _arrow(axis, e, target_direction(view), 0.09 * span, TARGET, "direction of the target F_g")
         axis.plot(target.position.y, target.position.x, "*", color=TARGET, ms=14, label="target")
     rule = frame.decisions.evader.rule.name.lower().replace("_", " ")
     words = f"t = {game.time:.2f} s\nevader: {rule}"
-    axis.text(0.02, 0.98, words, transform=axis.transAxes, va="top", fontsize=9)
+    axis.text(0.02, 0.98, words, transform=axis.transAxes, va="top", fontsize=9,
+              bbox={"fc": palette.PAPER.light, "ec": "none", "alpha": 0.8})
     _frame(axis, played)
 
 
@@ -157,7 +161,12 @@ def _paths(axis: Any, played: Played, index: int) -> None:
     axis.plot([p.y for p in line], [p.x for p in line], "--", color=EVADER, lw=1.4)
     for number in range(len(played.final.pursuers)):
         line = [f.game.pursuers[number].position for f in kept]
-        axis.plot([p.y for p in line], [p.x for p in line], "-", color=PURSUER, lw=1.0)
+        axis.plot([p.y for p in line], [p.x for p in line], "-", color=_pursuer(number), lw=1.0)
+
+
+def _pursuer(number: int) -> str:
+    """The colour of the pursuer with this number, counted from 0."""
+    return palette.vehicle(number + 2, evader=False).light
 
 
 def _circle(centre: Vec, radius: float, colour: str) -> Any:

@@ -15,11 +15,9 @@ from onboard.game.scenario import Scenario
 from onboard.game.staging import target_of
 from onboard.runtime.bus_zenoh import ZenohBus
 from onboard.runtime.clock import RealClock
-from onboard.runtime.protocols import Sample
 from onboard.runtime.zenoh_config import DEFAULT_ENDPOINT
-from onboard.wire.bus import messages as swarm
-from onboard.wire.bus.messages import Event, Outcome, Phase, Severity
-from onboard.wire.bus.topics import DECISION, DEFAULT_GAME, key
+from onboard.wire.bus.messages import DecisionReport, Event, Outcome, Phase, Severity
+from onboard.wire.bus.topics import DECISION, DEFAULT_GAME, Dispatcher
 from sim_bridge.programs.agent_processes import AgentProcesses
 from sim_bridge.programs.serve import Options, serve_scenario
 from sim_bridge.rehearsal import BusRecorder
@@ -128,7 +126,8 @@ class RealGame:
         self._recorder.hear(bus)
         self.bridge = bridge
         self.observer = Observer(self._scenario, self._seed, "real", DEFAULT_GAME, bus, self._on_event)
-        bus.subscribe(key(DEFAULT_GAME, DECISION, self._scenario.ids[0]), self._on_decision)
+        hear = Dispatcher(self._drops).on(DECISION, self._on_decision)
+        bus.subscribe(DECISION.key(DEFAULT_GAME, self._scenario.ids[0]), hear)
         self.agents.ports = ports
         self.agents.bridge_up.set()
 
@@ -136,10 +135,8 @@ class RealGame:
         if event.severity is not Severity.INFO:
             self._say(f"  vehicle {event.id}: {event.text}")
 
-    def _on_decision(self, sample: Sample) -> None:
-        decision = swarm.DECISION.decode(sample.payload, self._drops)
-        if decision is not None:
-            self._rule = decision.rule.replace("_", " ")
+    def _on_decision(self, decision: DecisionReport) -> None:
+        self._rule = decision.rule.replace("_", " ")
 
     async def _report_progress(self) -> None:
         """Say every few seconds how the game goes, or what it waits for."""

@@ -9,8 +9,7 @@ from typing import NamedTuple
 from onboard.game.scenario import Scenario
 from onboard.runtime.protocols import Bus, Clock, Link
 from onboard.runtime.tasks import Pace, periodic
-from onboard.wire.bus import messages as swarm
-from onboard.wire.bus.topics import DEFAULT_GAME, TRACK, key
+from onboard.wire.bus.topics import DEFAULT_GAME, TRACK
 from sim_bridge.world.master import BridgeMaster
 from sim_bridge.world.sensor import Sensor
 from sim_bridge.world.staging import generator, wind_of
@@ -61,14 +60,14 @@ class Bridge:
         self.pace = Pace("world", 1.0 / RATE_HZ)
         self._clock = clock
         self._bus = bus
-        self._keys = {id: key(game, TRACK, id) for id in scenario.ids}
+        self._keys = {id: TRACK.key(game, id) for id in scenario.ids}
 
     def step(self) -> None:
         """Move the world on to now, publish what the sensor sees, judge the game."""
         self.world.step()
         motions = self.world.motions
         for track in self.sensor.step(self.world.wall_ns, motions):
-            self._bus.publish(self._keys[track.id], swarm.TRACK.encode(track), TRACK.delivery)
+            self._bus.publish(self._keys[track.id], TRACK.encode(track), TRACK.delivery)
         if self.master is not None:
             self.master.step(motions)
 

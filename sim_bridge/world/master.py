@@ -4,26 +4,18 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Mapping
-from typing import Any
 
 from onboard.core.math.vectors import Vec
 from onboard.game.master import GameMaster, Timing
 from onboard.game.scenario import Scenario
 from onboard.game.staging import setup_of, target_of
-from onboard.runtime.protocols import Bus, Clock, Sample
-from onboard.wire.bus import messages as swarm
-from onboard.wire.bus.topics import EVADER_BRIEF, HEALTH, MASTER, OUTCOME, PHASE, SETUP, Topic, key
+from onboard.runtime.protocols import Bus, Clock
+from onboard.wire.bus.messages import Health, Master
+from onboard.wire.bus.topics import HEALTH, MASTER, Dispatcher
 from sim_bridge.vehicle.motion import Motion
 
 NAME = "sim-bridge"
 RECOVERY_S = 3.0
-_CODECS: Mapping[Topic, swarm.Codec[Any]] = {
-    SETUP: swarm.SETUP,
-    PHASE: swarm.PHASE,
-    OUTCOME: swarm.OUTCOME,
-    MASTER: swarm.MASTER,
-    EVADER_BRIEF: swarm.EVADER_BRIEF,
-}
 
 
 class BridgeMaster:
@@ -40,10 +32,8 @@ class BridgeMaster:
         self._clock = clock
         self._bus = bus
         self._say = say
-        self._subscriptions = [
-            bus.subscribe(key(game, MASTER), self._on_master),
-            bus.subscribe(key(game, HEALTH), self._on_health),
-        ]
+        hear = Dispatcher(self.drops).on(MASTER, self._on_master).on(HEALTH, self._on_health)
+        self._subscriptions = [bus.subscribe(topic.key(game), hear) for topic in hear.topics]
 
     def step(self, motions: Mapping[int, Motion]) -> None:
         """Judge what has happened since the last step, and say what is due."""
@@ -52,7 +42,7 @@ class BridgeMaster:
         self.rules.tick(wall_ns, now_ns)
         self.rules.observe(wall_ns, now_ns, positions)
         for topic, message in self.rules.outgoing():
-            self._bus.publish(key(self._game, topic), _CODECS[topic].encode(message), topic.delivery)
+            self._bus.publish(topic.key(self._game), topic.encode(message), topic.delivery)
         for line in self.rules.news():
             self._say(line)
 
@@ -65,12 +55,8 @@ class BridgeMaster:
         for subscription in self._subscriptions:
             subscription.close()
 
-    def _on_master(self, sample: Sample) -> None:
-        message = swarm.MASTER.decode(sample.payload, self.drops)
-        if message is not None:
-            self.rules.heard_master(message, self._clock.monotonic_ns())
+    def _on_master(self, master: Master) -> None:
+        self.rules.heard_master(master, self._clock.monotonic_ns())
 
-    def _on_health(self, sample: Sample) -> None:
-        health = swarm.HEALTH.decode(sample.payload, self.drops)
-        if health is not None:
-            self.rules.heard_health(health, self._clock.monotonic_ns())
+    def _on_health(self, health: Health) -> None:
+        self.rules.heard_health(health, self._clock.monotonic_ns())

@@ -7,10 +7,9 @@ from collections.abc import Callable, Mapping
 
 from onboard.game.master import GameMaster
 from onboard.game.scenario import Scenario
-from onboard.runtime.protocols import Bus, Link, Sample
-from onboard.wire.bus import messages as swarm
-from onboard.wire.bus.messages import Event, Health, Outcome
-from onboard.wire.bus.topics import EVENTS, HEALTH, key
+from onboard.runtime.protocols import Bus, Link
+from onboard.wire.bus.messages import AgentStage, Event, Health, Outcome
+from onboard.wire.bus.topics import EVENTS, HEALTH, Dispatcher
 from sim_bridge.world.sensor import Sensor
 from sim_bridge.world.summary import Summary, VehicleSummary, kept, reached
 
@@ -38,8 +37,9 @@ class Observer:
         self.drops: Counter[str] = Counter()
         self._flying: dict[int, Health] = {}  # the last health while setpoints flew the vehicle
         self._heard = heard
-        bus.subscribe(key(game, EVENTS), self._on_event)
-        bus.subscribe(key(game, HEALTH), self._on_health)
+        hear = Dispatcher(self.drops).on(EVENTS, self._on_event).on(HEALTH, self._on_health)
+        for topic in hear.topics:
+            bus.subscribe(topic.key(game), hear)
 
     def kinds(self, id: int) -> list[str]:
         """Kinds of a vehicle's events so far, in order."""
@@ -58,8 +58,8 @@ class Observer:
                 VehicleSummary(
                     id=id,
                     role="evader" if spec is self.scenario.evader else "pursuer",
-                    autopilot=health.autopilot if health else "",
-                    stage=health.stage if health else "never heard",
+                    autopilot=health.autopilot.value if health and health.autopilot else "",
+                    stage=health.stage.value if health else "never heard",
                     mode=health.mode if health else "",
                     smallest_distance=kept(master.nearest.get(id)),
                     telemetry_rate_hz=round(flying.telemetry_rate_hz, 3) if flying else 0.0,
@@ -74,7 +74,7 @@ class Observer:
             scenario_hash=self.scenario.hash(),
             seed=self.seed,
             mode=self.mode,
-            verdict=outcome.verdict if outcome else "none",
+            verdict=outcome.verdict.value if outcome else "none",
             reason=outcome.reason if outcome else "",
             time=round(outcome.time, 6) if outcome else 0.0,
             captor=outcome.captor if outcome else 0,
@@ -85,19 +85,16 @@ class Observer:
             vehicles=tuple(vehicles),
         )
 
-    def _on_event(self, sample: Sample) -> None:
-        event = swarm.EVENT.decode(sample.payload, self.drops)
-        if event is not None and len(self.events) < EVENTS_MAX:
+    def _on_event(self, event: Event) -> None:
+        if len(self.events) < EVENTS_MAX:
             self.events.append(event)
             if self._heard is not None:
                 self._heard(event)
 
-    def _on_health(self, sample: Sample) -> None:
-        health = swarm.HEALTH.decode(sample.payload, self.drops)
-        if health is not None:
-            self.health[health.id] = health
-            if health.stage == "acting":
-                self._flying[health.id] = health
+    def _on_health(self, health: Health) -> None:
+        self.health[health.id] = health
+        if health.stage is AgentStage.ACTING:
+            self._flying[health.id] = health
 
 
 def _counted(health: Health) -> dict[str, int]:

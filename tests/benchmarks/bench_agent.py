@@ -33,7 +33,6 @@ from onboard.game.scenario import Flight, Parameters, Scenario, SensorSpec, Vehi
 from onboard.game.staging import setup_of
 from onboard.runtime.bus_zenoh import ZenohBus, open_zenoh
 from onboard.runtime.clock import RealClock
-from onboard.wire.bus import messages as swarm
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import Master, Phase, PhaseChange, Role, State, Track
 from onboard.wire.mavlink.dialect import DialectSender
@@ -216,7 +215,7 @@ class Stage:
     async def run(self) -> None:
         """Until cancelled: the world at 100 Hz, states at 20 Hz, tracks at 10 Hz, the master at 2 Hz."""
         turn = 0
-        self._put(topics.SETUP, swarm.SETUP.encode(self._setup))
+        self._put(topics.SETUP, topics.SETUP.encode(self._setup))
         while True:
             self.world.step()
             if turn % 5 == 3:
@@ -229,13 +228,13 @@ class Stage:
             await asyncio.sleep(0.01)
 
     def _put(self, topic: topics.Topic, payload: bytes, id: int | None = None) -> None:
-        self._bus.publish(topics.key(GAME, topic, id), payload, topic.delivery)
+        self._bus.publish(topic.key(GAME, id), payload, topic.delivery)
 
     def _lease(self) -> None:
         now = self._clock.wall_ns()
-        self._put(topics.MASTER, swarm.MASTER.encode(Master("bench", now, 2.0, self._nonce)))
+        self._put(topics.MASTER, topics.MASTER.encode(Master("bench", now, 2.0, self._nonce)))
         phase = PhaseChange(Phase.RUNNING, self._begun_ns, now, resume=(PURSUER,))
-        self._put(topics.PHASE, swarm.PHASE.encode(phase))
+        self._put(topics.PHASE, topics.PHASE.encode(phase))
 
     def _states(self) -> None:
         now = self._clock.wall_ns()
@@ -244,7 +243,7 @@ class Stage:
                 id, Role.PURSUER, now, (400.0 + 30.0 * number, 50.0, -50.0), (-4.0, 0.0, 0.0), 4.0,
                 (0.0, 0.0, 0.0), 0.0, 0.0, 0.0, "GUIDED", True, nonce=id,
             )  # fmt: skip
-            self._put(topics.STATE, swarm.STATE.encode(state), id)
+            self._put(topics.STATE, topics.STATE.encode(state), id)
 
     def _tracks(self) -> None:
         now = self._clock.wall_ns()
@@ -253,7 +252,7 @@ class Stage:
             place = (-4.0 * t, 20.0 * sin(0.3 * t), -50.0)
             velocity = (-4.0, 6.0 * cos(0.3 * t), 0.0)
             track = Track(id, now, place, velocity, (0.01,) * 3 + (0.0025,) * 3, "bench")
-            self._put(topics.TRACK, swarm.TRACK.encode(track), id)
+            self._put(topics.TRACK, topics.TRACK.encode(track), id)
 
 
 async def latency(kind: str, folder: Path) -> list[int]:

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from gcs.picture.watch import Watch
+from gcs.picture.reducer import PictureReducer
 from gcs.recording.reader import Recording
 from gcs.recording.recorder import Recorder
 from tests.support.chase_messages import Item, chase
@@ -50,7 +50,7 @@ class Cost(NamedTuple):
 def measure(load: Load, folder: Path) -> Cost:
     """One flight into picture and recorder, each timed by itself."""
     flown = list(chase(SECONDS, vehicles=load.vehicles, state_only=not load.whole, story=False))
-    watch = Watch("field")
+    watch = PictureReducer("field")
     picture = _timed(lambda item: watch.apply(*item), flown)
     watch.picture(flown[-1].stamp_ns)
     assert watch.fleet.received == len(flown)

@@ -15,7 +15,7 @@ from onboard.runtime.links import open_udp
 from onboard.runtime.loop import run_virtual, virtual_clock
 from onboard.runtime.protocols import Sample
 from onboard.runtime.tasks import Pace, periodic
-from onboard.wire.bus.topics import STATE, key
+from onboard.wire.bus.topics import STATE
 from tests.support.bus_stages import free_port
 from tests.support.real_time import until
 from tests.support.scripted_agents import for_a_while
@@ -60,10 +60,10 @@ def test_a_state_to_six_sessions_in_memory() -> None:
         buses = [broker.connect() for _ in range(6)]
         heard: list[Sample] = []
         for bus in buses:
-            bus.subscribe(key("g", STATE), heard.append)
+            bus.subscribe(STATE.key("g"), heard.append)
         begun = process_time()
         for _ in range(count):
-            buses[0].publish(key("g", STATE, 2), PAYLOAD, STATE.delivery)
+            buses[0].publish(STATE.key("g", 2), PAYLOAD, STATE.delivery)
             await asyncio.sleep(0.05)
         took = process_time() - begun
         assert len(heard) == 6 * count
@@ -104,7 +104,7 @@ async def test_round_trips_over_zenoh_beside_bare_udp() -> None:
     endpoint = f"tcp/127.0.0.1:{free_port()}"
     station = await open_zenoh(endpoint, listen=True)
     one, two = await open_zenoh(endpoint), await open_zenoh(endpoint)
-    there, here = key("g", STATE, 1), key("g", STATE, 2)
+    there, here = STATE.key("g", 1), STATE.key("g", 2)
     two.subscribe(there, lambda sample: two.publish(here, sample.payload, STATE.delivery))
     one.subscribe(here, lambda sample: back.set())
     back.clear()

@@ -100,7 +100,7 @@ async def measure(load: Load) -> Measured:
             async with app.run_test(size=(160, 50)):
                 await until(session.bus.connected)
                 ours.send("go")
-                fleet_heard = session.station.watch.fleet
+                fleet_heard = session.station.reducer.fleet
                 await until(lambda: fleet_heard.received > 2 * load.vehicles)
                 shown = _counted(app)
                 cpu, begun = time.process_time(), time.monotonic()

@@ -16,9 +16,9 @@ import msgspec
 import pytest
 
 from gcs import cli, options, settings
-from gcs.console.plain_lines import Plain
+from gcs.console.plain_lines import PlainLines
 from gcs.picture.alert_rules import Thresholds
-from gcs.picture.plain_data import document
+from gcs.picture.json_document import document
 from onboard.config import strict as config
 from onboard.runtime.bus_zenoh import open_zenoh
 from onboard.runtime.clock import RealClock
@@ -219,7 +219,7 @@ async def test_lines_for_logs_and_a_recording_until_it_is_told_to_stop(free_endp
 
 def test_lines_say_each_event_once_and_how_all_are_every_five_seconds():
     tower = Tower()
-    lines = Plain()
+    lines = PlainLines()
     tower.hear(setup(2))
     tower.fly(1.0, 1, 2)
     first = lines.lines(tower.picture)

@@ -10,7 +10,7 @@ import msgspec
 import pytest
 
 from gcs.master import FieldMaster, Fix, Positions
-from gcs.station import Station
+from gcs.station import Station, StationSetup
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec
 from onboard.game.master import Standing
@@ -18,9 +18,8 @@ from onboard.game.scenario import Flight, Parameters, Scenario, VehicleSpec
 from onboard.runtime.bus_memory import MemoryBroker
 from onboard.runtime.loop import virtual_clock
 from onboard.runtime.protocols import Bus
-from onboard.wire.bus import messages as swarm
-from onboard.wire.bus import topics
-from onboard.wire.bus.messages import CommandKind, Phase
+from onboard.wire.bus import messages, topics
+from onboard.wire.bus.messages import AgentStage, CommandKind, OutcomeResult, Phase
 from tests.support.answering_agents import AnsweringAgent
 from tests.support.sample_messages import GAME, health, on_bus, state, track
 from tests.support.virtual_time import virtual
@@ -42,17 +41,17 @@ class Flyer:
 
     def __init__(self, bus: Bus, i: int, start: Vec, velocity: Vec, late_s: float = 0.0) -> None:
         self.bus, self.id, self.start, self.velocity, self.late_s = bus, i, start, velocity, late_s
-        self.stage = "ready"
+        self.stage = AgentStage.READY
         self.silent = False
         self.by_track = False
         self.t0_ns = 0
-        bus.subscribe(topics.key(GAME, topics.PHASE), self._on_phase)
+        bus.subscribe(topics.PHASE.key(GAME), self._on_phase)
 
     def _on_phase(self, sample) -> None:
-        phase = msgspec.msgpack.Decoder(tuple[int, swarm.PhaseChange]).decode(sample.payload)[1]
+        phase = msgspec.msgpack.Decoder(tuple[int, messages.PhaseChange]).decode(sample.payload)[1]
         self.t0_ns = phase.t0_ns
         if phase.phase is Phase.RUNNING:
-            self.stage = "acting"
+            self.stage = AgentStage.ACTING
 
     async def fly(self) -> None:
         clock = virtual_clock()
@@ -69,7 +68,7 @@ class Flyer:
                     self.bus.publish(*on_bus(seen), topics.TRACK.delivery)
                 else:
                     self.bus.publish(*on_bus(own), topics.STATE.delivery)
-                lacks = ("a fix",) if self.stage == "waiting" else ()
+                lacks = ("a fix",) if self.stage == AgentStage.WAITING else ()
                 well = health(self.id, now_ns, stage=self.stage, lacks=lacks)
                 self.bus.publish(*on_bus(well), topics.HEALTH.delivery)
             await asyncio.sleep(0.1 - self.late_s)
@@ -80,7 +79,9 @@ async def field(scenario: Scenario = MEETING, auto_start: bool = True, late_s: f
     """A station that is master, and three vehicles: the evader flies north at 5 m/s, pursuer 2 meets it."""
     broker = MemoryBroker()
     clock = virtual_clock()
-    station = Station(broker.connect("gcs"), clock, GAME, operator="anna", new_id=iter("abcdefgh").__next__)
+    station = Station(
+        broker.connect("gcs"), clock, StationSetup(GAME, "anna"), new_id=iter("abcdefgh").__next__
+    )
     master = FieldMaster(station, scenario, auto_start=auto_start, nonce=5)
     flyers = [
         Flyer(broker.connect(), 1, Vec(0.0, 0.0, -50.0), Vec(5.0, 0.0, 0.0), late_s),
@@ -113,7 +114,7 @@ async def test_a_game_is_staged_started_judged_and_ended_without_the_bridge():
         outcome = station.picture().game.outcome
         assert outcome is not None
         # 100 m at 10 m/s, less the capture radius
-        assert (outcome.verdict, outcome.captor) == ("captured", 2)
+        assert (outcome.verdict, outcome.captor) == (OutcomeResult.CAPTURED, 2)
         assert outcome.time == pytest.approx(9.8, abs=0.02)
         assert master.exit_code == 0
         await until(lambda: station.picture().game.phase is Phase.RECOVERY, 5.0)
@@ -132,11 +133,11 @@ async def test_what_comes_late_is_judged_where_it_was():
 @virtual
 async def test_the_game_waits_for_a_vehicle_that_is_not_ready_and_names_it():
     async with field() as (station, master, flyers, _):
-        flyers[2].stage = "waiting"
+        flyers[2].stage = AgentStage.WAITING
         await asyncio.sleep(5.0)
         assert station.picture().game.phase is Phase.STAGING
         assert master.status() == "master: vehicle 3: waiting: a fix"
-        flyers[2].stage = "ready"
+        flyers[2].stage = AgentStage.READY
         await until(lambda: station.picture().game.phase is Phase.RUNNING, 5.0)
 
 
@@ -147,7 +148,7 @@ async def test_who_never_becomes_ready_ends_the_game_with_the_reason():
         await until(lambda: master.over, 40.0)
         outcome = station.picture().game.outcome
         assert outcome is not None
-        assert outcome.verdict == "aborted"
+        assert outcome.verdict == OutcomeResult.ABORTED
         assert outcome.reason == "not ready in time: vehicle 2: no agent heard"
         assert master.exit_code == 1
 
@@ -175,7 +176,7 @@ async def test_an_abort_of_everybody_ends_the_game():
         await asyncio.sleep(0.5)
         outcome = station.picture().game.outcome
         assert outcome is not None
-        assert (outcome.verdict, outcome.reason) == ("aborted", "abort by anna")
+        assert (outcome.verdict, outcome.reason) == (OutcomeResult.ABORTED, "abort by anna")
         assert master.exit_code == 1
 
 
@@ -186,7 +187,7 @@ async def test_the_evader_is_judged_by_its_track_when_its_own_word_fails():
         await until(lambda: station.picture().game.outcome, 20.0)
         outcome = station.picture().game.outcome
         assert outcome is not None
-        assert (outcome.verdict, outcome.captor) == ("captured", 2)
+        assert (outcome.verdict, outcome.captor) == (OutcomeResult.CAPTURED, 2)
 
 
 @virtual
@@ -198,7 +199,7 @@ async def test_a_lost_pursuer_neither_stops_the_referee_nor_captures():
         await until(lambda: station.picture().game.outcome, 40.0)
         outcome = station.picture().game.outcome
         assert outcome is not None
-        assert outcome.verdict == "escaped"
+        assert outcome.verdict == OutcomeResult.ESCAPED
         assert outcome.time == 30.0
 
 
@@ -207,7 +208,7 @@ async def test_where_there_is_a_master_already_this_one_yields():
     async with field() as (station, master, _, broker):
         other = broker.connect()
         for _ in range(20):
-            lease = swarm.Master("sim-bridge", virtual_clock().wall_ns(), nonce=1)
+            lease = messages.Master("sim-bridge", virtual_clock().wall_ns(), nonce=1)
             other.publish(*on_bus(lease), topics.MASTER.delivery)
             await asyncio.sleep(0.2)
         assert master.rules.standing is Standing.YIELDED
@@ -220,7 +221,7 @@ async def test_where_there_is_a_master_already_this_one_yields():
 @virtual
 async def test_who_leaves_in_mid_game_ends_it():
     async with field() as (station, _, _, broker):
-        listener = Station(broker.connect(), virtual_clock(), GAME)
+        listener = Station(broker.connect(), virtual_clock(), StationSetup(GAME))
         listener.open()
         await until(lambda: station.picture().game.phase is Phase.RUNNING, 8.0)
         await asyncio.sleep(1.0)

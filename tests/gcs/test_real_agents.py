@@ -13,7 +13,7 @@ import pytest
 
 import onboard
 from gcs.picture.values import Presence
-from gcs.station import Station
+from gcs.station import Station, StationSetup
 from onboard.runtime.bus_zenoh import open_zenoh
 from onboard.runtime.clock import RealClock
 from tests.support.bus_stages import free_port
@@ -40,7 +40,7 @@ async def field(*ids: int):
     """Agents, and a station that listens."""
     endpoint = f"tcp/127.0.0.1:{free_port()}"
     bus = await open_zenoh(endpoint, listen=True)
-    station = Station(bus, RealClock(), "field")
+    station = Station(bus, RealClock(), StationSetup("field"))
     watching = asyncio.create_task(station.run())
     processes = {i: await agent(i, endpoint) for i in ids}
     try:

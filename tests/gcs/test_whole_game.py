@@ -9,7 +9,7 @@ import pytest
 
 from gcs.master import FieldMaster
 from gcs.picture.values import Presence
-from gcs.station import Station
+from gcs.station import Station, StationSetup
 from onboard.game.master import Standing
 from onboard.game.scenario import load
 from onboard.runtime.impairment import CLEAR, CUT
@@ -27,7 +27,7 @@ pytestmark = pytest.mark.game
 async def game_of_six():
     """A game that runs, and a station that watches it."""
     async with WholeGame(CHASE, virtual_clock()) as game:
-        station = Station(game.broker.connect("gcs"), game.clock, game.game, operator="anna")
+        station = Station(game.broker.connect("gcs"), game.clock, StationSetup(game.game, "anna"))
         task = asyncio.create_task(station.run())
         try:
             await at_phase(game, Phase.RUNNING)
@@ -102,6 +102,7 @@ def test_an_agent_that_falls_silent_is_lost_after_one_second_and_seen_within_one
 @virtual
 async def test_a_cut_link_to_the_autopilot_is_not_a_lost_vehicle():
     async with game_of_six() as (game, station):
+        game.expects(3, "supervisor_end")
         game.impair(3, CUT)
         await game.forward(3.0)
         assert presence(station, 3) is Presence.PRESENT
@@ -128,6 +129,7 @@ async def test_hold_resume_and_return_are_confirmed_by_what_the_autopilots_repor
 @virtual
 async def test_a_pilot_who_takes_over_is_told_to_the_ground():
     async with game_of_six() as (game, station):
+        game.expects(5, "supervisor_end")
         game.bridge.world.vehicles[5].autopilot.pilot_mode(game.clock.monotonic_ns(), "STABILIZE")
         await game.forward(2.0)
         assert "handed_over:5" in names(station)
@@ -147,7 +149,7 @@ async def test_the_ground_station_runs_a_whole_game_and_the_bridges_master_yield
 async def ended(scenario, *, by_ground: bool):
     """The outcome, as everybody is told it."""
     game = WholeGame(scenario, virtual_clock())
-    station = Station(game.broker.connect("gcs"), game.clock, game.game)
+    station = Station(game.broker.connect("gcs"), game.clock, StationSetup(game.game))
     tasks = [asyncio.create_task(station.run())]
     master = FieldMaster(station, scenario, nonce=7)
     if by_ground:
@@ -165,7 +167,7 @@ async def ended(scenario, *, by_ground: bool):
 
 
 def done(station: Station, command: str) -> bool:
-    view = station.watch.book.view(command, station.now_ns())
+    view = station.reducer.book.view(command, station.now_ns())
     return view is not None and view.confirmed
 
 

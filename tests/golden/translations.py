@@ -50,8 +50,19 @@ def flat_setup(message: Any) -> Any:
 
 
 # Topics as in `bus` (without the game's name), in `viewers`, and "summary" for a game's summary.json.
+def without_autopilot_as_word(message: Any) -> Any:
+    """A health message in which an autopilot that was not found is an empty word, and not null."""
+    match message:
+        case [schema, [*body]] if len(body) > AUTOPILOT_AT and body[AUTOPILOT_AT] is None:
+            return [schema, [*body[:AUTOPILOT_AT], "", *body[AUTOPILOT_AT + 1 :]]]
+    return message
+
+
+AUTOPILOT_AT = 5  # place of the autopilot's kind in a health message as recorded
+
 TRANSLATIONS: tuple[Translation, ...] = (
     Translation(r"game/setup", flat_setup, "rules and limits are the core's types, nested"),
+    Translation(r"vehicles/[0-9]+/health", without_autopilot_as_word, "the kind of autopilot became an enum"),
     Translation(r".*", schema_1, "the setup's new shape raised the schema of all messages"),
 )
 

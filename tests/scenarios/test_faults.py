@@ -8,9 +8,9 @@ import pytest
 
 from onboard.autopilot.base import Stage
 from onboard.runtime.impairment import CLEAR, CUT, Impairment
-from onboard.wire.bus import messages as swarm
-from onboard.wire.bus.messages import Phase
-from onboard.wire.bus.topics import PHASE, SETUP, STATE, Delivery, key
+from onboard.wire.bus import messages
+from onboard.wire.bus.messages import AgentStage, OutcomeResult, Phase
+from onboard.wire.bus.topics import PHASE, SETUP, STATE, TRACK, Delivery
 from onboard.wire.mavlink.dialect import DialectSender, dialect, dialect_packet
 from onboard.wire.mavlink.tlog import read_tlog
 from tests.support.small_scenarios import EVADER, MATE, PURSUER, chase, duel
@@ -38,11 +38,11 @@ async def test_a_pursuer_cut_off_for_three_seconds_holds_comes_back_and_still_wi
         game.impair(PURSUER, CUT)
         await game.forward(3.0)
         assert "supervisor_hold" in game.kinds(PURSUER)
-        assert game.health[PURSUER].stage == "held"
+        assert game.health[PURSUER].stage == AgentStage.HELD
         assert flies(game.agents[EVADER])
         game.impair(PURSUER, CLEAR)
         outcome = await game.until_ended()
-        assert (outcome.verdict, outcome.captor) == ("captured", PURSUER)
+        assert (outcome.verdict, outcome.captor) == (OutcomeResult.CAPTURED, PURSUER)
         kinds = game.kinds(PURSUER)
         back = kinds[kinds.index("supervisor_hold") :]
         assert {"supervisor_ok", "supervisor_clip"} & set(back)
@@ -55,12 +55,12 @@ async def test_in_the_log_of_a_reboot_sequence_and_boot_time_begin_anew_and_the_
 ) -> None:
     async with game_of(chase(pursuers=2), folder=tmp_path) as game:
         await under_way(game, 8.0)
-        before = game.agents[PURSUER].craft.telemetry.link_quality
+        before = game.agents[PURSUER].core.vehicle.telemetry.link_quality
         game.expects(PURSUER, "reboot", "supervisor_end")
         autopilot(game, PURSUER).reboot(game.bridge.world.elapsed_ns)
         await game.forward(5.0, until=lambda: "reboot" in game.kinds(PURSUER))
         await game.forward(30.0, until=lambda: flies(game.agents[PURSUER]))
-        assert game.agents[PURSUER].craft.telemetry.link_quality > before - 0.2
+        assert game.agents[PURSUER].core.vehicle.telemetry.link_quality > before - 0.2
         assert flies(game.agents[MATE])
         assert "reboot" not in game.kinds(MATE)
         assert game.phase is Phase.RUNNING
@@ -103,7 +103,7 @@ async def flown(game, stranger: bool) -> list[tuple[float, ...]]:  # type: ignor
     assert flies(agent)
     assert "take_over" not in game.kinds(PURSUER)
     if stranger:
-        assert agent.craft.foreign["foreign_system"] >= 200
+        assert agent.core.vehicle.foreign["foreign_system"] >= 200
         assert autopilot(game, PURSUER).counters["for_others"] >= 200
         assert game.health[PURSUER].counters["foreign_system"] > 100
     return way
@@ -135,7 +135,9 @@ async def test_an_agent_killed_and_started_again_is_let_in_by_the_master_and_nob
         assert "agent 2 is silent" in game.told
         held = [place(game, PURSUER)]
         again = game.start_agent(PURSUER)
-        await game.forward(10.0, until=lambda: flies(again) and game.health[PURSUER].stage == "acting")
+        await game.forward(
+            10.0, until=lambda: flies(again) and game.health[PURSUER].stage == AgentStage.ACTING
+        )
         assert {"agent 2 was started again and may act again", "agent 2 is back"} <= set(game.told)
         kinds = game.kinds(PURSUER)
         second = kinds[kinds.index("started", 1) :]
@@ -157,8 +159,8 @@ async def test_a_pilot_takes_one_vehicle_out_of_the_game_and_its_setpoints_cease
         choose_mode(game, PURSUER, "ALT_HOLD")
         await game.forward(8.0)
         assert heard == [] or heard[-1] - taken_ns <= 100_000_000
-        assert game.agents[PURSUER].craft.stage is Stage.TAKEN
-        assert game.health[PURSUER].stage == "handed_over"
+        assert game.agents[PURSUER].core.vehicle.stage is Stage.TAKEN
+        assert game.health[PURSUER].stage == AgentStage.HANDED_OVER
         assert [event.text for event in game.events if event.id == PURSUER and event.kind == "take_over"]
         assert mode(game, PURSUER) == "ALT_HOLD"
         assert flies(game.agents[MATE])
@@ -167,24 +169,22 @@ async def test_a_pilot_takes_one_vehicle_out_of_the_game_and_its_setpoints_cease
 
 @virtual
 async def test_on_a_noisy_field_everything_bad_is_counted_by_cause_and_shown_in_health_and_summary() -> None:
-    noisy = Impairment(
-        loss=0.05, delay_s=0.01, jitter_s=0.02, duplication=0.1, reordering=0.1, bit_error=0.1
-    )
+    noisy = Impairment(loss=0.05, delay_s=0.01, jitter_s=0.02, duplication=0.1, reordering=0.1, bit_error=0.1)
     async with game_of(chase(pursuers=2)) as game:
         await under_way(game, 1.0)
         game.impair(PURSUER, noisy)
         foreign = DialectSender(77, 1)
         vehicle = game.bridge.world.vehicles[PURSUER]
         heartbeat = words(1, 1)[0]
-        wrong_schema = b"\x92\x09" + swarm.TRACK.encode(_track(game))[2:]
+        wrong_schema = b"\x92\x09" + TRACK.encode(_track(game))[2:]
         for n in range(60):
             vehicle.links[0].send(bytes([n, 0, 255 - n, 7] * 5))
             vehicle.links[0].send(foreign.pack(heartbeat))
             vehicle.links[0].send(foreign.pack(heartbeat)[:9])
             game.bus.publish(f"apollonius/{game.game}/tracks/1", wrong_schema, Delivery.LATEST)
-            game.bus.publish(key(game.game, STATE, MATE), b"\xc1nonsense", Delivery.LATEST)
-            game.bus.publish(key(game.game, PHASE), b"\x92\x09\x90", Delivery.LATEST)
-            game.bus.publish(key(game.game, SETUP), b"", Delivery.LATEST)
+            game.bus.publish(STATE.key(game.game, MATE), b"\xc1nonsense", Delivery.LATEST)
+            game.bus.publish(PHASE.key(game.game), b"\x92\x09\x90", Delivery.LATEST)
+            game.bus.publish(SETUP.key(game.game), b"", Delivery.LATEST)
             await game.forward(0.1)
         await game.forward(1.0)
         counters = game.health[PURSUER].counters
@@ -199,6 +199,6 @@ async def test_on_a_noisy_field_everything_bad_is_counted_by_cause_and_shown_in_
         assert autopilot(game, PURSUER).counters["bad_crc"] > 0
 
 
-def _track(game) -> swarm.Track:  # type: ignore[no-untyped-def]
+def _track(game) -> messages.Track:  # type: ignore[no-untyped-def]
     zero = (0.0, 0.0, 0.0)
-    return swarm.Track(EVADER, game.clock.wall_ns(), zero, zero, (1.0,) * 6)  # type: ignore[arg-type]
+    return messages.Track(EVADER, game.clock.wall_ns(), zero, zero, (1.0,) * 6)  # type: ignore[arg-type]

@@ -6,11 +6,11 @@ import asyncio
 
 import pytest
 
-from onboard.agent.agent import Agent
 from onboard.agent.config import AgentConfig
+from onboard.agent.shell import Agent, Equipment
 from onboard.core.math.vectors import Vec
 from onboard.runtime.links import memory_pair
-from onboard.wire.bus.messages import Phase, Role
+from onboard.wire.bus.messages import AgentStage, OutcomeResult, Phase, Role
 from sim_bridge.world.bridge import Bridge, Options
 from tests.support.small_scenarios import EVADER, PURSUER, chase, duel
 from tests.support.virtual_time import virtual
@@ -25,7 +25,7 @@ async def test_the_game_ends_while_the_bus_is_dead_and_all_learn_of_it_when_it_i
         game.broker.kill()
         await at_phase(game, Phase.ENDED, 20.0)
         assert game.outcome is not None
-        assert game.outcome.verdict == "captured"
+        assert game.outcome.verdict == OutcomeResult.CAPTURED
         await game.forward(1.0)
         assert flies(game.agents[EVADER]), "nobody has told it: it flies on"
         assert "running" in phases(game, EVADER)[-1]
@@ -42,8 +42,8 @@ async def test_a_bus_that_comes_ten_seconds_late_delays_the_game_and_no_more() -
         game.broker.kill()
         await game.forward(10.0)
         for agent in game.agents.values():
-            assert agent.stage == "waiting"
-            assert {"the bus", "a game's setup", "a master"} <= set(agent.lacks)
+            assert agent.core.stage == AgentStage.WAITING
+            assert {"the bus", "a game's setup", "a master"} <= set(agent.core.lacks)
         assert game.phase is Phase.STAGING
         game.broker.restore()
         await under_way(game, 0.5)
@@ -57,7 +57,8 @@ async def test_with_two_agents_of_one_id_no_game_begins_until_one_of_them_is_sto
         game.expects(PURSUER, "double_id")
         near, _ = memory_pair("another aircraft")
         config = AgentConfig(id=PURSUER, game=game.game, role=Role.PURSUER)
-        twin = Agent(config, game.clock, [near], game.broker.connect("twin"), nonce=99, log=game.told.append)
+        twin = Agent(config, game.clock, [near], game.broker.connect("twin"),
+                     Equipment(nonce=99, log=game.told.append))  # fmt: skip
         task = asyncio.create_task(twin.run())
         await game.forward(15.0)
         assert game.phase is Phase.STAGING
@@ -94,7 +95,7 @@ async def test_a_game_that_one_agent_cannot_play_is_given_up_with_the_reason() -
         game.expects_abort()
         await at_phase(game, Phase.ENDED, 12.0)
         assert game.outcome is not None
-        assert game.outcome.verdict == "aborted"
+        assert game.outcome.verdict == OutcomeResult.ABORTED
         assert "vehicle 2: waiting: a setup that fits: the setup says pursuer" in game.outcome.reason
         assert "setup_refused" in game.kinds(PURSUER)
         assert [mode(game, id) for id in (EVADER, PURSUER)] == ["LOITER", "LOITER"]

@@ -7,13 +7,12 @@ from pathlib import Path
 import pytest
 
 from onboard.game.scenario import ImpairmentSpec, Kind, SensorSpec
-from onboard.wire.bus import messages as swarm
-from onboard.wire.bus.messages import Phase
-from onboard.wire.bus.topics import EVADER_BRIEF, OUTCOME, key, topic_of, vehicle_of
+from onboard.wire.bus.messages import OutcomeResult, Phase
+from onboard.wire.bus.topics import EVADER_BRIEF, OUTCOME, TOPICS, Party
 from onboard.wire.mavlink.tlog import read_tlog
 from tests.support.small_scenarios import EVADER, GUIDED, HOLD, MATE, PURSUER, duel
 from tests.support.virtual_time import virtual
-from tests.support.whole_games import STORY, HeardOfGame, game_of, mode, phases, place, speed
+from tests.support.whole_games import STORY, HeardOfGame, WholeGame, game_of, mode, phases, place, speed
 
 pytestmark = pytest.mark.game
 
@@ -27,7 +26,7 @@ async def test_a_game_stages_starts_plays_and_ends_with_a_capture(kind: Kind) ->
         assert speed(game, EVADER) == pytest.approx(40.0 if kind is Kind.ARDUPLANE else 4.0, rel=0.1)
         outcome = await game.until_ended()
         await game.forward(1.0)
-        assert (outcome.verdict, outcome.captor) == ("captured", PURSUER)
+        assert (outcome.verdict, outcome.captor) == (OutcomeResult.CAPTURED, PURSUER)
         assert 3.0 < outcome.time < (40.0 if kind is Kind.ARDUPLANE else 8.0)
         assert [phases(game, id) for id in (EVADER, PURSUER)] == [STORY, STORY]
         assert [mode(game, id) for id in (EVADER, PURSUER)] == [HOLD[kind]] * 2
@@ -53,7 +52,7 @@ async def test_with_three_in_ten_messages_lost_everywhere_it_still_plays_to_the_
         heard = HeardOfGame(game)
         outcome = await game.until_ended()
         await game.forward(3.0)
-        assert (outcome.verdict, outcome.captor) == ("captured", PURSUER)
+        assert (outcome.verdict, outcome.captor) == (OutcomeResult.CAPTURED, PURSUER)
         for id in game.scenario.ids:
             assert phases(game, id)[-3:] == STORY[-3:], "what is cached arrives, be it late"
             counts = game.links[id].counters()
@@ -62,10 +61,23 @@ async def test_with_three_in_ten_messages_lost_everywhere_it_still_plays_to_the_
                 share = lost / (lost + sent) if way == "out" else lost / sent
                 assert share == pytest.approx(0.3, abs=0.06), way
         assert {mode(game, id) for id in game.scenario.ids} == {"LOITER"}
-        assert len({vehicle_of(sample.key) for sample in heard.samples}) > 3
+        assert len({TOPICS.find(sample.key).id for sample in heard.samples}) > 3
     log = [entry.packet for entry in read_tlog((tmp_path / "vehicle-2.tlog").read_bytes())]
     assert {packet.component for packet in log} == {1, 191}
     assert sum(packet.name == "GLOBAL_POSITION_INT" for packet in log) > 80
+
+
+def parties(game: WholeGame, id: int, key: str) -> set[Party]:
+    """As whom the agent of a vehicle may read a key: what an access rule of a secured bus grants."""
+    found = {Party.ANY_AGENT}
+    named = TOPICS.find(key).id
+    if id == EVADER:
+        found.add(Party.EVADER)
+    if named == id:
+        found.add(Party.OWN_AGENT)
+    if named in game.scenario.ids and (named == EVADER) == (id == EVADER):
+        found.add(Party.SAME_SIDE)
+    return found
 
 
 @virtual
@@ -77,12 +89,14 @@ async def test_no_agent_is_ever_handed_what_it_must_not_know_and_a_late_comer_le
             bus = game.start_agent(id).bus
             bus.tap = lambda sample, keys=delivered[id]: keys.add(sample.key)
         outcome = await game.until_ended()
-        brief = key(game.game, EVADER_BRIEF)
+        brief = EVADER_BRIEF.key(game.game)
         assert brief in delivered[EVADER]
         for id, keys in delivered.items():
-            others = {vehicle_of(k) for k in keys if "/vehicles/" in k and vehicle_of(k) != id}
+            for key in keys:
+                assert parties(game, id, key) & {*TOPICS.find(key).topic.readers}, (id, key)
+            others = {TOPICS.find(k).id for k in keys if "/vehicles/" in k and TOPICS.find(k).id != id}
             assert others == ({MATE if id == PURSUER else PURSUER} if id != EVADER else set())
-            assert {topic_of(k).suffix for k in keys if "/vehicles/" in k} <= {  # type: ignore[union-attr]
+            assert {TOPICS.find(k).topic.suffix for k in keys if "/vehicles/" in k} <= {  # type: ignore[union-attr]
                 "vehicles/{id}/state", "vehicles/{id}/health",
             }  # fmt: skip
             if id != EVADER:
@@ -90,7 +104,7 @@ async def test_no_agent_is_ever_handed_what_it_must_not_know_and_a_late_comer_le
         assert place(game, EVADER).x > 4.0
         heard: list[bytes] = []  # by somebody who comes when it is over
         late = game.broker.connect("late")
-        late.subscribe(key(game.game, OUTCOME), lambda sample: heard.append(sample.payload))
+        late.subscribe(OUTCOME.key(game.game), lambda sample: heard.append(sample.payload))
         await game.forward(1.0, until=lambda: bool(heard))
-        assert swarm.OUTCOME.decode(heard[0], game.observer.drops) == outcome
-        assert (outcome.verdict, outcome.time) == ("escaped", 2.0)
+        assert OUTCOME.decode(heard[0], game.observer.drops) == outcome
+        assert (outcome.verdict, outcome.time) == (OutcomeResult.ESCAPED, 2.0)

@@ -27,9 +27,8 @@ import psutil  # noqa: E402
 from onboard.game.scenario import Flight, ImpairmentSpec, Kind, Parameters, Scenario, VehicleSpec  # noqa: E402
 from onboard.pilot.predictor_choice import Predicting  # noqa: E402
 from onboard.runtime.loop import run_virtual  # noqa: E402
-from onboard.wire.bus import messages as swarm  # noqa: E402
 from onboard.wire.bus.messages import Command, CommandKind, Phase  # noqa: E402
-from onboard.wire.bus.topics import COMMAND, key  # noqa: E402
+from onboard.wire.bus.topics import COMMAND  # noqa: E402
 from tests.soak.faults import NAMES, OF_ALL, OF_ONE, Rng, Undo  # noqa: E402
 from tests.support.whole_games import WholeGame, flies, game_of  # noqa: E402
 
@@ -156,8 +155,8 @@ class Soak:
             agent = self.game.agents[id]
             alive = f"killed {id}" not in self._in_force
             flying = alive and flies(agent)
-            kinds = agent.journal.kinds
-            explained = sum(kinds.get(kind, 0) for kind in self.explains) + agent.journal.suppressed
+            kinds = agent.core.journal.kinds
+            explained = sum(kinds.get(kind, 0) for kind in self.explains) + agent.core.journal.suppressed
             if flying or not alive:
                 vehicle.stopped_at, vehicle.explained = -1.0, explained
             elif vehicle.flew:
@@ -184,18 +183,19 @@ class Soak:
                 self._orders += 1
                 self.totals["resumes"] += 1
                 order = Command(f"soak-{self._orders}", CommandKind.RESUME, "operator", 0)
-                where = key(self.game.game, COMMAND, id)
-                await self.game.bus.request(where, swarm.COMMAND.encode(order), 0.5)
+                where = COMMAND.key(self.game.game, id)
+                await self.game.bus.request(where, COMMAND.encode(order), 0.5)
 
     def story(self, id: int, what: str) -> str:
         """What a person needs to know of a failure."""
         agent, autopilot = self.game.agents[id], self.game.bridge.world.vehicles[id].autopilot
-        verdict = agent.acting.verdict
+        verdict = agent.core.flight.output
         last = [line for line in self.game.told if f"vehicle {id} " in line][-12:]
         return (
             f"vehicle {id} {what} at {self.now:.1f} s: mode {autopilot.mode_name}, "
-            f"{'armed' if autopilot.armed else 'disarmed'}, agent {agent.stage}, lacks {agent.lacks}, "
-            f"{agent.craft.stage}, {verdict and verdict.cause!r}, in force {sorted(self._in_force)}\n"
+            f"{'armed' if autopilot.armed else 'disarmed'}, "
+            f"agent {agent.core.stage}, lacks {agent.core.lacks}, "
+            f"{agent.core.vehicle.stage}, {verdict and verdict.cause!r}, in force {sorted(self._in_force)}\n"
             + "\n".join(last)
         )
 

@@ -7,12 +7,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gcs.station import Station
+from gcs.station import Station, StationSetup
 from onboard.game.scenario import Flight, ImpairmentSpec, Parameters, Scenario, VehicleSpec
 from onboard.pilot.predictor_choice import Predicting
 from onboard.runtime.impairment import CLEAR, Impairment
 from onboard.runtime.loop import run_virtual
-from onboard.wire.bus.messages import CommandKind, Phase
+from onboard.wire.bus.messages import AgentStage, CommandKind, Phase
 from sim_bridge.rehearsal import Rehearsal
 from tests.support.whole_games import at_phase, game_of
 
@@ -51,13 +51,13 @@ async def _trials(count: int, seed: int, loss: float) -> list[Trial]:
     rng = np.random.default_rng([seed, 1])
     found = []
     async with game_of(CHASE, seed=seed, any_error=True) as game:
-        station = Station(game.broker.connect("gcs"), game.clock, game.game)
+        station = Station(game.broker.connect("gcs"), game.clock, StationSetup(game.game))
         task = asyncio.create_task(station.run())
         ids = CHASE.ids
         await at_phase(game, Phase.RUNNING, PATIENCE_S)
 
         def acting_all() -> bool:
-            return all(game.health[i].stage == "acting" for i in ids)
+            return all(game.health[i].stage == AgentStage.ACTING for i in ids)
 
         for _ in range(count):
             await game.forward(PATIENCE_S, until=acting_all)
@@ -81,20 +81,20 @@ async def _abort(game: Rehearsal, station: Station, ids: tuple[int, ...]) -> Tri
         passed = (station.now_ns() - start_ns) / 1e9
         assert passed < PATIENCE_S, "an abort was never confirmed"
         if passed > WITHIN_S and not unconfirmed:
-            view = station.watch.book.view(command, station.now_ns())
+            view = station.reducer.book.view(command, station.now_ns())
             assert view is not None
             unconfirmed = view.unconfirmed
             await asyncio.sleep(0.2)  # a beat of the alerts
             named = tuple(a.text for a in station.picture().alerts if a.kind == "unconfirmed_abort")
         await asyncio.sleep(0.01)
-    view = station.watch.book.view(command, station.now_ns())
+    view = station.reducer.book.view(command, station.now_ns())
     assert view is not None
     return Trial(max(leg.took_s for leg in view.legs), unconfirmed, named)
 
 
 def done(station: Station, command: str) -> bool:
     """Every vehicle has confirmed."""
-    view = station.watch.book.view(command, station.now_ns())
+    view = station.reducer.book.view(command, station.now_ns())
     return view is not None and view.confirmed
 
 

@@ -10,11 +10,24 @@ from collections.abc import Iterator
 from math import asin, atan2, cos, sin, sqrt
 from typing import NamedTuple
 
-from gcs.picture import journal
+from gcs.picture import station_journal
 from onboard.core.math.constants import NS_PER_S
-from onboard.wire.bus import messages as swarm
-from onboard.wire.bus import topics
-from onboard.wire.bus.messages import CommandKind, Phase, Role, Severity, Triple
+from onboard.wire.autopilot_kind import Kind
+from onboard.wire.bus import messages, topics
+from onboard.wire.bus.messages import (
+    AgentStage,
+    CommandKind,
+    CommandState,
+    DecisionLevel,
+    DecisionModule,
+    Message,
+    OutcomeResult,
+    Phase,
+    Role,
+    Severity,
+    SupervisorAction,
+    Triple,
+)
 
 EPOCH_NS = 1_760_000_000 * NS_PER_S
 TARGET = (400.0, 100.0, -60.0)
@@ -28,22 +41,24 @@ class Item(NamedTuple):
     stamp_ns: int
 
 
-def setup(game: str, vehicles: int) -> swarm.Setup:
+def setup(game: str, vehicles: int) -> messages.Setup:
     """Evader 1, pursuers from 2 up on a wide arc ahead."""
-    roster = [swarm.Member(1, Role.EVADER, 12.0, (0.0, 0.0, -50.0))]
+    roster = [messages.Member(1, Role.EVADER, 12.0, (0.0, 0.0, -50.0))]
     for index in range(vehicles - 1):
         angle = (index - (vehicles - 2) / 2) * 0.35
         start = (260.0 * cos(angle), 260.0 * sin(angle), -40.0 - 4.0 * (index % 5))
-        roster.append(swarm.Member(index + 2, Role.PURSUER, 9.0, start))
-    return swarm.Setup(
+        roster.append(messages.Member(index + 2, Role.PURSUER, 9.0, start))
+    return messages.Setup(
         game=game,
         scenario="a chase",
         scenario_hash="0123456789abcdef",
         master="bridge",
-        origin=swarm.Origin(47.397742, 8.545594, 488.0),
+        origin=messages.Origin(47.397742, 8.545594, 488.0),
         roster=tuple(roster),
-        rules=swarm.RulesMessage(5.0, 10.0, epsilon_min=3.0, horizon=60.0, separation=4.0),
-        fence=swarm.Fence(((-100.0, -400.0), (600.0, -400.0), (600.0, 400.0), (-100.0, 400.0)), 5.0, 150.0),
+        rules=messages.RulesMessage(5.0, 10.0, epsilon_min=3.0, horizon=60.0, separation=4.0),
+        fence=messages.Fence(
+            ((-100.0, -400.0), (600.0, -400.0), (600.0, 400.0), (-100.0, 400.0)), 5.0, 150.0
+        ),
         track_sigma=0.5,
     )
 
@@ -60,22 +75,22 @@ def chase(
     plan = setup(game, vehicles)
 
     def item(topic: topics.Topic, vehicle: int | None, payload: bytes, at_ns: int) -> Item:
-        return Item(topics.key(game, topic, vehicle), payload, at_ns)
+        return Item(topic.key(game, vehicle), payload, at_ns)
 
     t0_ns = EPOCH_NS + 2 * NS_PER_S
     if not state_only:
-        yield item(topics.SETUP, None, swarm.SETUP.encode(plan), EPOCH_NS)
+        yield item(topics.SETUP, None, topics.SETUP.encode(plan), EPOCH_NS)
         yield item(
             topics.EVADER_BRIEF,
             None,
-            swarm.EVADER_BRIEF.encode(swarm.EvaderBrief(TARGET, EPOCH_NS)),
+            topics.EVADER_BRIEF.encode(messages.EvaderBrief(TARGET, EPOCH_NS)),
             EPOCH_NS,
         )
-        staging = swarm.PhaseChange(Phase.STAGING, 0, EPOCH_NS)
-        yield item(topics.PHASE, None, swarm.PHASE.encode(staging), EPOCH_NS + 1000)
+        staging = messages.PhaseChange(Phase.STAGING, 0, EPOCH_NS)
+        yield item(topics.PHASE, None, topics.PHASE.encode(staging), EPOCH_NS + 1000)
         for member in plan.roster:
-            token = journal.Presence(topics.key(game, topics.ALIVE, member.id), True)
-            yield Item(journal.key(game, "presence"), journal.PRESENCE.encode(token), EPOCH_NS + 2000)
+            token = station_journal.Presence(topics.ALIVE.key(game, member.id), True)
+            yield entry(game, token, EPOCH_NS + 2000)
     places = {m.id: m.start for m in plan.roster}
     velocities: dict[int, Triple] = {m.id: (0.0, 0.0, 0.0) for m in plan.roster}
     dt = 0.05
@@ -90,15 +105,18 @@ def chase(
                 yield item(
                     topics.PHASE,
                     None,
-                    swarm.PHASE.encode(swarm.PhaseChange(Phase.READY, t0_ns, now_ns)),
+                    topics.PHASE.encode(messages.PhaseChange(Phase.READY, t0_ns, now_ns)),
                     now_ns,
                 )
             if step == 40:
-                change = swarm.PhaseChange(Phase.RUNNING, t0_ns, now_ns)
-                yield item(topics.PHASE, None, swarm.PHASE.encode(change), now_ns)
+                change = messages.PhaseChange(Phase.RUNNING, t0_ns, now_ns)
+                yield item(topics.PHASE, None, topics.PHASE.encode(change), now_ns)
             if step % 10 == 0:
                 yield item(
-                    topics.MASTER, None, swarm.MASTER.encode(swarm.Master("bridge", now_ns, 2.0, 7)), now_ns
+                    topics.MASTER,
+                    None,
+                    topics.MASTER.encode(messages.Master("bridge", now_ns, 2.0, 7)),
+                    now_ns,
                 )
         for member in plan.roster:
             aim = TARGET if member.role is Role.EVADER else places[1]
@@ -106,23 +124,23 @@ def chase(
             velocities[member.id] = velocity
             at = now_ns + member.id * 1000
             yield item(
-                topics.STATE, member.id, swarm.STATE.encode(_state(member, places, velocity, time, at)), at
+                topics.STATE, member.id, topics.STATE.encode(_state(member, places, velocity, time, at)), at
             )
             if state_only:
                 continue
             if step % 2 == 0:
                 report = _decision(member, places, velocity, aim, time, at)
-                yield item(topics.DECISION, member.id, swarm.DECISION.encode(report), at + 100)
+                yield item(topics.DECISION, member.id, topics.DECISION.encode(report), at + 100)
             if step % 2 == 1:
-                track = swarm.Track(
+                track = messages.Track(
                     member.id, at, places[member.id], velocity, (0.25,) * 3 + (0.04,) * 3, "radar"
                 )
-                yield item(topics.TRACK, member.id, swarm.TRACK.encode(track), at + 200)
+                yield item(topics.TRACK, member.id, topics.TRACK.encode(track), at + 200)
             if step % 10 == 5:
                 yield item(
                     topics.HEALTH,
                     member.id,
-                    swarm.HEALTH.encode(_health(member, step, running, at)),
+                    topics.HEALTH.encode(_health(member, step, running, at)),
                     at + 300,
                 )
         if story and not state_only:
@@ -135,30 +153,34 @@ def chase(
             captured = True
             end_ns = now_ns + 950_000
             captor = min(plan.roster[1:], key=lambda m: _distance(places[1], places[m.id])).id
-            outcome = swarm.Outcome(
-                "captured", time, captor, smallest, end_ns, f"vehicle {captor} within 5 m"
+            outcome = messages.Outcome(
+                OutcomeResult.CAPTURED, time, captor, smallest, end_ns, f"vehicle {captor} within 5 m"
             )
-            yield item(topics.OUTCOME, None, swarm.OUTCOME.encode(outcome), end_ns)
-            ended = swarm.PhaseChange(Phase.ENDED, t0_ns, end_ns)
-            yield item(topics.PHASE, None, swarm.PHASE.encode(ended), end_ns + 1)
+            yield item(topics.OUTCOME, None, topics.OUTCOME.encode(outcome), end_ns)
+            ended = messages.PhaseChange(Phase.ENDED, t0_ns, end_ns)
+            yield item(topics.PHASE, None, topics.PHASE.encode(ended), end_ns + 1)
 
 
-def _story(plan: swarm.Setup, game: str, step: int, now_ns: int, time: float) -> Iterator[Item]:
+def entry(game: str, message: Message, at_ns: int) -> Item:
+    """An entry of the station's journal."""
+    topic = next(topic for topic in station_journal.JOURNAL if topic.message is type(message))
+    return Item(topic.key(game), topic.encode(message), at_ns)
+
+
+def _story(plan: messages.Setup, game: str, step: int, now_ns: int, time: float) -> Iterator[Item]:
     """What makes a flight worth a report: an event, and a command that one vehicle is slow to obey."""
     if step == 100:
-        event = swarm.Event(2, 1, now_ns, Severity.WARNING, "limit", "decision clipped: pitch")
-        yield Item(topics.key(game, topics.EVENTS, 2), swarm.EVENT.encode(event), now_ns)
+        event = messages.Event(2, 1, now_ns, Severity.WARNING, "limit", "decision clipped: pitch")
+        yield Item(topics.EVENTS.key(game, 2), topics.EVENTS.encode(event), now_ns)
     ids = tuple(m.id for m in plan.roster)
-    command = swarm.Command("c-1", CommandKind.HOLD, "gcs@field", now_ns)
+    command = messages.Command("c-1", CommandKind.HOLD, "gcs@field", now_ns)
     if step == 300:
-        yield Item(journal.key(game, "sent"), journal.SENT.encode(journal.Sent(command, ids)), now_ns)
+        yield entry(game, station_journal.Sent(command, ids), now_ns)
     for vehicle in ids:
         if step in (302, 303 + 2 * vehicle):
-            state = "pending" if step == 302 else "confirmed"
-            reply = swarm.CommandReply("c-1", vehicle, state, "", "gcs@field", now_ns, "LOITER")
-            yield Item(
-                journal.key(game, "replied"), journal.REPLIED.encode(journal.Replied(reply)), now_ns + vehicle
-            )
+            state = CommandState.PENDING if step == 302 else CommandState.CONFIRMED
+            reply = messages.CommandReply("c-1", vehicle, state, "", "gcs@field", now_ns, "LOITER")
+            yield entry(game, station_journal.Replied(reply), now_ns + vehicle)
 
 
 def _towards(place: Triple, aim: Triple, speed: float) -> Triple:
@@ -173,13 +195,13 @@ def _distance(a: Triple, b: Triple) -> float:
 
 
 def _state(
-    member: swarm.Member, places: dict[int, Triple], velocity: Triple, time: float, at_ns: int
-) -> swarm.State:
+    member: messages.Member, places: dict[int, Triple], velocity: Triple, time: float, at_ns: int
+) -> messages.State:
     speed = _distance(velocity, (0.0, 0.0, 0.0))
     yaw = atan2(velocity[1], velocity[0]) if speed > 0 else 0.0
     pitch = asin(-velocity[2] / speed) if speed > 0 else 0.0
     wind = (2.0 + 0.5 * sin(time), -1.0, 0.0)
-    return swarm.State(
+    return messages.State(
         member.id,
         member.role,
         at_ns - 20_000_000,
@@ -197,17 +219,17 @@ def _state(
 
 
 def _decision(
-    member: swarm.Member, places: dict[int, Triple], velocity: Triple, aim: Triple, time: float, at_ns: int
-) -> swarm.DecisionReport:
+    member: messages.Member, places: dict[int, Triple], velocity: Triple, aim: Triple, time: float, at_ns: int
+) -> messages.DecisionReport:
     evader = member.role is Role.EVADER
     rule = "towards_target" if evader else ("intercept" if int(time) % 4 else "close_in")
     cones = ((1.0, 0.0, 0.0, 0.2),) if evader else ()
-    return swarm.DecisionReport(
+    return messages.DecisionReport(
         member.id,
         at_ns,
         time,
-        "tactical",
-        "geometric",
+        DecisionLevel.TACTICAL,
+        DecisionModule.GEOMETRIC,
         "paper",
         rule,
         velocity,
@@ -218,16 +240,16 @@ def _decision(
     )
 
 
-def _health(member: swarm.Member, step: int, running: bool, at_ns: int) -> swarm.Health:
+def _health(member: messages.Member, step: int, running: bool, at_ns: int) -> messages.Health:
     battery = max(0.1, 0.95 - 0.0005 * step - 0.05 * member.id)
     quality = 1.0 if member.id != 2 else 0.9
-    return swarm.Health(
+    return messages.Health(
         member.id,
         member.role,
         at_ns,
-        "acting" if running else "ready",
+        AgentStage.ACTING if running else AgentStage.READY,
         (),
-        "ArduCopter",
+        Kind.ARDUCOPTER,
         "GUIDED",
         True,
         battery,
@@ -237,7 +259,7 @@ def _health(member: swarm.Member, step: int, running: bool, at_ns: int) -> swarm
         0.002 * member.id,
         3,
         True,
-        "ok",
+        SupervisorAction.OK,
         "0.1.0",
         {"bad_crc": step // 50},
         0.02,

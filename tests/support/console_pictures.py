@@ -14,7 +14,7 @@ from pathlib import Path
 from gcs.console.app import Console
 from gcs.console.source import Key
 from gcs.picture.values import Picture
-from gcs.station import Station
+from gcs.station import Station, StationSetup
 from onboard.game.scenario import load
 from onboard.runtime.loop import run_virtual
 from onboard.runtime.resources import configs
@@ -52,7 +52,7 @@ class Still:
 async def _play() -> tuple[Picture, Picture]:
     """The demo under way, and just after an abort that vehicle 4, whose agent was killed, cannot confirm."""
     async with game_of(load(DEMO)) as game:
-        station = Station(game.broker.connect("gcs"), game.clock, game.game, operator="gcs/anna")
+        station = Station(game.broker.connect("gcs"), game.clock, StationSetup(game.game, "gcs/anna"))
         task = asyncio.create_task(station.run())
         await at_phase(game, Phase.RUNNING)
         await game.forward(14.0)

@@ -9,8 +9,7 @@ from gcs.recording.recorder import Recorder
 from gcs.recording.tlog import TlogRecorder
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec
-from onboard.wire.bus import messages as swarm
-from onboard.wire.bus import topics
+from onboard.wire.bus import messages, topics
 from onboard.wire.geodesy import Frame
 from onboard.wire.mavlink.dialect import DialectSender, dialect
 from tests.support.chase_messages import EPOCH_NS, Item, chase, setup
@@ -63,9 +62,10 @@ def make_tlogs(folder: Path, items: list[Item] | None = None) -> Path:
     frame = Frame(origin.latitude_deg, origin.longitude_deg, origin.altitude_m)
     senders: dict[int, DialectSender] = {}
     for item in flight() if items is None else items:
-        if topics.topic_of(item.key) is not topics.STATE:
+        place = topics.TOPICS.find(item.key)
+        if place is None or place.topic is not topics.STATE:
             continue
-        state = swarm.STATE.decode(item.payload, {})  # type: ignore[arg-type]
+        state = topics.STATE.decode(item.payload, {})  # type: ignore[arg-type]
         assert state is not None
         sender = senders.setdefault(state.id, DialectSender(state.id, 1))
         for message in _telemetry(state, frame):
@@ -74,7 +74,7 @@ def make_tlogs(folder: Path, items: list[Item] | None = None) -> Path:
     return folder
 
 
-def _telemetry(state: swarm.State, frame: Frame) -> list[object]:
+def _telemetry(state: messages.State, frame: Frame) -> list[object]:
     spot = frame.geodetic_from_ned(Vec(*state.position))
     boot_ms = (state.stamp_ns - EPOCH_NS) // 1_000_000 + 1000
     place = dialect.MAVLink_global_position_int_message(

@@ -7,9 +7,9 @@ from collections import Counter
 
 from onboard.runtime.protocols import Bus, Clock, Sample
 from onboard.runtime.tasks import Pace, periodic
-from onboard.wire.bus import messages as swarm
-from onboard.wire.bus.messages import Health, Phase, PhaseChange, Role
-from onboard.wire.bus.topics import HEALTH, PHASE, key
+from onboard.wire.autopilot_kind import Kind
+from onboard.wire.bus.messages import AgentStage, Health, Phase, PhaseChange, Role, SupervisorAction
+from onboard.wire.bus.topics import HEALTH, PHASE
 
 
 class ScriptedAgent:
@@ -25,13 +25,13 @@ class ScriptedAgent:
         self._game = game
         self._clock = clock
         self._drops: Counter[str] = Counter()
-        bus.subscribe(key(game, PHASE), self._on_phase)
+        bus.subscribe(PHASE.key(game), self._on_phase)
 
     async def run(self) -> None:
         await periodic(Pace("health", 0.5), self._beat, self._clock)
 
     def _on_phase(self, sample: Sample) -> None:
-        phase = swarm.PHASE.decode(sample.payload, self._drops)
+        phase = PHASE.decode(sample.payload, self._drops)
         assert phase is not None
         self.phases.append(phase)
         if phase.phase is Phase.RUNNING and (phase.t0_ns > self._born_ns or self.id in phase.resume):
@@ -40,13 +40,14 @@ class ScriptedAgent:
     def _beat(self) -> None:
         running = bool(self.phases) and self.phases[-1].phase is Phase.RUNNING
         waiting = not self.phases or (running and not self.acting)
-        stage = "waiting" if waiting else "acting" if running else "ready"
+        stage = AgentStage.WAITING if waiting else AgentStage.ACTING if running else AgentStage.READY
         role = Role.EVADER if self.id == 1 else Role.PURSUER
         health = Health(
-            self.id, role, self._clock.wall_ns(), stage, ("resume",) if waiting else (), "arducopter",
-            "GUIDED", True, 1.0, 1.0, 20.0, 20.0, 0.0, 3, True, "ok", "0", {}, nonce=self._nonce,
+            self.id, role, self._clock.wall_ns(), stage, ("resume",) if waiting else (), Kind.ARDUCOPTER,
+            "GUIDED", True, 1.0, 1.0, 20.0, 20.0, 0.0, 3, True, SupervisorAction.OK, "0", {},
+            nonce=self._nonce,
         )  # fmt: skip
-        self.bus.publish(key(self._game, HEALTH, self.id), swarm.HEALTH.encode(health), HEALTH.delivery)
+        self.bus.publish(HEALTH.key(self._game, self.id), HEALTH.encode(health), HEALTH.delivery)
 
 
 def crew(bus_of: dict[int, Bus], clock: Clock, game: str) -> dict[int, ScriptedAgent]:

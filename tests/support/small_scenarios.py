@@ -20,8 +20,13 @@ HOLD = {Kind.PX4: "HOLD", Kind.ARDUCOPTER: "LOITER", Kind.ARDUPLANE: "LOITER"}
 GUIDED = {Kind.PX4: "OFFBOARD", Kind.ARDUCOPTER: "GUIDED", Kind.ARDUPLANE: "GUIDED"}
 
 
-def chase(kind: Kind = Kind.ARDUCOPTER, *, pursuers: int = 1, **flight: Any) -> Scenario:
-    """A chase that goes on for a minute or more: the pursuers start behind a faster evader."""
+def chase(
+    kind: Kind = Kind.ARDUCOPTER, *, pursuers: int = 1, separation: float = 0.0, **flight: Any
+) -> Scenario:
+    """A chase that goes on for a minute or more: the pursuers start behind a faster evader.
+
+    `separation` [m] is what pursuers keep from each other; 0 = nothing.
+    """
     scale = 10.0 if kind is Kind.ARDUPLANE else 1.0
     places = ((-60.0, 40.0), (-60.0, -40.0), (-90.0, 0.0))
     return Scenario(
@@ -30,7 +35,7 @@ def chase(kind: Kind = Kind.ARDUCOPTER, *, pursuers: int = 1, **flight: Any) -> 
         pursuers=tuple(
             VehicleSpec(position=(x * scale, y * scale), speed=4.0 * scale) for x, y in places[:pursuers]
         ),
-        parameters=Parameters(horizon=100.0),
+        parameters=Parameters(horizon=100.0, separation=separation),
         flight=Flight(autopilot=kind, height=120.0, ready_s=2.0, **flight),
     )
 

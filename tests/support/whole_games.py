@@ -11,16 +11,16 @@ from collections import Counter
 from collections.abc import Callable, Hashable
 from typing import Any
 
-from onboard.agent.agent import Agent
+from onboard.agent.shell import Agent
 from onboard.autopilot.base import Stage
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec, distance, norm
 from onboard.game.scenario import Scenario
 from onboard.runtime.loop import virtual_clock
 from onboard.runtime.protocols import Clock, Sample
-from onboard.wire.bus import messages as swarm
+from onboard.wire.bus import topics
 from onboard.wire.bus.messages import Command, CommandKind, CommandReply, Event, Phase, Severity
-from onboard.wire.bus.topics import COMMAND, everything, key
+from onboard.wire.bus.topics import COMMAND, everything
 from sim_bridge.rehearsal import Options, Rehearsal
 from sim_bridge.vehicle.autopilot.autopilot import Autopilot
 
@@ -56,9 +56,7 @@ class WholeGame(Rehearsal):
         """From now on the game may be given up."""
         self._aborts = True
 
-    async def forward(
-        self, seconds: float = 60.0, *, until: Callable[[], object] | None = None
-    ) -> None:
+    async def forward(self, seconds: float = 60.0, *, until: Callable[[], object] | None = None) -> None:
         """Let `seconds` of the game's time pass, or time until a condition holds, for `seconds` at most.
 
         Raises GameError as soon as the game fails, and where the condition does not come to hold; what
@@ -169,8 +167,9 @@ def place(game: Rehearsal, id: int) -> Vec:
 
 def flies(agent: Agent) -> bool:
     """Whether the agent's setpoints count and go out."""
-    verdict = agent.acting.verdict
-    return agent.craft.stage is Stage.ACTIVE and verdict is not None and verdict.stream
+    verdict = agent.core.flight.output
+    decided = agent.core.flight.playing and verdict is not None and verdict.stream
+    return agent.core.vehicle.stage is Stage.ACTIVE and decided
 
 
 def setpoints_heard(game: Rehearsal, vehicle: int) -> list[int]:
@@ -203,7 +202,7 @@ def command(kind: CommandKind, id: str = "c-1", sender: str = "tower") -> Comman
 
 async def order(game: Rehearsal, vehicle: int, what: Command, timeout_s: float = 0.5) -> CommandReply:
     """Send a command once; the reply."""
-    replies = await game.bus.request(key(game.game, COMMAND, vehicle), swarm.COMMAND.encode(what), timeout_s)
-    reply = swarm.COMMAND_REPLY.decode(replies[0], Counter())
+    replies = await game.bus.request(COMMAND.key(game.game, vehicle), topics.COMMAND.encode(what), timeout_s)
+    reply = topics.COMMAND.decode_reply(replies[0], Counter())
     assert reply is not None
     return reply

@@ -114,6 +114,11 @@ class TrackPredictor:
             self._fresh = False
 
     @property
+    def ready(self) -> bool:
+        """Whether the path of the newest sample and model is at hand, so that a prediction computes none."""
+        return self._fresh and self._path is not None
+
+    @property
     def stale(self) -> bool:
         """Whether grid points came since the ridge was last fitted."""
         return self.model is not None and self.grid.added != self._fitted

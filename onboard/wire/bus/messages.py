@@ -1,23 +1,22 @@
-"""The swarm's messages: frozen msgspec structs in MessagePack with a schema version.
+"""The messages of the bus: frozen msgspec structs in MessagePack with a schema version.
 
 Every payload is the pair [SCHEMA, message]. Additive changes (a new field with a default at
 the end) keep SCHEMA; any other change raises it. Units: SI and radians, game frame (north,
 east, down); wall instants are integer nanoseconds since the epoch. Vectors travel as
-3-tuples (n, e, d).
+3-tuples (n, e, d). What people read (stage, result, state of a command) is an enum whose values are
+words, so that a recording can be read. The keys that messages travel on are in `topics`.
 """
 
 from __future__ import annotations
 
-from collections import Counter
 from enum import Enum
-from typing import Generic, TypeVar
 
 import msgspec
 
 from onboard.config.derive import core_from, struct_from
 from onboard.core.game.rules import Rules
 from onboard.core.math.states import VehicleLimits
-from onboard.wire.finite import all_finite
+from onboard.wire.autopilot_kind import Kind
 
 SCHEMA = 2
 
@@ -25,21 +24,73 @@ Triple = tuple[float, float, float]
 
 
 class Message(msgspec.Struct, frozen=True, array_like=True):
-    """Base of all swarm messages."""
+    """Base of all messages of the bus."""
 
 
 class Role(Enum):
+    """What a vehicle does in a game."""
+
     EVADER = "evader"
     PURSUER = "pursuer"
     TRACKER = "tracker"
 
 
 class Phase(Enum):
-    STAGING = "staging"
-    READY = "ready"
+    """Where a game stands."""
+
+    STAGING = "staging"  # the vehicles take their places
+    READY = "ready"  # the start t₀ is fixed
     RUNNING = "running"
     ENDED = "ended"
-    RECOVERY = "recovery"
+    RECOVERY = "recovery"  # the vehicles are brought home
+
+
+class AgentStage(Enum):
+    """What an agent does with its vehicle."""
+
+    WAITING = "waiting"  # something that it needs for a game is missing: `Health.lacks`
+    READY = "ready"
+    ACTING = "acting"  # its setpoints fly the vehicle
+    HELD = "held"  # an order or the supervisor stopped the setpoints
+    HANDED_OVER = "handed_over"  # a pilot flies the vehicle
+    ENDED = "ended"
+
+
+class OutcomeResult(Enum):
+    """How a game ended for the evader."""
+
+    CAPTURED = "captured"
+    ARRIVED = "arrived"  # at its target
+    ESCAPED = "escaped"  # not captured within the horizon
+    ABORTED = "aborted"  # ended without a result
+
+
+class DecisionLevel(Enum):
+    """The level of control that decided."""
+
+    NONE = ""  # not told
+    STRATEGIC = "strategic"
+    TACTICAL = "tactical"
+    EXECUTIVE = "executive"
+
+
+class DecisionModule(Enum):
+    """The kind of reasoning that decided."""
+
+    NONE = ""  # not told
+    INTELLIGENT = "intelligent"  # rules of the knowledge base
+    GEOMETRIC = "geometric"
+
+
+class SupervisorAction(Enum):
+    """What an agent's supervisor did with a decision."""
+
+    OK = "ok"  # let it pass
+    CLIP = "clip"  # brought it within the vehicle's limits
+    HOLD = "hold"
+    RETURN = "return"
+    LAND = "land"
+    END = "end"  # stopped sending setpoints
 
 
 class Origin(Message, frozen=True):
@@ -119,7 +170,7 @@ class PhaseChange(Message, frozen=True):
 class Outcome(Message, frozen=True):
     """`game/outcome`."""
 
-    verdict: str  # captured | arrived | escaped | aborted
+    verdict: OutcomeResult
     time: float  # [s] since t0
     captor: int  # id, 0 = nobody
     smallest_distance: float  # [m] over all pursuers
@@ -167,8 +218,8 @@ class DecisionReport(Message, frozen=True):
     id: int
     stamp_ns: int
     t: float  # [s] since t0
-    level: str  # strategic | tactical | executive
-    module: str  # intelligent | geometric
+    level: DecisionLevel
+    module: DecisionModule
     strategy: str
     rule: str
     velocity: Triple  # [m/s; relative to the air, NED]
@@ -177,7 +228,7 @@ class DecisionReport(Message, frozen=True):
     miss: float  # [m] predicted closest approach
     cones: tuple[tuple[float, float, float, float], ...] = ()  # axis (n, e, d), half-angle [rad]
     circles: tuple[tuple[float, float, float, float], ...] = ()  # centre (n, e, d), radius [m]
-    supervisor: str = "ok"  # ok | the action in force
+    supervisor: SupervisorAction = SupervisorAction.OK  # the action in force
     reason: str = ""
     predictor: str = ""  # which predictor spoke
     predictor_sigma: float = 0.0  # [m] its stated error now
@@ -190,9 +241,9 @@ class Health(Message, frozen=True):
     id: int
     role: Role
     stamp_ns: int
-    stage: str  # waiting | ready | acting | held | handed_over | ended …
+    stage: AgentStage
     lacks: tuple[str, ...]  # what an agent with no game waits for
-    autopilot: str  # kind, "" = none found
+    autopilot: Kind | None  # None = none found
     mode: str
     armed: bool
     battery: float  # fraction 0…1, −1 = unknown
@@ -202,7 +253,7 @@ class Health(Message, frozen=True):
     clock_offset_s: float  # own − master
     gps_fix: int
     ekf_ok: bool
-    supervisor: str
+    supervisor: SupervisorAction
     version: str
     counters: dict[str, int]  # drops and overruns by cause
     telemetry_age_s: float = 0.0
@@ -211,6 +262,8 @@ class Health(Message, frozen=True):
 
 
 class Severity(Enum):
+    """How much an event matters to a person."""
+
     INFO = "info"
     WARNING = "warning"
     ERROR = "error"
@@ -225,12 +278,14 @@ class Event(Message, frozen=True):
     severity: Severity
     kind: str  # machine-readable, e.g. "take_over"
     text: str  # for a person
-    level: str = ""
-    module: str = ""
+    level: DecisionLevel = DecisionLevel.NONE
+    module: DecisionModule = DecisionModule.NONE
     nonce: int = 0
 
 
 class CommandKind(Enum):
+    """What a ground station may order a vehicle to do."""
+
     START = "start"
     HOLD = "hold"
     RESUME = "resume"
@@ -248,16 +303,29 @@ class Command(Message, frozen=True):
     stamp_ns: int
 
 
+class CommandState(Enum):
+    """How far an agent has come with a command."""
+
+    PENDING = "pending"  # taken; the autopilot does not report the state ordered yet
+    CONFIRMED = "confirmed"  # the autopilot reports the state ordered
+    REFUSED = "refused"
+    SUPERSEDED = "superseded"  # by a later command
+
+
 class CommandReply(Message, frozen=True):
-    """Reply: `state` is accepted | pending | confirmed | refused | superseded."""
+    """Reply to a command on `vehicles/<id>/command`."""
 
     command_id: str
     id: int
-    state: str
+    state: CommandState
     reason: str
     obeyed: str  # sender of the command in force
     stamp_ns: int
     mode: str = ""
+
+
+class Alive(Message, frozen=True):
+    """`vehicles/<id>/alive`: a liveliness token, which carries no payload."""
 
 
 class Track(Message, frozen=True):
@@ -269,58 +337,3 @@ class Track(Message, frozen=True):
     velocity: Triple  # [m/s; ground, NED]
     covariance: tuple[float, float, float, float, float, float]  # diagonal: position [m²], velocity [m²/s²]
     sensor: str = ""
-
-
-M = TypeVar("M", bound=Message)
-
-
-class Codec(Generic[M]):
-    """Encodes and decodes one kind of message. Bad payloads give None and are counted by cause.
-
-    The counter's causes: `undecodable`, `schema`, `not_finite`.
-    """
-
-    def __init__(self, kind: type[M]) -> None:
-        self._decoder = msgspec.msgpack.Decoder(tuple[int, kind])  # type: ignore[valid-type]
-        self._version = msgspec.msgpack.Decoder(tuple[int, msgspec.Raw])
-        self._encoder = msgspec.msgpack.Encoder()
-
-    def encode(self, message: M) -> bytes:
-        """The payload of a message."""
-        return self._encoder.encode((SCHEMA, message))
-
-    def decode(self, payload: bytes, drops: Counter[str]) -> M | None:
-        """The message of a payload; None (and one more in `drops`) for a bad one."""
-        try:
-            version, message = self._decoder.decode(payload)
-        except (msgspec.DecodeError, UnicodeDecodeError, RecursionError):
-            drops["schema" if self._other_version(payload) else "undecodable"] += 1
-            return None
-        if version != SCHEMA:
-            drops["schema"] += 1
-            return None
-        if not all_finite(msgspec.structs.astuple(message)):
-            drops["not_finite"] += 1
-            return None
-        return message
-
-    def _other_version(self, payload: bytes) -> bool:
-        try:
-            version, _ = self._version.decode(payload)
-        except (msgspec.DecodeError, UnicodeDecodeError, RecursionError):
-            return False
-        return version != SCHEMA
-
-
-SETUP = Codec(Setup)
-PHASE = Codec(PhaseChange)
-OUTCOME = Codec(Outcome)
-MASTER = Codec(Master)
-EVADER_BRIEF = Codec(EvaderBrief)
-STATE = Codec(State)
-DECISION = Codec(DecisionReport)
-HEALTH = Codec(Health)
-EVENT = Codec(Event)
-COMMAND = Codec(Command)
-COMMAND_REPLY = Codec(CommandReply)
-TRACK = Codec(Track)

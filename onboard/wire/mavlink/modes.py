@@ -2,22 +2,8 @@
 
 from __future__ import annotations
 
-from enum import Enum
-
+from onboard.wire.autopilot_kind import Kind as Kind
 from onboard.wire.mavlink.dialect import dialect
-
-
-class Kind(Enum):
-    """What an autopilot's heartbeat says it is."""
-
-    PX4_MULTICOPTER = "PX4 multicopter"
-    PX4_PLANE = "PX4 fixed wing"
-    PX4_VTOL = "PX4 VTOL"
-    ARDUCOPTER = "ArduCopter"
-    ARDUPLANE = "ArduPlane"
-    ARDUPLANE_VTOL = "ArduPlane VTOL"
-    UNKNOWN = "unknown"
-
 
 _MULTICOPTERS = frozenset(
     (

@@ -9,13 +9,13 @@ from textual.strip import Strip
 
 from gcs.console.app import CONFIRM_S, REFRESH_HZ, Console
 from gcs.console.help import HelpScreen
-from gcs.console.plain_lines import Plain
+from gcs.console.plain_lines import PlainLines
 from gcs.console.source import Key
 from gcs.console.widgets import AlertBoard, Detail, Lines, LogPanel, Plan, Prompt, StatusBar, VehicleTable
-from gcs.picture import journal
+from gcs.picture import station_journal
 from gcs.picture.values import Picture
-from onboard.wire.bus import messages as swarm
-from onboard.wire.bus.messages import Command, CommandKind, CommandReply, Phase
+from onboard.wire.bus import messages
+from onboard.wire.bus.messages import Command, CommandKind, CommandReply, CommandState, Phase
 from tests.support.sample_messages import START_NS, Tower, decision, health, phase, setup, state
 
 
@@ -43,17 +43,17 @@ class Desk:
     def command(self, kind: CommandKind, ids: Iterable[int]) -> str:
         self.given.append((kind.value, tuple(ids)))
         order = Command(f"c{len(self.given)}", kind, "anna", self.tower.now_ns)
-        self.tower.note("sent", journal.SENT.encode(journal.Sent(order, tuple(ids))))
+        self.tower.note(station_journal.SENT, station_journal.Sent(order, tuple(ids)))
         return ""
 
     def acknowledge(self, alert: str) -> None:
-        self.tower.note("acknowledged", journal.ACKNOWLEDGED.encode(journal.Acknowledged(alert, "anna")))
+        self.tower.note(station_journal.ACKNOWLEDGED, station_journal.Acknowledged(alert, "anna"))
 
 
 def desk(count: int = 6, **changes: object) -> Desk:
     """A game of `count` vehicles that runs."""
     tower = Tower()
-    tower.hear(setup(count, pursuer_speed=6.0, **changes), swarm.Master("bridge", START_NS, lease_s=1e3))
+    tower.hear(setup(count, pursuer_speed=6.0, **changes), messages.Master("bridge", START_NS, lease_s=1e3))
     tower.hear(phase(Phase.STAGING))
     tower.fly(1.0, *range(1, count + 1), state_hz=4)
     for i in range(1, count + 1):
@@ -132,8 +132,8 @@ async def test_one_key_aborts_everybody_without_a_question():
         await pilot.pause()
         assert "abort: 0 of 6 confirmed; no answer: 1, 2, 3, 4, 5, 6" in app.query_one(AlertBoard).text
         for i in (1, 2, 4, 5, 6):
-            answer = CommandReply("c1", i, "confirmed", "", "anna", START_NS, "LOITER")
-            source.tower.note("replied", journal.REPLIED.encode(journal.Replied(answer)))
+            answer = CommandReply("c1", i, CommandState.CONFIRMED, "", "anna", START_NS, "LOITER")
+            source.tower.note(station_journal.REPLIED, station_journal.Replied(answer))
         app.refresh_picture()
         assert "abort: 5 of 6 confirmed; no answer: 3" in app.query_one(AlertBoard).text
 
@@ -275,7 +275,7 @@ async def test_alerts_are_shown_with_what_to_do_and_acknowledged():
 async def test_the_log_scrolls():
     source = desk()
     for n in range(1, 60):
-        source.tower.hear(swarm.Event(2, n, START_NS, swarm.Severity.INFO, "note", f"event {n}"))
+        source.tower.hear(messages.Event(2, n, START_NS, messages.Severity.INFO, "note", f"event {n}"))
     app = Console(source)
     async with app.run_test(size=(80, 24)) as pilot:
         await pilot.pause()
@@ -421,11 +421,11 @@ async def test_only_lines_that_have_changed_are_drawn_again(monkeypatch):
 async def test_words_from_the_network_cannot_steer_the_terminal():
     source = desk()
     evil = "\x1b[2J\x07calm\nE all is lost"
-    source.tower.hear(swarm.Event(2, 1, START_NS, swarm.Severity.INFO, "note", evil))
+    source.tower.hear(messages.Event(2, 1, START_NS, messages.Severity.INFO, "note", evil))
     source.tower.hear(state(2, source.tower.now_ns, mode="\x1b[31m"))
     app = Console(source)
     async with app.run_test(size=(80, 24)) as pilot:
         await pilot.pause()
         assert all(segment.text.isprintable() for strip in strips(app) for segment in strip)
         assert "·[2J·calm·E all is lost" in screen(app)
-    assert all(line.isprintable() for line in Plain().lines(source.tower.picture))
+    assert all(line.isprintable() for line in PlainLines().lines(source.tower.picture))

@@ -5,11 +5,10 @@ from __future__ import annotations
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gcs.console import command_parser as words
-from gcs.console import plan
+from gcs.console import command_parser, plan
 from gcs.console.vehicle_table import COLUMNS, age, column_at, heading, line
 from gcs.picture.values import Picture
-from onboard.wire.bus import messages as swarm
+from onboard.wire.bus import messages
 from onboard.wire.bus.messages import CommandKind
 from tests.support.sample_messages import START_NS, Tower, decision, setup, state, track
 
@@ -59,8 +58,8 @@ def test_arrows_point_where_vehicles_go():
 
 def test_target_aim_fence_circles_tracks_and_trails_are_drawn():
     tower = Tower()
-    fence = swarm.Fence(((-90.0, -90.0), (90.0, -90.0), (90.0, 190.0), (-90.0, 190.0)), 0.0, 100.0)
-    tower.hear(setup(3, fence=fence), swarm.EvaderBrief((60.0, 60.0, 0.0), START_NS))
+    fence = messages.Fence(((-90.0, -90.0), (90.0, -90.0), (90.0, 190.0), (-90.0, 190.0)), 0.0, 100.0)
+    tower.hear(setup(3, fence=fence), messages.EvaderBrief((60.0, 60.0, 0.0), START_NS))
     tower.hear(state(2, position=(0.0, 0.0, -50.0)), track(1, position=(0.0, 150.0, -50.0)))
     view = plan.fitted(plan.START, tower.picture, 60, 20)
     plain = text(tower.picture, view)
@@ -107,7 +106,7 @@ numbers = st.floats(-1e7, 1e7)
     st.integers(0, 90), st.integers(0, 40), st.floats(0.01, 1e4), st.integers(1, 6),
 )  # fmt: skip
 def test_whatever_is_on_the_field_the_plan_has_its_size(places, width, height, scale, selected):
-    fence = swarm.Fence(((-1e6, 0.0), (5.0, 1e6), (0.0, 0.0)), 0.0, 1.0)
+    fence = messages.Fence(((-1e6, 0.0), (5.0, 1e6), (0.0, 0.0)), 0.0, 1.0)
     picture = field(*places, fence=fence)
     view = plan.fitted(plan.View(0.0, 0.0, scale), picture, width, height)
     for look in (view, plan.START):
@@ -136,18 +135,18 @@ def test_rows_have_their_width_and_columns_can_be_clicked():
 @given(st.text(max_size=40) | st.from_regex(r"(hold|land|select|sort|ack) [a-z0-9\- ,]{0,9}", fullmatch=True))
 def test_no_line_raises_and_orders_name_only_known_vehicles(typed):
     picture = field((0.0, 0.0), (1.0, 1.0), (2.0, 2.0))
-    meaning = words.parse(typed, picture, 2)
-    if isinstance(meaning, words.Order):
+    meaning = command_parser.parse(typed, picture, 2)
+    if isinstance(meaning, command_parser.Order):
         assert meaning.ids
         assert set(meaning.ids) <= {1, 2, 3}
-    elif isinstance(meaning, words.Wrong):
+    elif isinstance(meaning, command_parser.Wrong):
         assert meaning.reason or not typed.replace(",", " ").split()
 
 
 def test_every_command_of_the_bus_can_be_typed():
     picture = field((0.0, 0.0), (1.0, 1.0))
     for kind in CommandKind:
-        assert words.parse(f"{kind.value} 1-2", picture, None) == words.Order(kind, (1, 2))
-    assert isinstance(words.parse("hold", picture, None), words.Wrong)
-    assert words.parse("abort", picture, 2) == words.Order(CommandKind.ABORT, (1, 2))
-    assert words.names((1, 2), picture) == "all 2"
+        assert command_parser.parse(f"{kind.value} 1-2", picture, None) == command_parser.Order(kind, (1, 2))
+    assert isinstance(command_parser.parse("hold", picture, None), command_parser.Wrong)
+    assert command_parser.parse("abort", picture, 2) == command_parser.Order(CommandKind.ABORT, (1, 2))
+    assert command_parser.names((1, 2), picture) == "all 2"

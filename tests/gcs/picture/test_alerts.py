@@ -7,13 +7,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gcs.picture import journal
+from gcs.picture import station_journal
 from gcs.picture.alert_rules import SUPERVISOR, Thresholds, room_inside
 from gcs.picture.alerts import CLEAR_NS, Alerts, Finding
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec
-from onboard.wire.bus import messages as swarm
-from onboard.wire.bus.messages import Phase, Severity
+from onboard.wire.bus import messages
+from onboard.wire.bus.messages import AgentStage, CommandState, Phase, Severity
 from tests.support.sample_messages import (
     START_NS,
     Tower,
@@ -27,12 +27,12 @@ from tests.support.sample_messages import (
     track,
 )
 
-SQUARE = swarm.Fence(((-200.0, -500.0), (200.0, -500.0), (200.0, 500.0), (-200.0, 500.0)), 10.0, 120.0)
+SQUARE = messages.Fence(((-200.0, -500.0), (200.0, -500.0), (200.0, 500.0), (-200.0, 500.0)), 10.0, 120.0)
 
 
 def test_all_is_well_in_a_healthy_flight():
     tower = Tower()
-    tower.hear(setup(3), swarm.Master("bridge", START_NS, lease_s=60.0))
+    tower.hear(setup(3), messages.Master("bridge", START_NS, lease_s=60.0))
     tower.hear(phase(Phase.STAGING))
     tower.fly(5.0, 1, 2, 3)
     assert tower.alerts() == set()
@@ -71,7 +71,7 @@ def test_an_agent_whose_autopilot_fell_silent_is_not_lost():
         ({"clock_offset_s": 0.06}, "clock:2", Severity.WARNING),
         ({"clock_offset_s": -0.3}, "clock:2", Severity.ERROR),
         ({"heartbeat_age_s": 2.5}, "autopilot_silent:2", Severity.ERROR),
-        ({"stage": "handed_over"}, "handed_over:2", Severity.WARNING),
+        ({"stage": AgentStage.HANDED_OVER}, "handed_over:2", Severity.WARNING),
         ({"ekf_ok": False}, "estimate:2", Severity.ERROR),
         ({"gps_fix": 1}, "estimate:2", Severity.ERROR),
         ({"version": "0.0.9"}, "version:2", Severity.WARNING),
@@ -170,7 +170,7 @@ def test_bad_bytes_and_another_schema_are_told_and_pass():
 
 def test_missed_events_a_missing_vehicle_and_a_stranger_are_told():
     tower = Tower()
-    tower.hear(setup(3), phase(Phase.STAGING), swarm.Master("bridge", START_NS, lease_s=60.0))
+    tower.hear(setup(3), phase(Phase.STAGING), messages.Master("bridge", START_NS, lease_s=60.0))
     tower.hear(event(2, 1), event(2, 5))
     tower.fly(4.0, 1, 2, 9)
     assert tower.alerts() == {"missed_events:2", "missing:3", "stranger:9"}
@@ -178,9 +178,9 @@ def test_missed_events_a_missing_vehicle_and_a_stranger_are_told():
 
 def test_no_track_of_the_evader_and_a_silent_master_are_told_while_the_game_runs():
     tower = Tower()
-    tower.hear(setup(2), phase(Phase.RUNNING, START_NS), swarm.Master("bridge", START_NS))
+    tower.hear(setup(2), phase(Phase.RUNNING, START_NS), messages.Master("bridge", START_NS))
     for _ in range(40):
-        tower.hear(track(1, tower.now_ns), swarm.Master("bridge", tower.now_ns), state(1), state(2))
+        tower.hear(track(1, tower.now_ns), messages.Master("bridge", tower.now_ns), state(1), state(2))
         tower.wait(0.1)
     assert tower.alerts() == set()
     for _ in range(30):
@@ -193,7 +193,11 @@ def test_what_the_supervisor_orders_is_shown_with_its_reason():
     tower = Tower()
     for _ in range(20):
         tower.hear(state(2, tower.now_ns))
-        tower.hear(decision(2, tower.now_ns, supervisor="hold", reason="the track is too old"))
+        tower.hear(
+            decision(
+                2, tower.now_ns, supervisor=messages.SupervisorAction.HOLD, reason="the track is too old"
+            )
+        )
         tower.wait(0.05)
     assert tower.alerts() == {"supervisor:2"}
     assert "the track is too old" in tower.picture.alerts[0].text
@@ -202,10 +206,10 @@ def test_what_the_supervisor_orders_is_shown_with_its_reason():
 def test_a_command_nobody_confirms_becomes_an_alert_that_names_who():
     tower = Tower()
     tower.fly(1.0, 2, 3)
-    order = swarm.Command("c1", swarm.CommandKind.ABORT, "tower", START_NS)
-    tower.note("sent", journal.SENT.encode(journal.Sent(order, (2, 3))))
-    confirmed = swarm.CommandReply("c1", 2, "confirmed", "", "tower", START_NS, "LOITER")
-    tower.note("replied", journal.REPLIED.encode(journal.Replied(confirmed)))
+    order = messages.Command("c1", messages.CommandKind.ABORT, "tower", START_NS)
+    tower.note(station_journal.SENT, station_journal.Sent(order, (2, 3)))
+    confirmed = messages.CommandReply("c1", 2, CommandState.CONFIRMED, "", "tower", START_NS, "LOITER")
+    tower.note(station_journal.REPLIED, station_journal.Replied(confirmed))
     tower.fly(1.9, 2, 3)
     assert tower.alerts() == set()
     tower.fly(0.3, 2, 3)
@@ -214,11 +218,11 @@ def test_a_command_nobody_confirms_becomes_an_alert_that_names_who():
 
 def test_a_remark_with_advice_stands_until_it_is_over():
     tower = Tower()
-    full = journal.Remark(Severity.ERROR, "disk", "the disk is full", "free some space")
-    tower.note("remark", journal.REMARK.encode(full))
+    full = station_journal.Remark(Severity.ERROR, "disk", "the disk is full", "free some space")
+    tower.note(station_journal.REMARK, full)
     tower.wait(10.0)
     assert tower.alerts() == {"disk"}
-    tower.note("remark", journal.REMARK.encode(msgspec.structs.replace(full, over=True)))
+    tower.note(station_journal.REMARK, msgspec.structs.replace(full, over=True))
     tower.wait(3.0)
     assert tower.alerts() == set()
 
@@ -226,8 +230,8 @@ def test_a_remark_with_advice_stands_until_it_is_over():
 def test_an_alert_is_acknowledged_and_asks_again_only_when_it_worsens():
     tower = Tower()
     tower.fly(2.0, 2, battery=0.28)
-    seen = journal.Acknowledged("battery:2", "anna")
-    tower.note("acknowledged", journal.ACKNOWLEDGED.encode(seen))
+    seen = station_journal.Acknowledged("battery:2", "anna")
+    tower.note(station_journal.ACKNOWLEDGED, seen)
     tower.fly(1.0, 2, battery=0.27)
     assert [a.acknowledged for a in tower.picture.alerts] == [True]
     tower.fly(1.0, 2, battery=0.19)

@@ -8,14 +8,14 @@ from contextlib import asynccontextmanager
 import numpy as np
 import pytest
 
-from gcs.picture.commands import EXPIRY_NS, RETRY_NS, CommandBook
-from gcs.picture.values import CommandView
-from gcs.station import Station
+from gcs.picture.command_book import EXPIRY_NS, RETRY_NS, CommandBook
+from gcs.picture.values import CommandView, LegState
+from gcs.station import Station, StationSetup
 from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.bus_memory import MemoryBroker
 from onboard.runtime.impairment import Impairment
 from onboard.runtime.loop import virtual_clock
-from onboard.wire.bus.messages import Command, CommandKind, CommandReply
+from onboard.wire.bus.messages import Command, CommandKind, CommandReply, CommandState
 from tests.support.answering_agents import AnsweringAgent
 from tests.support.sample_messages import GAME, START_NS
 from tests.support.virtual_time import virtual
@@ -25,11 +25,11 @@ def order(kind: CommandKind = CommandKind.ABORT, name: str = "c1", sender: str =
     return Command(name, kind, sender, START_NS)
 
 
-def reply(state: str, i: int = 2, name: str = "c1", reason: str = "") -> CommandReply:
+def reply(state: CommandState, i: int = 2, name: str = "c1", reason: str = "") -> CommandReply:
     return CommandReply(name, i, state, reason, "tower", START_NS)
 
 
-def legs(book: CommandBook, name: str = "c1", now_ns: int = START_NS) -> dict[int, str]:
+def legs(book: CommandBook, name: str = "c1", now_ns: int = START_NS) -> dict[int, LegState]:
     view = book.view(name, now_ns)
     assert view is not None
     return {leg.id: leg.state for leg in view.legs}
@@ -41,11 +41,11 @@ def test_a_command_is_repeated_every_80_ms_until_each_has_confirmed():
     assert [due.id for due in book.due(START_NS)] == [2, 3]
     assert book.due(START_NS + RETRY_NS - 1) == []
     assert [due.id for due in book.due(START_NS + RETRY_NS)] == [2, 3]
-    book.reply(reply("pending"), START_NS + RETRY_NS)
-    book.reply(reply("confirmed", 3), START_NS + RETRY_NS)
-    assert legs(book) == {2: "pending", 3: "confirmed"}
+    book.reply(reply(CommandState.PENDING), START_NS + RETRY_NS)
+    book.reply(reply(CommandState.CONFIRMED, 3), START_NS + RETRY_NS)
+    assert legs(book) == {2: LegState.PENDING, 3: LegState.CONFIRMED}
     assert [due.id for due in book.due(START_NS + 2 * RETRY_NS)] == [2]
-    book.reply(reply("confirmed"), START_NS + 3 * RETRY_NS)
+    book.reply(reply(CommandState.CONFIRMED), START_NS + 3 * RETRY_NS)
     assert book.due(START_NS + 10 * NS_PER_S) == []
     assert not book.busy(START_NS + 10 * NS_PER_S)
     view = book.view("c1", START_NS + 10 * NS_PER_S)
@@ -68,38 +68,37 @@ def test_what_sets_a_vehicle_off_expires(kind):
     book.issue(order(kind), (2,), START_NS)
     assert len(book.due(START_NS + EXPIRY_NS - 1)) == 1
     assert book.due(START_NS + EXPIRY_NS) == []
-    assert legs(book, now_ns=START_NS + EXPIRY_NS) == {2: "expired"}
+    assert legs(book, now_ns=START_NS + EXPIRY_NS) == {2: LegState.EXPIRED}
 
 
 def test_a_newer_command_supersedes_what_is_open_to_the_same_vehicles_alone():
     book = CommandBook()
     book.issue(order(CommandKind.HOLD), (2, 3), START_NS)
     book.issue(order(CommandKind.RETURN, "c2"), (3,), START_NS + NS_PER_S)
-    assert legs(book) == {2: "sent", 3: "superseded"}
+    assert legs(book) == {2: LegState.SENT, 3: LegState.SUPERSEDED}
     assert {(d.id, d.command.command_id) for d in book.due(START_NS + NS_PER_S)} == {(2, "c1"), (3, "c2")}
 
 
 def test_nothing_sets_a_vehicle_off_while_an_abort_is_not_confirmed():
     book = CommandBook()
     book.issue(order(), (2, 3), START_NS)
-    book.reply(reply("confirmed", 3), START_NS)
+    book.reply(reply(CommandState.CONFIRMED, 3), START_NS)
     book.issue(order(CommandKind.RESUME, "c2"), (2, 3), START_NS + NS_PER_S)
-    assert legs(book) == {2: "sent", 3: "confirmed"}
-    assert legs(book, "c2") == {2: "refused", 3: "sent"}
+    assert legs(book) == {2: LegState.SENT, 3: LegState.CONFIRMED}
+    assert legs(book, "c2") == {2: LegState.REFUSED, 3: LegState.SENT}
 
 
 def test_answers_to_nothing_late_and_unknown_ones_change_nothing():
     book = CommandBook()
     book.issue(order(), (2,), START_NS)
-    book.reply(reply("confirmed", name="other"), START_NS)
-    book.reply(reply("confirmed", 7), START_NS)
-    book.reply(reply("nonsense"), START_NS)
-    assert legs(book) == {2: "sent"}
-    book.reply(reply("refused", reason="no autopilot"), START_NS)
-    book.reply(reply("pending"), START_NS)
-    assert legs(book) == {2: "refused"}
+    book.reply(reply(CommandState.CONFIRMED, name="other"), START_NS)
+    book.reply(reply(CommandState.CONFIRMED, 7), START_NS)
+    assert legs(book) == {2: LegState.SENT}
+    book.reply(reply(CommandState.REFUSED, reason="no autopilot"), START_NS)
+    book.reply(reply(CommandState.PENDING), START_NS)
+    assert legs(book) == {2: LegState.REFUSED}
     book.issue(order(), (2, 3), START_NS)  # the same id again is the same command
-    assert legs(book) == {2: "refused"}
+    assert legs(book) == {2: LegState.REFUSED}
 
 
 def test_the_book_is_bounded():
@@ -115,7 +114,7 @@ async def field(count: int, impairment: Impairment | None = None, seed: int = 1,
     clock = virtual_clock()
     broker = MemoryBroker(impairment, np.random.default_rng(seed))
     crews = [AnsweringAgent(broker.connect(), clock, i, **crew) for i in range(1, count + 1)]
-    station = Station(broker.connect("gcs"), clock, GAME, operator="anna")
+    station = Station(broker.connect("gcs"), clock, StationSetup(GAME, "anna"))
     task = asyncio.create_task(station.run())
     await asyncio.sleep(0.01)
     try:
@@ -129,7 +128,7 @@ async def confirmed(station: Station, command_id: str, within_s: float) -> Comma
     """The command's state after it is confirmed, or at the end of the time."""
     view = None
     for _ in range(round(within_s / 0.01)):
-        view = station.watch.book.view(command_id, station.now_ns())
+        view = station.reducer.book.view(command_id, station.now_ns())
         if view is not None and view.confirmed:
             break
         await asyncio.sleep(0.01)
@@ -170,25 +169,25 @@ async def test_a_refusal_is_shown_with_its_reason():
     async with field(1, refuses="the pilot flies") as (station, _):
         command_id = station.command(CommandKind.HOLD, (1,))
         await asyncio.sleep(0.5)
-        view = station.watch.book.view(command_id, station.now_ns())
+        view = station.reducer.book.view(command_id, station.now_ns())
         assert view is not None
-        assert [(leg.state, leg.reason) for leg in view.legs] == [("refused", "the pilot flies")]
+        assert [(leg.state, leg.reason) for leg in view.legs] == [(LegState.REFUSED, "the pilot flies")]
         assert [a.text for a in station.picture().alerts] == ["hold refused by 1: the pilot flies"]
 
 
 @virtual
 async def test_two_stations_command_and_each_sees_whom_the_vehicle_obeys():
     async with field(1, takes_s=5.0) as (station, crews):
-        other = Station(crews[0].bus, virtual_clock(), GAME, operator="ben")
+        other = Station(crews[0].bus, virtual_clock(), StationSetup(GAME, "ben"))
         task = asyncio.create_task(other.run())
         await asyncio.sleep(0.01)
         first = station.command(CommandKind.HOLD, (1,))
         await asyncio.sleep(0.5)
         other.command(CommandKind.RETURN, (1,))
         await asyncio.sleep(0.5)
-        view = station.watch.book.view(first, station.now_ns())
+        view = station.reducer.book.view(first, station.now_ns())
         assert view is not None
-        assert [(leg.state, leg.obeyed) for leg in view.legs] == [("superseded", "ben")]
+        assert [(leg.state, leg.obeyed) for leg in view.legs] == [(LegState.SUPERSEDED, "ben")]
         task.cancel()
         await asyncio.gather(task, return_exceptions=True)
 
@@ -204,4 +203,3 @@ def test_an_abort_gets_through_a_bus_that_loses_every_third_message(seed):
             assert all(len(crew.obeyed) == 1 for crew in crews)
 
     fly()
-

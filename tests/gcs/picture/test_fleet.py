@@ -8,14 +8,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from gcs.picture.fleet import Fleet
 from gcs.picture.records import LOST_NS
-from gcs.picture.reducer import Fleet
+from gcs.picture.reducer import PictureReducer
 from gcs.picture.values import Presence
-from gcs.picture.watch import Watch
 from onboard.core.math.constants import NS_PER_S
-from onboard.wire.bus import messages as swarm
-from onboard.wire.bus import topics
-from onboard.wire.bus.messages import Phase, Role
+from onboard.wire.bus import messages, topics
+from onboard.wire.bus.messages import OutcomeResult, Phase, Role
 from tests.support.sample_messages import (
     GAME,
     START_NS,
@@ -102,7 +101,7 @@ def test_the_game_is_told_with_its_clock_and_outcome():
     tower.wait(7.5)
     tower.hear(phase(Phase.RUNNING, t0))
     assert tower.picture.game.clock == "T+2.5 s"
-    tower.hear(swarm.Outcome("captured", 2.5, 3, 1.9, tower.now_ns), phase(Phase.ENDED, t0))
+    tower.hear(messages.Outcome(OutcomeResult.CAPTURED, 2.5, 3, 1.9, tower.now_ns), phase(Phase.ENDED, t0))
     assert tower.picture.game.outcome is not None
     assert tower.picture.game.outcome.captor == 3
     assert any("captured by 3" in line.text for line in tower.picture.log)
@@ -110,7 +109,7 @@ def test_the_game_is_told_with_its_clock_and_outcome():
 
 def test_the_outcome_of_an_earlier_game_is_not_shown_for_this_one():
     tower = Tower()
-    tower.hear(swarm.Outcome("captured", 2.5, 3, 1.9, START_NS - 100 * NS_PER_S))
+    tower.hear(messages.Outcome(OutcomeResult.CAPTURED, 2.5, 3, 1.9, START_NS - 100 * NS_PER_S))
     tower.hear(setup(3), phase(Phase.ENDED, START_NS - 10 * NS_PER_S))
     assert tower.picture.game.outcome is None
 
@@ -152,8 +151,8 @@ def test_bad_foreign_and_newer_messages_are_counted_by_cause_and_never_raise():
     key, payload = on_bus(state(2))
     tower.hear_raw(key, payload[:-3])
     tower.hear_raw(key, b"\x92\x63" + payload[2:])  # schema 99
-    tower.hear_raw(key, swarm.STATE.encode(state(3)))  # says 3 under the key of 2
-    tower.hear_raw(key, swarm.STATE.encode(state(2, airspeed=float("nan"))))
+    tower.hear_raw(key, topics.STATE.encode(state(3)))  # says 3 under the key of 2
+    tower.hear_raw(key, topics.STATE.encode(state(2, airspeed=float("nan"))))
     tower.hear(state(2, position=(1e300, 0.0, 0.0)))
     tower.hear_raw(f"apollonius/{GAME}/weather", b"")
     tower.hear_raw(f"apollonius/{GAME}/vehicles/9999/state", payload)
@@ -184,7 +183,7 @@ def test_trails_are_thinned_and_bounded():
 
 def test_two_masters_are_noticed_and_forgotten():
     tower = Tower()
-    one, other = swarm.Master("bridge", START_NS, nonce=1), swarm.Master("bridge", START_NS, nonce=2)
+    one, other = messages.Master("bridge", START_NS, nonce=1), messages.Master("bridge", START_NS, nonce=2)
     for _ in range(3):
         tower.hear(one)
         tower.wait(0.5)
@@ -202,7 +201,7 @@ def test_two_masters_are_noticed_and_forgotten():
 def test_the_assessment_names_who_can_intercept_and_who_denies_the_target():
     tower = Tower()
     tower.hear(setup(3, pursuer_speed=6.0, planar=True), phase(Phase.RUNNING, START_NS))
-    tower.hear(swarm.EvaderBrief((500.0, 0.0, 0.0), START_NS))
+    tower.hear(messages.EvaderBrief((500.0, 0.0, 0.0), START_NS))
     tower.hear(state(1, position=(0.0, 0.0, 0.0)))
     assert tower.picture.assessment is None  # no pursuer is known yet
     tower.hear(state(2, position=(300.0, 0.0, 0.0), velocity=(0.0, 0.0, 0.0)))
@@ -222,7 +221,7 @@ def test_the_same_stream_gives_the_same_picture_however_often_one_looks():
     tower.fly(2.5, 1, 2, battery=0.25)
     tower.hear_raw("elsewhere", b"")
     tower.fly(1.0, 1, 2, 3)
-    replayed = Watch(GAME, version="0.1.0")
+    replayed = PictureReducer(GAME, version="0.1.0")
     for index, (key, payload, now_ns) in enumerate(tower.stream):
         if index % 7 == 0:
             replayed.picture(now_ns)
@@ -232,7 +231,7 @@ def test_the_same_stream_gives_the_same_picture_however_often_one_looks():
 
 
 KEYS = [
-    *(topics.key(GAME, topic, 2) for topic in topics.TOPICS),
+    *(topic.key(GAME, 2 if topics.ID in topic.suffix else None) for topic in topics.TOPICS),
     *(f"apollonius/{GAME}/gcs/{name}" for name in ("sent", "replied", "presence", "x")),
 ]
 

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from mcap.reader import make_reader
 
 from gcs.recording.reader import Recording
-from gcs.recording.recorder import Recorder, Status, remark_of
+from gcs.recording.recorder import Recorder, RecorderStatus, remark_of
 from onboard.config.strict import ConfigError
 from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus.messages import Severity
@@ -280,7 +280,7 @@ def test_killed_at_any_moment_the_file_opens_with_at_most_a_second_missing(
 def test_status_is_a_value(tmp_path: Path) -> None:
     recorder = recorded(tmp_path / "f", list(chase(2.0)))
     status = recorder.status()
-    assert isinstance(status, Status)
+    assert isinstance(status, RecorderStatus)
     assert msgspec.json.encode(status)
     assert status.recorded == len(list(chase(2.0)))
     assert status.trouble == ""

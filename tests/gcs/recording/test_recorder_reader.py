@@ -10,8 +10,9 @@ from hypothesis import strategies as st
 from mcap.writer import Writer
 
 from gcs.recording.reader import Recording
-from gcs.recording.recorder import METADATA, Recorder
+from gcs.recording.recorder import FORMAT, METADATA, Recorder
 from onboard.config.strict import ConfigError
+from onboard.wire.bus.messages import SCHEMA
 from tests.support.chase_messages import chase
 from tests.support.recording_process import read
 
@@ -84,9 +85,7 @@ def test_a_flipped_byte_costs_its_own_chunk_alone_and_never_raises(
         assert len(kept) > len(FLOWN) / 2, "one flipped bit costs one chunk at most"
 
 
-def test_a_chunk_whose_length_has_grown_does_not_swallow_its_successors(
-    tmp_path: Path, whole: bytes
-) -> None:
+def test_a_chunk_whose_length_has_grown_does_not_swallow_its_successors(tmp_path: Path, whole: bytes) -> None:
     """Its own contents still check: only the length tells."""
     at = 8
     while whole[at] != 6:  # the first chunk
@@ -138,16 +137,28 @@ def test_anothers_mcap_is_named(tmp_path: Path) -> None:
     assert "written by 'libmcap 1.2', expected a recording of gcs" in refused(path, path.read_bytes())
 
 
-@pytest.mark.parametrize("key", ["format", "schema"])
-def test_a_newer_recording_says_which_version_it_found(tmp_path: Path, key: str) -> None:
-    path = tmp_path / "new.mcap"
+@pytest.mark.parametrize(
+    ("key", "found", "advice"),
+    [
+        ("format", FORMAT + 6, "read it with a newer gcs"),
+        ("schema", SCHEMA + 6, "read it with a newer gcs"),
+        ("schema", SCHEMA - 1, "read it with the gcs that recorded it"),
+    ],
+)
+def test_a_recording_of_another_version_says_which_it_found(
+    tmp_path: Path, key: str, found: int, advice: str
+) -> None:
+    path = tmp_path / "other.mcap"
     writer = Writer(str(path))
     writer.start(library="apollonius")
-    writer.add_metadata(METADATA, {"format": "1", "schema": "1", "game": "g", key: "7"})
+    known = {"format": str(FORMAT), "schema": str(SCHEMA), "game": "g"}
+    writer.add_metadata(METADATA, {**known, key: str(found)})
     channel = writer.register_channel("x", "msgpack", 0)
     writer.add_message(channel, 1, b"x", 1)
     writer.finish()  # type: ignore[no-untyped-call]
-    assert f"{key}: found version 7, expected up to 1" in refused(path, path.read_bytes())
+    expected = {"format": FORMAT, "schema": SCHEMA}[key]
+    said = refused(path, path.read_bytes())
+    assert f"{key}: found version {found}, expected {expected}: {advice}" in said
 
 
 def test_a_recording_of_nothing_says_so(tmp_path: Path) -> None:

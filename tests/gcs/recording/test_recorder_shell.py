@@ -11,9 +11,9 @@ from pymavlink import mavutil
 
 from gcs.recording.file import OsFile
 from gcs.recording.reader import Recording
-from gcs.recording.shell import Keeper
+from gcs.recording.shell import StationRecorder
 from gcs.recording.tlog import TlogRecorder
-from gcs.station import Station
+from gcs.station import Station, StationSetup
 from onboard.config.strict import ConfigError
 from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.bus_memory import MemoryBroker
@@ -87,22 +87,22 @@ def test_a_full_disk_stops_a_log_and_room_continues_it_without_a_gap(tmp_path: P
 
 
 @virtual
-async def test_a_station_with_a_keeper_records_bus_journal_and_links(tmp_path: Path) -> None:
+async def test_a_station_with_a_recorder_records_bus_journal_and_links(tmp_path: Path) -> None:
     clock = virtual_clock()
     broker = MemoryBroker()
-    station = Station(broker.connect(), clock, "field")
+    station = Station(broker.connect(), clock, StationSetup("field"))
     vehicle, ground = memory_pair("radio")
     folder = new_run(tmp_path, "field", station.now_ns())
-    keeper = Keeper(station, folder, [ground])
+    recorder = StationRecorder(station, folder, [ground])
     agent = broker.connect()
     published = 0
     async with asyncio.TaskGroup() as tasks:
-        running = [tasks.create_task(station.run()), tasks.create_task(keeper.run())]
+        running = [tasks.create_task(station.run()), tasks.create_task(recorder.run())]
         await asyncio.sleep(0.1)
         sender = DialectSender(2, 1)
         for item in chase(2.0, story=False):
             if item.key.split("/")[2] != "gcs":
-                agent.publish(item.key, item.payload, topics.topic_of(item.key).delivery)  # type: ignore[union-attr]
+                agent.publish(item.key, item.payload, topics.TOPICS.find(item.key).topic.delivery)  # type: ignore[union-attr]
                 published += 1
             if published % 20 == 0:
                 vehicle.send(heartbeat(sender))
@@ -133,25 +133,25 @@ class Plug(OsFile):
 async def test_a_full_disk_is_an_alert_of_the_station_until_there_is_room(tmp_path: Path) -> None:
     clock = virtual_clock()
     broker = MemoryBroker()
-    station = Station(broker.connect(), clock, "field")
+    station = Station(broker.connect(), clock, StationSetup("field"))
     station.open()
-    keeper = Keeper(station, tmp_path, opener=Plug)
+    recorder = StationRecorder(station, tmp_path, opener=Plug)
     Plug.full = True
     agent = broker.connect()
     for item in chase(1.0, state_only=True):
         agent.publish(item.key, item.payload, Delivery.LATEST)
     for _ in range(10):
         await asyncio.sleep(0.2)
-        keeper.tick()
+        recorder.tick()
     alerts = {alert.name: alert for alert in station.picture().alerts}
     assert "no space left on device" in alerts["recorder"].text
     assert "make room" in alerts["recorder"].advice
     Plug.full = False
     for _ in range(20):
         await asyncio.sleep(0.2)
-        keeper.tick()
+        recorder.tick()
     assert "recorder" not in {alert.name for alert in station.picture().alerts}
-    keeper.close()
+    recorder.close()
     states = [e for e in Recording(tmp_path / "recording.mcap").entries() if e.key.endswith("state")]
     assert len(states) == 60, "nothing lost"
     station.close()

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from gcs.picture.reducer import PictureReducer
 from gcs.picture.values import Picture
-from gcs.picture.watch import Watch
 from gcs.recording.recorder import Recorder
 from gcs.replay.player import Player
 from gcs.replay.source import ReplaySource, open_run
@@ -38,7 +38,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def live(at_ns: int) -> Picture:
     """What the station showed at an instant."""
-    watch = Watch("field")
+    watch = PictureReducer("field")
     for item in flight_with_trouble():
         if item.stamp_ns <= at_ns:
             watch.apply(*item)
@@ -47,7 +47,7 @@ def live(at_ns: int) -> Picture:
 
 def test_a_replay_gives_the_live_picture_alert_for_alert(run: Path) -> None:
     player = Player(open_run(run))
-    watch = Watch("field")
+    watch = PictureReducer("field")
     flown = iter(flight_with_trouble())
     item = next(flown)
     shown = set()
@@ -109,7 +109,7 @@ def test_steps_walk_the_grid_both_ways(run: Path) -> None:
 def test_a_long_way_back_uses_checkpoints(run: Path) -> None:
     player = Player(open_run(run))
     player.seek(player.end_ns)
-    assert [round((at - player.start_ns) / NS_PER_S) for at, _ in player._checkpoints] == [30]
+    assert [round((at - player.start_ns) / NS_PER_S) for at, _ in player.checkpoints] == [30]
     player.seek(player.start_ns + 35 * NS_PER_S)
     assert player.picture() == live(player.at_ns)
 

@@ -6,10 +6,10 @@ import asyncio
 from pathlib import Path
 
 from gcs.picture.values import Picture
-from gcs.recording.shell import Keeper
+from gcs.recording.shell import StationRecorder
 from gcs.replay.player import Player
 from gcs.replay.source import open_run
-from gcs.station import Station
+from gcs.station import Station, StationSetup
 from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.bus_memory import MemoryBroker
 from onboard.runtime.loop import virtual_clock
@@ -23,8 +23,8 @@ from tests.support.virtual_time import virtual
 async def test_a_replay_shows_what_the_live_station_showed(tmp_path: Path) -> None:
     clock = virtual_clock()
     broker = MemoryBroker()
-    station = Station(broker.connect(), clock, "field", new_id=lambda: "hold-1")
-    keeper = Keeper(station, tmp_path)
+    station = Station(broker.connect(), clock, StationSetup("field"), new_id=lambda: "hold-1")
+    recorder = StationRecorder(station, tmp_path)
     agents = broker.connect()
     shown: list[Picture] = []
 
@@ -34,17 +34,17 @@ async def test_a_replay_shows_what_the_live_station_showed(tmp_path: Path) -> No
             shown.append(station.picture())
 
     async with asyncio.TaskGroup() as tasks:
-        running = [tasks.create_task(task) for task in (station.run(), keeper.run(), look())]
+        running = [tasks.create_task(task) for task in (station.run(), recorder.run(), look())]
         began_ns = clock.wall_ns()
         for item in chase(20.0):
-            topic = topics.topic_of(item.key)
+            place = topics.TOPICS.find(item.key)
             flown_ns = item.stamp_ns - EPOCH_NS
-            if topic is None or ("/vehicles/2/" in item.key and 8 * NS_PER_S < flown_ns < 11 * NS_PER_S):
+            if place is None or ("/vehicles/2/" in item.key and 8 * NS_PER_S < flown_ns < 11 * NS_PER_S):
                 continue
             ahead = began_ns + flown_ns - clock.wall_ns()
             if ahead > 0:
                 await asyncio.sleep(ahead / NS_PER_S)
-            agents.publish(item.key, item.payload, topic.delivery)
+            agents.publish(item.key, item.payload, place.topic.delivery)
             if flown_ns > 9.2 * NS_PER_S and not station.picture().commands:
                 station.command(CommandKind.HOLD, (1, 2, 3))
                 station.acknowledge("")

@@ -25,8 +25,7 @@ from onboard.core.route.choice import TrackRule
 from onboard.core.safety.policy import Action
 from onboard.core.strategy.knowledge import RuleId
 from onboard.game import palette
-from onboard.wire.bus import messages as swarm
-from onboard.wire.bus import topics
+from onboard.wire.bus import messages, topics
 from tests.support.chase_messages import EPOCH_NS, Item, chase
 from tests.support.run_folders import flight, make_run, make_tlogs
 
@@ -219,9 +218,7 @@ def test_distances_are_those_that_were_flown(run: Path) -> None:
 def test_rules_are_bands_in_order_without_gaps(run: Path) -> None:
     bands = read_run(run).rules[3]
     assert {band.rule for band in bands} == {"intercept", "close_in"}
-    assert all(
-        a.end == pytest.approx(b.start) and a.rule != b.rule for a, b in itertools.pairwise(bands)
-    )
+    assert all(a.end == pytest.approx(b.start) and a.rule != b.rule for a, b in itertools.pairwise(bands))
     silent = read_run(run).rules[2]
     breaks = [(a.end, b.start) for a, b in itertools.pairwise(silent) if b.start - a.end > 1.0]
     assert breaks == [(pytest.approx(5.9, abs=0.2), pytest.approx(9.0, abs=0.2))], "silence is not a rule"
@@ -312,16 +309,14 @@ def test_a_folder_with_nothing_to_tell_is_refused_in_one_line(
 
 def test_words_from_the_network_cannot_become_markup(tmp_path: Path) -> None:
     evil = "</script><img src=http://x/y onerror=alert(1)>"
-    event = swarm.Event(2, 1, EPOCH_NS, swarm.Severity.ERROR, evil, evil)
-    report = swarm.DecisionReport(
+    event = messages.Event(2, 1, EPOCH_NS, messages.Severity.ERROR, evil, evil)
+    report = messages.DecisionReport(
         2, EPOCH_NS, 0.0, evil, evil, evil, evil, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0, 0.0
     )
     items = [
         *flight(3.0),
-        Item(topics.key("field", topics.EVENTS, 2), swarm.EVENT.encode(event), EPOCH_NS + 4 * 10**9),
-        Item(
-            topics.key("field", topics.DECISION, 2), swarm.DECISION.encode(report), EPOCH_NS + 4 * 10**9 + 1
-        ),
+        Item(topics.EVENTS.key("field", 2), topics.EVENTS.encode(event), EPOCH_NS + 4 * 10**9),
+        Item(topics.DECISION.key("field", 2), topics.DECISION.encode(report), EPOCH_NS + 4 * 10**9 + 1),
     ]
     folder = make_run(tmp_path / "run", items)
     (folder / "summary.json").write_text(json.dumps({evil: evil}), encoding="utf-8")
@@ -346,13 +341,13 @@ def test_a_recording_of_states_alone_and_one_of_commands_alone_work(tmp_path: Pa
 
 def test_a_long_flight_is_thinned(tmp_path: Path) -> None:
     payloads = [item for item in flight(3.0) if item.key.endswith("vehicles/1/state")]
-    state = swarm.STATE.decode(payloads[0].payload, {})  # type: ignore[arg-type]
+    state = topics.STATE.decode(payloads[0].payload, {})  # type: ignore[arg-type]
     assert state is not None
     recorder = Recorder(tmp_path / "recording.mcap", "field")
     for step in range(9000):
         stamp_ns = EPOCH_NS + step * 50_000_000
         later = msgspec.structs.replace(state, stamp_ns=stamp_ns, position=(float(step), 0.0, -50.0))
-        recorder.record(payloads[0].key, swarm.STATE.encode(later), stamp_ns)
+        recorder.record(payloads[0].key, topics.STATE.encode(later), stamp_ns)
     recorder.close()
     flown = read_run(tmp_path).flown[1]
     assert len(flown.t) == 4000

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from onboard.agent.command_book import Orders, Verdict
-from onboard.autopilot.base import ReleaseMode, Stage
+from onboard.agent.core.command_book import Orders
+from onboard.autopilot.base import Stage
 from onboard.core.safety.policy import Action
 from onboard.game.scenario import Kind
-from onboard.wire.bus.messages import CommandKind
+from onboard.wire.bus.messages import AgentStage, CommandKind, CommandState, Phase
 from tests.support.small_scenarios import PURSUER, chase, lossy
 from tests.support.virtual_time import virtual
 from tests.support.whole_games import (
@@ -39,14 +39,29 @@ async def test_an_order_in_flight_is_pending_then_confirmed_by_the_autopilots_mo
     async with game_of(chase(kind)) as game:
         await under_way(game, 2.0)
         reply = await order(game, PURSUER, command(CommandKind(what)))
-        assert reply.state == "pending"
+        assert reply.state == CommandState.PENDING
         await game.forward(1.2)
         reply = await order(game, PURSUER, command(CommandKind(what)))
-        assert (reply.state, reply.mode, reply.obeyed) == ("confirmed", WORDS[kind][what], "tower")
+        assert (reply.state, reply.mode, reply.obeyed) == (CommandState.CONFIRMED, WORDS[kind][what], "tower")
         assert mode(game, PURSUER) == WORDS[kind][what]
-        assert game.health[PURSUER].stage == "held"
+        assert game.health[PURSUER].stage == AgentStage.HELD
         await game.forward(5.0)
         assert mode(game, PURSUER) == WORDS[kind][what]
+
+
+@virtual
+async def test_an_order_to_land_is_that_for_the_supervisor_too_and_before_the_game_as_well() -> None:
+    async with game_of(chase()) as game:
+        await game.forward(20.0, until=lambda: mode(game, PURSUER) == "LOITER")
+        await game.forward(1.0)
+        assert game.phase is Phase.STAGING
+        await order(game, PURSUER, command(CommandKind.LAND))
+        await game.forward(2.0, until=lambda: mode(game, PURSUER) == "LAND")
+        assert "supervisor_land" in game.kinds(PURSUER)
+        assert "supervisor_return" not in game.kinds(PURSUER)
+        await game.forward(1.2)
+        reply = await order(game, PURSUER, command(CommandKind.LAND))
+        assert reply.state is CommandState.CONFIRMED
 
 
 @virtual
@@ -58,7 +73,9 @@ async def test_resume_gives_the_game_back_to_the_agent() -> None:
         assert speed(game, PURSUER) < 0.5
         await order(game, PURSUER, command(CommandKind.RESUME, "c-2"))
         await game.forward(3.0)
-        assert (await order(game, PURSUER, command(CommandKind.RESUME, "c-2"))).state == "confirmed"
+        assert (
+            await order(game, PURSUER, command(CommandKind.RESUME, "c-2"))
+        ).state == CommandState.CONFIRMED
         assert flies(game.agents[PURSUER])
         assert speed(game, PURSUER) > 3.0
 
@@ -70,7 +87,7 @@ async def test_start_lets_an_agent_fly_that_may_not_take_control_by_itself() -> 
         assert not flies(game.agents[PURSUER])
         await order(game, PURSUER, command(CommandKind.START))
         await game.forward(2.5)
-        assert (await order(game, PURSUER, command(CommandKind.START))).state == "confirmed"
+        assert (await order(game, PURSUER, command(CommandKind.START))).state == CommandState.CONFIRMED
         assert flies(game.agents[PURSUER])
 
 
@@ -101,7 +118,7 @@ async def test_under_a_pilots_hands_an_order_is_refused_with_the_reason() -> Non
         choose_mode(game, PURSUER, "LOITER")
         await game.forward(2.0)
         reply = await order(game, PURSUER, command(CommandKind.RETURN))
-        assert reply.state == "refused"
+        assert reply.state == CommandState.REFUSED
         assert "a pilot flies it" in reply.reason
         assert mode(game, PURSUER) == "LOITER"
         reply = await order(game, PURSUER, command(CommandKind.RESUME, "c-2"))
@@ -115,19 +132,19 @@ async def test_a_later_order_supersedes_an_open_one_and_bytes_that_are_none_are_
         await order(game, PURSUER, command(CommandKind.HOLD, "c-1"))
         await order(game, PURSUER, command(CommandKind.RETURN, "c-2", "other"))
         first = await order(game, PURSUER, command(CommandKind.HOLD, "c-1"))
-        assert (first.state, first.obeyed) == ("superseded", "other")
+        assert (first.state, first.obeyed) == (CommandState.SUPERSEDED, "other")
         await game.forward(1.5)
         assert mode(game, PURSUER) == "RTL"
         agent = game.agents[PURSUER]
-        assert b"refused" in agent._command(b"\x00garbage")
-        assert agent.table.drops["undecodable"] == 1
+        assert b"refused" in agent._request(b"\x00garbage")
+        assert agent.core.bus.drops["undecodable"] == 1
     assert autopilot(game, PURSUER) is not None
 
 
 def test_what_is_not_obeyed_confirms_nothing() -> None:
-    orders = Orders(ReleaseMode.HOLD)
+    orders = Orders(Action.HOLD)
     entry, new = orders.give(command(CommandKind.HOLD), "no autopilot")
-    assert (entry.state, new, orders.action) == (Verdict.REFUSED, True, Action.PASS)
+    assert (entry.state, new, orders.order) == (CommandState.REFUSED, True, Action.PASS)
     assert orders.review(Stage.LEFT) is None
     for n in range(200):
         orders.give(command(CommandKind.HOLD, f"n-{n}"), "")

@@ -7,8 +7,8 @@ from itertools import pairwise
 
 import pytest
 
-from onboard.agent.agent import Agent
 from onboard.agent.config import AgentConfig
+from onboard.agent.shell import Agent, Equipment
 from onboard.core.math.vectors import distance
 from onboard.core.safety.policy import Cause
 from onboard.game.scenario import Kind, SensorSpec
@@ -18,13 +18,22 @@ from sim_bridge.vehicle.autopilot.health import Fault
 from sim_bridge.world.staging import generator
 from tests.support.small_scenarios import EVADER, MATE, PURSUER, chase, lossy
 from tests.support.virtual_time import virtual
-from tests.support.whole_games import autopilot, flies, game_of, mode, place, speed, under_way
+from tests.support.whole_games import (
+    autopilot,
+    flies,
+    game_of,
+    mode,
+    place,
+    setpoints_heard,
+    speed,
+    under_way,
+)
 
 
 def cause(agent: Agent) -> Cause:
     """Why the supervisor does what it does."""
-    assert agent.acting.verdict is not None
-    return agent.acting.verdict.cause
+    assert agent.core.flight.output is not None
+    return agent.core.flight.output.cause
 
 
 @virtual
@@ -55,12 +64,12 @@ async def test_without_gps_or_a_healthy_estimate_the_stream_ends(fault: Fault, e
 async def test_who_loses_the_tracks_holds_and_goes_on_when_they_are_back() -> None:
     async with game_of(chase()) as game:
         await under_way(game, 3.0)
-        sense, game.bridge.sensor.step = game.bridge.sensor.step, lambda wall_ns, motions: []  # type: ignore[method-assign]
+        game.bridge.sensor.blind = True
         agent = game.agents[PURSUER]
         await game.forward(60.0, until=lambda: cause(agent) is Cause.TRACKS)
         await game.forward(3.0)
         assert speed(game, PURSUER) < 0.3
-        game.bridge.sensor.step = sense  # type: ignore[method-assign]
+        game.bridge.sensor.blind = False
         await game.forward(5.0, until=lambda: flies(agent))
 
 
@@ -70,16 +79,15 @@ async def test_a_strategy_that_fails_ends_the_stream_within_200_ms_and_the_autop
         game.expects(PURSUER, "strategy", "supervisor_end")
         await under_way(game, 3.0)
         agent = game.agents[PURSUER]
-        flying = agent.acting.flying
-        assert flying is not None
 
         def fail(view: object) -> None:
             raise ZeroDivisionError("a plug-in of somebody's")
 
-        flying.pilot._pursue = fail  # type: ignore[assignment]
+        assert agent.thinker.strategies
+        agent.thinker.strategies = dict.fromkeys(agent.thinker.strategies, fail)  # type: ignore[arg-type]
         begun = agent.now
         await game.forward(1.0, until=lambda: not flies(agent))
-        assert agent.craft.sent_at - begun <= 0.2 + 1e-6
+        assert agent.core.vehicle.sent_at - begun <= 0.2 + 1e-6
         assert cause(agent) is Cause.STRATEGY
         await game.forward(5.0)
         assert speed(game, PURSUER) < 0.3
@@ -92,32 +100,19 @@ async def test_a_plane_whose_strategy_fails_is_told_to_loiter() -> None:
     async with game_of(chase(Kind.ARDUPLANE)) as game:
         game.expects(PURSUER, "strategy", "supervisor_end")
         await under_way(game, 3.0)
-        flying = game.agents[PURSUER].acting.flying
-        assert flying is not None
-        flying.pilot._pursue = None  # type: ignore[assignment]
+        game.agents[PURSUER].thinker.strategies.clear()
         await game.forward(3.0, until=lambda: mode(game, PURSUER) == "LOITER")
 
 
 @virtual
 async def test_pursuers_that_close_in_on_one_place_keep_apart() -> None:
-    scenario = chase(pursuers=3)
-    async with game_of(scenario, configure={2: {}, 3: {}}) as game:
+    async with game_of(chase(pursuers=3, separation=12.0)) as game:
         least = 1e9
-        for agent in game.agents.values():
-            agent.acting._consider = wide(agent, 12.0)  # type: ignore[method-assign]
         await under_way(game, 1.0)
         for _ in range(150):
             await game.forward(0.2)
             least = min(least, distance(place(game, PURSUER), place(game, MATE)))
         assert least > 9.0
-
-
-def wide(agent: Agent, separation: float):  # type: ignore[no-untyped-def]
-    """The setup with a separation."""
-    import msgspec
-
-    consider = agent.acting._consider
-    return lambda setup: consider(msgspec.structs.replace(setup, separation=separation))
 
 
 @virtual
@@ -129,18 +124,18 @@ async def test_with_two_links_the_second_takes_over_and_no_frame_counts_twice() 
         second = Impaired(far, CLEAR, generator(1, "second"))
         config = AgentConfig(id=PURSUER, game=game.game, take_control=True)
         agent = Agent(
-            config, game.clock, [game.links[PURSUER], second], game.broker.connect("two"), nonce=5,
-            log=lambda line: None,
+            config, game.clock, [game.links[PURSUER], second], game.broker.connect("two"),
+            Equipment(nonce=5, log=lambda line: None),
         )  # fmt: skip
         task = asyncio.create_task(agent.run())
         await under_way(game, 3.0)
         assert flies(agent)
-        assert agent.craft.position_rate.value == pytest.approx(20.0, abs=1.5)
+        assert agent.core.vehicle.position_rate.value == pytest.approx(20.0, abs=1.5)
         game.impair(PURSUER, CUT)
         await game.forward(3.0)
         assert flies(agent)
-        assert agent.radio.active == "second/b"
-        assert agent.journal.kinds["link"] == 1
+        assert agent.core.radio.active == "second/b"
+        assert agent.core.journal.kinds["link"] == 1
         second.change(CUT)
         await game.forward(1.0)
         assert not flies(agent)
@@ -151,16 +146,7 @@ async def test_with_two_links_the_second_takes_over_and_no_frame_counts_twice() 
 async def test_at_20_percent_loss_no_gap_in_the_stream_reaches_half_a_second() -> None:
     scenario = chase(Kind.ARDUCOPTER, impairment=lossy(0.2), sensor=SensorSpec(rate_hz=5.0))
     async with game_of(scenario) as game:
-        heard: list[int] = []
-        vehicle = game.bridge.world.vehicles[PURSUER]
-        receive = vehicle.autopilot.receive
-
-        def listening(now_ns: int, data: bytes, peer: object) -> None:
-            if data[7] == 84:  # SET_POSITION_TARGET_LOCAL_NED
-                heard.append(now_ns)
-            receive(now_ns, data, peer)  # type: ignore[arg-type]
-
-        vehicle.autopilot.receive = listening  # type: ignore[method-assign]
+        heard = setpoints_heard(game, PURSUER)
         await under_way(game, 1.0)
         heard.clear()
         await game.forward(60.0)

@@ -35,9 +35,7 @@ class Scripted:
             mode=mode or self.telemetry.mode, heartbeat_at=self.now, **changes
         )
 
-    def fly(
-        self, seconds: float, setpoint: Setpoint | Callable[[float], Setpoint] | None
-    ) -> list[Outgoing]:
+    def fly(self, seconds: float, setpoint: Setpoint | Callable[[float], Setpoint] | None) -> list[Outgoing]:
         """Let time pass; what was sent meanwhile."""
         first = len(self.sent)
         for _ in range(round(seconds / DT)):

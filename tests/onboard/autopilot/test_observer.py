@@ -22,7 +22,8 @@ from tests.support.paths import RECORDINGS
 
 def packet(message: MavMessage, sequence: int = 0, system: int = 1, component: int = 1) -> Packet:
     sender = DialectSender(system, component)
-    sender._mav.seq = sequence
+    for _ in range(sequence):
+        sender.pack(message)
     (found,) = Framer().feed(sender.pack(message))
     return found
 

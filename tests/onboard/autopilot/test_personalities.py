@@ -194,8 +194,7 @@ def test_a_plane_follows_a_swinging_course_in_wind_as_a_real_one_was_measured_to
     flight.path.clear()
     flight.forward(100.0, wanted)
     course = [
-        wrap(atan2(air.y + wind.y, air.x + wind.x) - atan2(ground.y, ground.x))
-        for air, ground in flight.path
+        wrap(atan2(air.y + wind.y, air.x + wind.x) - atan2(ground.y, ground.x)) for air, ground in flight.path
     ]
     climb = [air.z - ground.z for air, ground in flight.path]
     assert degrees(sqrt(sum(e * e for e in course) / len(course))) < 12.0

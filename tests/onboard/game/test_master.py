@@ -11,21 +11,25 @@ import pytest
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec
 from onboard.game.master import GameMaster, Publication, Standing, Timing
-from onboard.wire.bus import messages as swarm
+from onboard.wire.autopilot_kind import Kind
+from onboard.wire.bus import messages
 from onboard.wire.bus.messages import (
+    AgentStage,
     EvaderBrief,
     Health,
     Master,
     Member,
     Origin,
     Outcome,
+    OutcomeResult,
     Phase,
     PhaseChange,
     Role,
     RulesMessage,
     Setup,
+    SupervisorAction,
 )
-from onboard.wire.bus.topics import EVADER_BRIEF, SETUP
+from onboard.wire.bus.topics import EVADER_BRIEF, MASTER, PHASE, SETUP
 
 WALL0 = 1_767_225_600 * NS_PER_S
 STEP = 10_000_000
@@ -45,11 +49,13 @@ def setup(**changes: object) -> Setup:
     return Setup(**(fields | changes))  # type: ignore[arg-type]
 
 
-def health(id: int, stage: str = "ready", nonce: int = 0, lacks: tuple[str, ...] = ()) -> Health:
+def health(
+    id: int, stage: AgentStage = AgentStage.READY, nonce: int = 0, lacks: tuple[str, ...] = ()
+) -> Health:
     role = Role.EVADER if id == 1 else Role.PURSUER
     return Health(
-        id, role, 0, stage, lacks, "arducopter", "GUIDED", True, 1.0, 1.0, 20.0, 20.0, 0.0, 3, True, "ok",
-        "0", {}, nonce=nonce or 100 + id,
+        id, role, 0, stage, lacks, Kind.ARDUCOPTER, "GUIDED", True, 1.0, 1.0, 20.0, 20.0, 0.0, 3, True,
+        SupervisorAction.OK, "0", {}, nonce=nonce or 100 + id,
     )  # fmt: skip
 
 
@@ -108,7 +114,7 @@ def test_it_listens_then_stages_then_waits_for_everybody() -> None:
     assert isinstance(brief, EvaderBrief)
     assert brief.target == (500.0, 0.0, -50.0)
     assert "500" not in str(field.said[0].message)  # the setup keeps the evader's secret
-    field.agents = {1: health(1), 2: health(2, "waiting", lacks=("autopilot",))}
+    field.agents = {1: health(1), 2: health(2, AgentStage.WAITING, lacks=("autopilot",))}
     field.fly(5.0)
     assert field.master.phase is Phase.STAGING
     assert field.master.lacking(field.now) == {2: "waiting: autopilot", 3: "no agent heard"}
@@ -142,7 +148,7 @@ def test_a_capture_is_judged_at_its_instant_between_two_steps() -> None:
     field.speeds[2] = Vec(-30.0, 0, 0)
     field.fly(8.0)
     outcome = field.outcome()
-    assert (outcome.verdict, outcome.captor) == ("captured", 2)
+    assert (outcome.verdict, outcome.captor) == (OutcomeResult.CAPTURED, 2)
     assert outcome.time == pytest.approx(elapsed + 95.0 / 30.0, abs=1e-6)
     assert outcome.smallest_distance == pytest.approx(5.0)
     assert field.master.nearest[2] == pytest.approx(5.0)
@@ -165,7 +171,7 @@ def test_an_evader_at_its_target_has_arrived() -> None:
     field.begin()
     field.speeds[1] = Vec(0, -10, 0)
     field.fly(6.0)
-    assert field.outcome().verdict == "arrived"
+    assert field.outcome().verdict == OutcomeResult.ARRIVED
     assert field.outcome().captor == 0
 
 
@@ -173,16 +179,20 @@ def test_an_evader_that_nobody_catches_has_escaped_at_the_horizon() -> None:
     field = Range()
     field.begin()
     field.fly(40.0)
-    assert field.outcome().verdict == "escaped"
+    assert field.outcome().verdict == OutcomeResult.ESCAPED
     assert field.outcome().time == 30.0
 
 
 PLANE = RulesMessage(5.0, 10.0, horizon=30.0, planar=True)
 
 
-@pytest.mark.parametrize(("changes", "verdict"), [({}, "escaped"), ({"rules": PLANE}, "captured"),
-                                                  ({"field_profile": True}, "captured")])  # fmt: skip
-def test_plane_games_and_altitude_layers_are_judged_level(changes: dict[str, Any], verdict: str) -> None:
+@pytest.mark.parametrize(("changes", "verdict"), [({}, OutcomeResult.ESCAPED),
+    ({"rules": PLANE}, OutcomeResult.CAPTURED),
+    ({"field_profile": True}, OutcomeResult.CAPTURED),
+])  # fmt: skip
+def test_plane_games_and_altitude_layers_are_judged_level(
+    changes: dict[str, Any], verdict: OutcomeResult
+) -> None:
     field = Range(**changes)
     field.begin()
     field.places[3] = Vec(1.0, 1.0, -90.0)  # 40 m above the evader
@@ -195,7 +205,7 @@ def test_who_is_not_ready_in_time_is_named() -> None:
     field.agents = {1: health(1), 2: health(2)}
     field.fly(25.0)
     outcome = field.outcome()
-    assert outcome.verdict == "aborted"
+    assert outcome.verdict == OutcomeResult.ABORTED
     assert outcome.reason == "not ready in time: vehicle 3: no agent heard"
     assert field.phases()[-1].phase is Phase.RECOVERY
 
@@ -221,11 +231,11 @@ def test_a_restarted_agent_acts_again_only_with_the_masters_word() -> None:
     del field.agents[3]
     field.fly(4.0)
     assert field.news[-1] == "agent 3 is silent"
-    field.agents[3] = health(3, "waiting", nonce=999, lacks=("the master's word",))
+    field.agents[3] = health(3, AgentStage.WAITING, nonce=999, lacks=("the master's word",))
     field.fly(1.0)
     assert field.phases()[-1].resume == (3,)
     assert field.phases()[-1].phase is Phase.RUNNING
-    field.agents[3] = health(3, "acting", nonce=999)
+    field.agents[3] = health(3, AgentStage.ACTING, nonce=999)
     field.fly(1.0)
     assert field.phases()[-1].resume == ()  # said once: a third process must ask again
     assert len([p for p in field.phases() if p.resume]) == 1
@@ -234,7 +244,7 @@ def test_a_restarted_agent_acts_again_only_with_the_masters_word() -> None:
 def test_a_restart_within_one_heartbeat_is_a_restart_and_not_a_double() -> None:
     field = Range()
     field.begin()
-    field.agents[3] = health(3, "waiting", nonce=999)
+    field.agents[3] = health(3, AgentStage.WAITING, nonce=999)
     field.fly(1.0)
     assert field.phases()[-1].resume == ()  # the old process might still be alive
     field.fly(2.0)
@@ -247,7 +257,7 @@ def test_two_agents_with_one_id_are_named_and_neither_is_resumed() -> None:
     field.begin()
     for _ in range(6):
         field.fly(0.25)
-        field.master.heard_health(health(3, "waiting", nonce=999), field.now)
+        field.master.heard_health(health(3, AgentStage.WAITING, nonce=999), field.now)
     field.fly(0.5)
     assert "two agents speak as vehicle 3: stop one" in field.news
     assert all(p.resume == () for p in field.phases())
@@ -300,7 +310,7 @@ def test_an_abort_ends_the_game_with_its_reason() -> None:
     field.begin()
     field.master.abort(WALL0 + field.now, field.now, "range is hot")
     field.fly(0.1)
-    assert field.outcome().verdict == "aborted"
+    assert field.outcome().verdict == OutcomeResult.ABORTED
     assert field.outcome().time > 0
     assert field.phases()[-1].reason == "range is hot"
 
@@ -326,11 +336,11 @@ def test_strangers_are_reported_once_and_ignored() -> None:
 def test_everything_it_says_passes_the_wire() -> None:
     field = Range(target=Vec(500, 0, -50))
     field.begin()
-    codecs: dict[type, swarm.Codec[Any]] = {
-        Setup: swarm.SETUP,
-        PhaseChange: swarm.PHASE,
-        Master: swarm.MASTER,
-        EvaderBrief: swarm.EVADER_BRIEF,
+    codecs: dict[type, messages.Codec[Any]] = {
+        Setup: SETUP,
+        PhaseChange: PHASE,
+        Master: MASTER,
+        EvaderBrief: EVADER_BRIEF,
     }
     drops = Counter[str]()
     for _, message in field.said:

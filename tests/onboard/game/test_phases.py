@@ -11,7 +11,7 @@ from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec
 from onboard.game.master import Timing
 from onboard.game.phases import TRANSITIONS, PhaseEvent, diagram
-from onboard.wire.bus.messages import Phase
+from onboard.wire.bus.messages import AgentStage, Phase
 from tests.onboard.game.test_master import WALL0, Range, health
 
 PATIENCE_S = 20.0
@@ -36,7 +36,7 @@ def _all_ready(game: Range) -> None:
 
 
 def _not_ready(game: Range) -> None:
-    game.agents[2] = health(2, stage="setup", lacks=("gps",))
+    game.agents[2] = health(2, AgentStage.WAITING, lacks=("gps",))
     game.fly(0.6)
 
 

@@ -78,7 +78,7 @@ def test_the_hash_is_of_the_contents_not_of_the_layout(tmp_path: Path) -> None:
     ("old", "new", "said"),
     [
         ("speed = 5", "speed = 5\nmass = 2", "evader.mass: unknown key"),
-        ("speed = 5", "speed = true", "evader.speed: found true, expected zero or more [m/s]"),
+        ("speed = 5", "speed = true", "evader.speed: found true, expected a number: zero or more"),
         ("speed = 5", "speed = -5", "evader.speed: found -5, expected zero or more [m/s]"),
         ("speed = 5", "speed = inf", "evader.speed: found inf, expected a finite number"),
         (
@@ -149,6 +149,25 @@ def test_the_hash_is_of_the_contents_not_of_the_layout(tmp_path: Path) -> None:
 )
 def test_a_fault_names_its_key_and_what_was_expected(tmp_path: Path, old: str, new: str, said: str) -> None:
     assert old in PLAIN
+    assert fault(tmp_path, PLAIN.replace(old, new, 1)).startswith(said)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("speed = 5", "speed = 1e300", "evader.speed: found 1e+300, expected zero or more"),
+        ("position = [0, 0]", "position = [1e300, 0]", "evader.position[0]: found 1e+300, expected"),
+        ('"plain"', f'"plain"\nseed = {2**63}', f"seed: found {2**63}, expected a whole number from 0"),
+        ('"plain"', '"plain"\nflight.origin.latitude_deg = 90', "flight.origin.latitude_deg: found 90, exp"),
+        ('"plain"', '"plain"\nflight.origin.longitude_deg = 181', "flight.origin.longitude_deg: found 181"),
+        ('"plain"', '"plain"\nflight.timeout_s = 1e300', "flight.timeout_s: found 1e+300, expected"),
+        ('"plain"', '"two\\nlines"', "name: found 'two\\nlines', expected one line of text"),
+        ('"plain"', f'"plain"\nflight = {"[" * 10_000}', "nested too deeply"),
+    ],
+)
+def test_an_absurd_value_is_refused_wherever_it_stands(
+    tmp_path: Path, old: str, new: str, said: str
+) -> None:
     assert fault(tmp_path, PLAIN.replace(old, new, 1)).startswith(said)
 
 

@@ -59,10 +59,8 @@ def test_what_nobody_asks_for_is_not_learnt() -> None:
 
 def test_after_training_the_next_prediction_is_ready() -> None:
     memory = watched(Memory())
-    line = memory.tracks[1]._path
-    memory.predict(1, 30.2)
-    assert line is not None
-    assert memory.tracks[1]._path is line
+    assert memory.tracks[1].ready
+    assert memory.predict(1, 30.2) is not None
 
 
 def test_agent_and_scenario_are_told_by_the_same_words(tmp_path: Path) -> None:

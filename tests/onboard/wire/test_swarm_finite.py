@@ -8,7 +8,7 @@ from math import inf, nan
 import msgspec
 import pytest
 
-from onboard.wire.bus import messages as swarm
+from onboard.wire.bus import messages, topics
 from onboard.wire.bus.messages import Fence, LimitsMessage, Member, Origin, Role, RulesMessage, Setup
 
 
@@ -32,7 +32,7 @@ def setup(
 
 def test_a_good_message_passes() -> None:
     drops: Counter[str] = Counter()
-    assert swarm.SETUP.decode(swarm.SETUP.encode(setup()), drops) == setup()
+    assert topics.SETUP.decode(topics.SETUP.encode(setup()), drops) == setup()
     assert not drops
 
 
@@ -40,6 +40,6 @@ def test_a_good_message_passes() -> None:
 @pytest.mark.parametrize("place", ["latitude", "start", "corner", "horizon", "pitch"])
 def test_a_number_that_is_none_is_dropped_and_counted(place: str, bad: float) -> None:
     drops: Counter[str] = Counter()
-    payload = msgspec.msgpack.encode((swarm.SCHEMA, setup(**{place: bad})))
-    assert swarm.SETUP.decode(payload, drops) is None
+    payload = msgspec.msgpack.encode((messages.SCHEMA, setup(**{place: bad})))
+    assert topics.SETUP.decode(payload, drops) is None
     assert drops == {"not_finite": 1}

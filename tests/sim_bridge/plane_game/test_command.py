@@ -128,7 +128,7 @@ def test_an_animation_is_a_gif_with_many_frames(tmp_path: Path) -> None:
 
 BAD = {
     "an unknown key": (("R = 2.0", "R = 2.0\nradius = 3"), "parameters.radius: unknown key"),
-    "a wrong type": (("speed = 5", 'speed = "fast"'), "evader.speed: found 'fast', expected zero or more"),
+    "a wrong type": (("speed = 5", 'speed = "fast"'), "evader.speed: found 'fast', expected a number"),
     "a negative speed": (("speed = 4", "speed = -4"), "pursuers[0].speed: found -4, expected zero or more"),
     "a resting evader": (("speed = 5", "speed = 0"), "evader.speed: found 0.0, expected a positive speed"),
     "not a number": (("speed = 5", "speed = nan"), "evader.speed: found nan, expected a finite number"),

@@ -16,7 +16,7 @@ from tests.support.sim_bridge_process import bridge, short
 EDITS = [  # what is wrong in the file, and what is said of it
     ("speed = 5", "sped = 5", "evader.sped: unknown key"),
     ("speed = 5", "speed = -5", "evader.speed: found -5, expected zero or more [m/s]"),
-    ("seed = 3", "seed = -3", "seed: found -3, expected zero or more"),
+    ("seed = 3", "seed = -3", "seed: found -3, expected a whole number from 0"),
     ("speed = 4", "speed = 4\nstrategy = 'guess'", "pursuers[0].strategy: found 'guess', expected one of: "),
     ("speed = 5", "speed = 5\nstrategy = 'guess'", "evader.strategy: found 'guess', expected one of: "),
     ("horizon = 3.0", "horizon = nan", "parameters.horizon: found nan, expected a finite number"),

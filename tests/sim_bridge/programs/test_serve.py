@@ -16,7 +16,8 @@ from onboard.game.scenario import Flight, Kind, Parameters, Scenario, VehicleSpe
 from onboard.runtime.bus_zenoh import open_zenoh
 from onboard.runtime.clock import RealClock
 from onboard.runtime.links import open_udp
-from onboard.wire.bus.topics import SETUP, TRACK, key
+from onboard.wire.bus.messages import OutcomeResult
+from onboard.wire.bus.topics import SETUP, TRACK
 from onboard.wire.mavlink.commands import set_message_interval
 from onboard.wire.mavlink.dialect import dialect
 from sim_bridge.programs.serve import Options, serve, serve_scenario
@@ -98,7 +99,7 @@ async def test_a_served_game_from_the_first_heartbeat_to_the_outcome(tmp_path: P
         wish = dialect.MAVLINK_MSG_ID_GLOBAL_POSITION_INT
         companions[32].send(set_message_interval(companions[32].target, wish, 20.0))
         await until(lambda: companions[32].heard("COMMAND_ACK"))
-        setup, tracks = Heard(bus, key("game", SETUP)), Heard(bus, key("game", TRACK, 31))
+        setup, tracks = Heard(bus, SETUP.key("game")), Heard(bus, TRACK.key("game", 31))
         agents = [ScriptedAgent(bus, RealClock(), "game", id) for id in (31, 32)]
         async with asyncio.TaskGroup() as group:
             beating = [group.create_task(agent.run()) for agent in agents]
@@ -107,7 +108,7 @@ async def test_a_served_game_from_the_first_heartbeat_to_the_outcome(tmp_path: P
             for task in beating:
                 task.cancel()
         assert outcome is not None
-        assert outcome.verdict == "escaped"
+        assert outcome.verdict == OutcomeResult.ESCAPED
         assert setup.samples
         assert len(tracks.samples) > 5
         assert said[0] == "served: 2 vehicles, game 'game', seed 0"

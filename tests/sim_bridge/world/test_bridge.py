@@ -14,18 +14,15 @@ from onboard.game.staging import setup_of
 from onboard.runtime.bus_memory import MemoryBroker
 from onboard.runtime.loop import run_virtual, virtual_clock
 from onboard.runtime.protocols import Bus
-from onboard.wire.bus import messages as swarm
-from onboard.wire.bus.messages import Outcome, Phase, Role
+from onboard.wire.bus.messages import Outcome, OutcomeResult, Phase, Role
 from onboard.wire.bus.topics import (
     EVADER_BRIEF,
     MASTER,
     OUTCOME,
     SETUP,
+    TOPICS,
     TRACK,
     everything,
-    key,
-    topic_of,
-    vehicle_of,
 )
 from sim_bridge.world.bridge import Bridge, Options
 from tests.support.bus_stages import Heard
@@ -82,9 +79,9 @@ async def test_a_whole_game_from_staging_to_recovery() -> None:
     assert [p.phase for p in stage.agents[2].phases] == [
         Phase.STAGING, Phase.READY, Phase.RUNNING, Phase.ENDED, Phase.RECOVERY,
     ]  # fmt: skip
-    outcome = swarm.OUTCOME.decode(stage.payloads(key(GAME, OUTCOME))[0], Counter())
+    outcome = OUTCOME.decode(stage.payloads(OUTCOME.key(GAME))[0], Counter())
     assert isinstance(outcome, Outcome)
-    assert (outcome.verdict, outcome.time, outcome.captor) == ("escaped", 6.0, 0)
+    assert (outcome.verdict, outcome.time, outcome.captor) == (OutcomeResult.ESCAPED, 6.0, 0)
     assert outcome.smallest_distance == pytest.approx(30.0, abs=0.1)
     assert stage.bridge.master is not None
     assert stage.bridge.master.rules.nearest == pytest.approx({2: 30.0, 3: 60.0}, abs=0.1)
@@ -97,19 +94,19 @@ async def test_the_setup_says_everything_but_the_target() -> None:
     stage = Stage(scenario())
     await stage.play(2.0)
     late = stage.broker.connect("late")
-    setups, briefs = Heard(late, key(GAME, SETUP)), Heard(late, key(GAME, EVADER_BRIEF))
+    setups, briefs = Heard(late, SETUP.key(GAME)), Heard(late, EVADER_BRIEF.key(GAME))
     await until(lambda: setups.samples and briefs.samples)
-    setup = swarm.SETUP.decode(setups.payloads[0], Counter())
+    setup = SETUP.decode(setups.payloads[0], Counter())
     assert setup == setup_of(scenario(), GAME, "sim-bridge")
     assert setup is not None
     assert [(m.id, m.role, m.speed) for m in setup.roster] == [
         (1, Role.EVADER, 4.0), (2, Role.PURSUER, 5.0), (3, Role.PURSUER, 5.0),
     ]  # fmt: skip
     assert setup.roster[1].start == (30.0, 0.0, -50.0)  # a plane game is flown at its height
-    brief = swarm.EVADER_BRIEF.decode(briefs.payloads[0], Counter())
+    brief = EVADER_BRIEF.decode(briefs.payloads[0], Counter())
     assert brief is not None
     assert brief.target == (80.0, 0.0, -50.0)
-    assert [topic_of(sample.key) for sample in stage.heard.samples].count(EVADER_BRIEF) == 1
+    assert [TOPICS.find(sample.key).topic for sample in stage.heard.samples].count(EVADER_BRIEF) == 1
 
 
 @virtual
@@ -117,14 +114,16 @@ async def test_tracks_of_everybody_come_at_the_sensors_rate() -> None:
     stage = Stage(scenario())
     await stage.play(5.0)
     for id in stage.scenario.ids:
-        tracks = [swarm.TRACK.decode(payload, Counter()) for payload in stage.payloads(key(GAME, TRACK, id))]
+        tracks = [TRACK.decode(payload, Counter()) for payload in stage.payloads(TRACK.key(GAME, id))]
         assert 49 <= len(tracks) <= 51
         truth = stage.bridge.world.motions[id].position
         last = tracks[-1]
         assert last is not None
         assert last.id == id
         assert 0.0 < abs(last.position[0] - truth.x) < 3.0
-    tracked = {vehicle_of(sample.key) for sample in stage.heard.samples if topic_of(sample.key) is TRACK}
+    tracked = {
+        TOPICS.find(sample.key).id for sample in stage.heard.samples if TOPICS.find(sample.key).topic is TRACK
+    }
     assert tracked == {1, 2, 3}
 
 
@@ -135,7 +134,7 @@ async def test_a_second_bridge_yields_and_its_world_goes_on() -> None:
     second = stage.another(nonce=1)
     await for_a_while(4.0, second.run(), stage.bridge.run())
     assert "another master is at work: sim-bridge; this one yields and publishes no game" in stage.news
-    masters = [swarm.MASTER.decode(payload, Counter()) for payload in stage.payloads(key(GAME, MASTER))]
+    masters = [MASTER.decode(payload, Counter()) for payload in stage.payloads(MASTER.key(GAME))]
     assert {m.nonce for m in masters if m} == {5}
     assert second.world.elapsed_ns >= 3 * NS_PER_S
 
@@ -168,7 +167,7 @@ async def test_a_broker_that_dies_and_returns_does_not_end_the_game() -> None:
     assert "agent 2 is back" in stage.news
     assert stage.bridge.master is not None
     assert stage.bridge.master.rules.phase is Phase.RUNNING
-    late = Heard(stage.broker.connect("late"), key(GAME, SETUP))
+    late = Heard(stage.broker.connect("late"), SETUP.key(GAME))
     await until(lambda: late.samples)
 
 
@@ -201,7 +200,7 @@ def test_the_same_seed_publishes_the_same_bytes() -> None:
 async def test_ground_positions_decide_not_what_tracks_say() -> None:
     stage = Stage(scenario(flight=Flight(ready_s=1.0, sensor=SensorSpec(sigma=40.0))))
     await stage.play(12.0)
-    outcome = swarm.OUTCOME.decode(stage.payloads(key(GAME, OUTCOME))[0], Counter())
+    outcome = OUTCOME.decode(stage.payloads(OUTCOME.key(GAME))[0], Counter())
     assert outcome is not None
-    assert outcome.verdict == "escaped"
+    assert outcome.verdict == OutcomeResult.ESCAPED
     assert stage.bridge.world.motions[1].position == pytest.approx(Vec(0.0, 0.0, -50.0), abs=0.5)

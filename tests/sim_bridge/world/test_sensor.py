@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from onboard.core.math.vectors import Vec
 from onboard.game.scenario import SensorSpec
-from onboard.wire.bus import messages as swarm
+from onboard.wire.bus import topics
 from onboard.wire.bus.messages import Track
 from sim_bridge.vehicle.motion import Motion
 from sim_bridge.world.sensor import Sensor
@@ -85,7 +85,7 @@ def test_the_seed_decides_and_tracks_pass_the_wire(
     once = watch(spec, 3.0, seed=seed)
     assert once == watch(spec, 3.0, seed=seed)
     for _, track in once:
-        assert swarm.TRACK.decode(swarm.TRACK.encode(track), Counter()) == track
+        assert topics.TRACK.decode(topics.TRACK.encode(track), Counter()) == track
 
 
 def test_another_vehicle_in_the_game_does_not_change_the_noise_of_the_first() -> None:

@@ -7,7 +7,6 @@ from math import inf
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.support.situations import points, pursuers
 
 from onboard.core.game.rules import NO_TARGET, Control, Rules, Target
 from onboard.core.game.views import (
@@ -23,6 +22,7 @@ from onboard.core.game.views import (
 from onboard.core.geometry.cones import blocked_cones
 from onboard.core.math.states import CARRIED_MAX, FREE, MateState, Vehicle, carried
 from onboard.core.math.vectors import NORTH, ZERO, Vec, along, distance, norm, sub
+from tests.support.random_situations import points, pursuers
 
 RULES = Rules(R=2.0, rho=4.0)
 OWN = Vehicle(ZERO, Vec(5.0, 0.0, 0.0), 5.0)

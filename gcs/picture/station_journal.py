@@ -8,8 +8,13 @@ gives the same picture. They are not published on the bus.
 
 from __future__ import annotations
 
-from onboard.wire.bus.messages import Codec, Command, CommandReply, Message, Severity
-from onboard.wire.bus.topics import ROOT
+from typing import Any
+
+from onboard.wire.bus.codec import M
+from onboard.wire.bus.messages import Command, CommandReply, Message, Severity
+from onboard.wire.bus.topics import TOPICS, Delivery, Party, Table, Topic
+
+FOLDER = "gcs"  # the journal's keys lie below it
 
 
 class Presence(Message, frozen=True):
@@ -49,13 +54,16 @@ class Remark(Message, frozen=True):
     over: bool = False  # True: the alert that an earlier remark of this kind raised is over
 
 
-PRESENCE = Codec(Presence)
-SENT = Codec(Sent)
-REPLIED = Codec(Replied)
-ACKNOWLEDGED = Codec(Acknowledged)
-REMARK = Codec(Remark)
+def _row(name: str, message: type[M], says: str) -> Topic[M]:
+    station = (Party.STATION,)
+    return Topic(f"{FOLDER}/{name}", message, Delivery.LOCAL, station, station, says)
 
 
-def key(game: str, name: str) -> str:
-    """The key of a journal entry; `name`: presence | sent | replied | acknowledged | remark."""
-    return f"{ROOT}/{game}/gcs/{name}"
+PRESENCE = _row("presence", Presence, "a liveliness token appeared or went")
+SENT = _row("sent", Sent, "the operator gave a command")
+REPLIED = _row("replied", Replied, "an agent answered a command")
+ACKNOWLEDGED = _row("acknowledged", Acknowledged, "the operator has seen an alert")
+REMARK = _row("remark", Remark, "the station's own remark")
+
+JOURNAL: tuple[Topic[Any], ...] = (PRESENCE, SENT, REPLIED, ACKNOWLEDGED, REMARK)
+HEARD_HERE = Table((*TOPICS, *JOURNAL))  # all that the picture is made of, and all that is recorded

@@ -1,4 +1,4 @@
-"""Commands to vehicles: the book of who was told what and who has confirmed (pure), and its courier.
+"""Commands to vehicles: the book of who was told what and who has confirmed. Pure, time passed in.
 
 Confirmed means that the autopilot reports the state asked for: the agent answers `pending` until then.
 Each command is repeated to each vehicle until a final answer, at most every 80 ms: at 30 % loss both
@@ -8,16 +8,11 @@ Repeating is harmless, because agents know a command by its id. After 38 tries (
 
 from __future__ import annotations
 
-import asyncio
-from collections import Counter
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from typing import NamedTuple
 
-from gcs.picture.values import CommandView, Leg
+from gcs.picture.values import CommandView, Leg, LegState
 from onboard.core.math.constants import NS_PER_S
-from onboard.runtime.protocols import Bus
-from onboard.wire.bus import messages as swarm
-from onboard.wire.bus import topics
 from onboard.wire.bus.messages import Command, CommandKind, CommandReply
 from onboard.wire.retry import CommandRetry, RetryPolicy
 
@@ -26,19 +21,18 @@ PATIENCE = 38  # tries at that pace: 3 s
 RETRY = RetryPolicy(RETRY_NS, patience=PATIENCE, slow=NS_PER_S)
 # `start` and `resume` expire: a vehicle that comes back later must not set off on its own
 EXPIRY_NS = 5 * NS_PER_S
-REQUEST_TIMEOUT_S = 0.5
 KEPT = 50  # commands
 
 ENDS_A_FLIGHT = frozenset({CommandKind.RETURN, CommandKind.LAND})  # these ask twice; abort never does
 SETS_OFF = frozenset({CommandKind.START, CommandKind.RESUME})
-FINAL = frozenset({"confirmed", "refused", "superseded"})
+FINAL = frozenset({LegState.CONFIRMED, LegState.REFUSED, LegState.SUPERSEDED})
 
 
 class _Leg:
     __slots__ = ("mode", "obeyed", "reason", "retry", "state", "took_ns")
 
     def __init__(self) -> None:
-        self.state = "sent"
+        self.state = LegState.SENT
         self.reason = ""
         self.mode = ""
         self.obeyed = ""
@@ -86,9 +80,11 @@ class CommandBook:
                     continue
                 if command.kind in SETS_OFF and other.command.kind is CommandKind.ABORT:
                     mine = order.legs[vehicle_id]
-                    mine.state, mine.reason, mine.took_ns = "refused", "an abort is not confirmed yet", now_ns
+                    mine.state, mine.took_ns = LegState.REFUSED, now_ns
+                    mine.reason = "an abort is not confirmed yet"
                 else:
-                    leg.state, leg.reason, leg.took_ns = "superseded", f"by {command.kind.value}", now_ns
+                    leg.state, leg.took_ns = LegState.SUPERSEDED, now_ns
+                    leg.reason = f"by {command.kind.value}"
         self._orders[command.command_id] = order
         while len(self._orders) > KEPT:
             self._orders.pop(next(iter(self._orders)))
@@ -99,17 +95,17 @@ class CommandBook:
         leg = order.legs.get(reply.id) if order else None
         if order is None or leg is None or leg.state in FINAL:
             return
-        if reply.state not in FINAL and reply.state not in ("accepted", "pending"):
-            return
-        leg.state, leg.reason, leg.mode, leg.obeyed = reply.state, reply.reason, reply.mode, reply.obeyed
-        if reply.state in FINAL:
+        leg.state = LegState(reply.state.value)
+        leg.reason, leg.mode, leg.obeyed = reply.reason, reply.mode, reply.obeyed
+        if leg.state in FINAL:
             leg.took_ns = now_ns
 
-    def state(self, command_id: str, vehicle_id: int) -> tuple[str, str, str]:
-        """State, reason and mode of one leg as last answered; empty where there is none."""
-        order = self._orders.get(command_id)
-        leg = order.legs.get(vehicle_id) if order else None
-        return (leg.state, leg.reason, leg.mode) if leg else ("", "", "")
+    def knows(self, reply: CommandReply) -> bool:
+        """Whether state, reason and mode of an answer are what the book has of its leg already."""
+        order = self._orders.get(reply.command_id)
+        leg = order.legs.get(reply.id) if order else None
+        found = (leg.state.value, leg.reason, leg.mode) if leg else None
+        return found == (reply.state.value, reply.reason, reply.mode)
 
     def due(self, now_ns: int) -> list[Due]:
         """What is to be sent now; counts as sent."""
@@ -141,7 +137,7 @@ class CommandBook:
             if end is None:
                 end = now_ns
                 if order.expired(now_ns):
-                    state, end = "expired", order.issued_ns + EXPIRY_NS
+                    state, end = LegState.EXPIRED, order.issued_ns + EXPIRY_NS
             legs.append(
                 Leg(
                     id=vehicle_id,
@@ -154,51 +150,8 @@ class CommandBook:
             )
         return CommandView(
             command_id=order.command.command_id,
-            kind=order.command.kind.value,
+            kind=order.command.kind,
             sender=order.command.sender,
             issued_ns=order.issued_ns,
             legs=tuple(legs),
         )
-
-
-class Courier:
-    """Carries what the book wants sent, and brings the answers: the thin shell around it."""
-
-    def __init__(
-        self,
-        bus: Bus,
-        game: str,
-        book: CommandBook,
-        now_ns: Callable[[], int],
-        on_reply: Callable[[CommandReply], None],
-    ) -> None:
-        self._bus = bus
-        self._game = game
-        self._book = book
-        self._now_ns = now_ns
-        self._on_reply = on_reply
-        self._wake = asyncio.Event()
-        self.drops: Counter[str] = Counter()
-
-    def wake(self) -> None:
-        """Something new is in the book."""
-        self._wake.set()
-
-    async def run(self) -> None:
-        """Send until cancelled."""
-        async with asyncio.TaskGroup() as requests:
-            while True:
-                if not self._book.busy(self._now_ns()):
-                    self._wake.clear()
-                    await self._wake.wait()
-                for due in self._book.due(self._now_ns()):
-                    requests.create_task(self._ask(due))
-                await asyncio.sleep(RETRY_NS / NS_PER_S / 4)
-
-    async def _ask(self, due: Due) -> None:
-        key = topics.key(self._game, topics.COMMAND, due.id)
-        payload = swarm.COMMAND.encode(due.command)
-        for answer in await self._bus.request(key, payload, REQUEST_TIMEOUT_S):
-            reply = swarm.COMMAND_REPLY.decode(answer, self.drops)
-            if reply is not None and reply.id == due.id:
-                self._on_reply(reply)
