@@ -11,7 +11,7 @@ from collections import Counter
 from collections.abc import Callable, Hashable
 from typing import Any
 
-from onboard.agent.agent import Agent
+from onboard.agent.shell import Agent
 from onboard.autopilot.base import Stage
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec, distance, norm
@@ -19,7 +19,15 @@ from onboard.game.scenario import Scenario
 from onboard.runtime.loop import virtual_clock
 from onboard.runtime.protocols import Clock, Sample
 from onboard.wire.bus import topics
-from onboard.wire.bus.messages import Command, CommandKind, CommandReply, Event, Phase, Severity
+from onboard.wire.bus.messages import (
+    Command,
+    CommandKind,
+    CommandReply,
+    Event,
+    OutcomeResult,
+    Phase,
+    Severity,
+)
 from onboard.wire.bus.topics import COMMAND, everything
 from sim_bridge.rehearsal import Options, Rehearsal
 from sim_bridge.vehicle.autopilot.autopilot import Autopilot
@@ -27,7 +35,6 @@ from sim_bridge.vehicle.autopilot.autopilot import Autopilot
 STORY = ["staging", "ready", "running", "ended", "recovery"]
 LAST_EVENTS = 20  # of each vehicle, in the text of a failure
 SETPOINT = 84  # SET_POSITION_TARGET_LOCAL_NED, as the eighth byte of a frame tells
-ABORTED = "aborted"  # the verdict that a story may expect of its game
 
 
 class GameError(AssertionError):
@@ -107,7 +114,7 @@ class WholeGame(Rehearsal):
             expected = self._any_error or (event.id, event.kind) in self._expected
             if event.severity is Severity.ERROR and not expected:
                 raise GameError(f"vehicle {event.id} told an error that nobody expects: {self._told(event)}")
-        given_up = self.outcome is not None and self.outcome.verdict == ABORTED
+        given_up = self.outcome is not None and self.outcome.verdict is OutcomeResult.ABORTED
         if given_up and not self._aborts:
             raise GameError(f"the game was given up: {self.outcome and self.outcome.reason}")
 
@@ -167,8 +174,9 @@ def place(game: Rehearsal, id: int) -> Vec:
 
 def flies(agent: Agent) -> bool:
     """Whether the agent's setpoints count and go out."""
-    verdict = agent.acting.verdict
-    return agent.craft.stage is Stage.ACTIVE and verdict is not None and verdict.stream
+    verdict = agent.core.flight.output
+    decided = agent.core.flight.playing and verdict is not None and verdict.stream
+    return agent.core.vehicle.stage is Stage.ACTIVE and decided
 
 
 def setpoints_heard(game: Rehearsal, vehicle: int) -> list[int]:
