@@ -63,9 +63,9 @@ async def test_an_answer_that_comes_late_is_not_a_pilot() -> None:
     async with game_of(chase(Kind.ARDUPLANE, simulated=around), any_error=True) as game:
         await under_way(game, 5.0)
         for number in range(4):
-            await order(game, PURSUER, command(CommandKind.HOLD, f"h-{number}"), 8.0)
-            await game.forward(4.0)
-            await order(game, PURSUER, command(CommandKind.RESUME, f"r-{number}"), 8.0)
+            await order(game, PURSUER, command(CommandKind.HOLD, f"h-{number}"))
+            await game.forward(1.2)
+            await order(game, PURSUER, command(CommandKind.RESUME, f"r-{number}"))
             await game.forward(4.0)
         assert not [e.text for e in game.events if e.kind in ("take_over", "handed_back")]
 
@@ -75,7 +75,7 @@ async def test_an_answer_that_comes_late_is_not_a_pilot() -> None:
 )
 @virtual
 async def test_px4_takes_off_from_the_ground() -> None:
-    """For whoever sends NAV_TAKEOFF and judges the estimate: NaN where the place is unknown; rest is healthy."""
+    """For whoever sends NAV_TAKEOFF and judges the estimate: NaN for an unknown place; rest is healthy."""
     async with game_of(chase(Kind.PX4, ground_start=True), any_error=True) as game:
         await under_way(game, 5.0)
         assert -place(game, PURSUER).z > 20.0
