@@ -8,7 +8,7 @@ import sys
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TextIO
 
 from gcs.console.plain_lines import PlainLines
 from gcs.console.plain_lines import status as status_lines
@@ -231,19 +231,41 @@ def _print_through(player: Player) -> None:
 
 
 def decide_again(run: Path, strategies: dict[Role, str]) -> int:
-    """The strategies again over a recording: where they decide otherwise."""
+    """The agents of a run fed again: where they do or decide otherwise. 1 where an agent does."""
     from gcs.replay.decide import decide
-    from gcs.replay.source import open_run
 
-    recording = open_run(run)
-    try:
-        for remark in recording.remarks:
-            print(f"gcs: {remark}", file=sys.stderr)
-        given = {role: name for role, name in strategies.items() if name}
-        print("\n".join(decide(recording.entries(), given).lines()))
-    finally:
-        recording.close()
-    return 0
+    progress = Progress(sys.stderr)
+    comparison = decide(run, strategies, progress.show)
+    progress.end()
+    print("\n".join(comparison.lines()))
+    return 1 if any(fed.otherwise for fed in comparison.fed) else 0
+
+
+class Progress:
+    """Tells how far a long command is: on one line of a terminal, else on a line every few seconds."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+        self._terminal = stream.isatty()
+        self._clock = RealClock()
+        self._said_ns = self._clock.monotonic_ns()
+        self._open = False
+
+    def show(self, share: float, what: str) -> None:
+        """Tell that `share` of the work is done."""
+        now = self._clock.monotonic_ns()
+        if now - self._said_ns < (0.2 if self._terminal else 3.0) * NS_PER_S:
+            return
+        self._said_ns = now
+        text = f"gcs: {100 * share:3.0f} % ({what})"
+        self._open = self._terminal
+        print(f"\r{text}" if self._terminal else text, end="" if self._terminal else "\n", file=self._stream,
+              flush=True)  # fmt: skip
+
+    def end(self) -> None:
+        """The work is done."""
+        if self._open:
+            print(file=self._stream)
 
 
 def report(run: Path, limits: Thresholds) -> int:

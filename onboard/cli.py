@@ -16,7 +16,7 @@ from onboard.runtime.program import fail
 
 NAME = "onboard-agent"
 OPTIONS = ("id", "role", "link", "autopilot", "game", "bus", "zenoh", "strategy", "route", "take_control",
-           "may_arm", "dry_run", "log")  # fmt: skip
+           "may_arm", "dry_run", "log", "events")  # fmt: skip
 
 
 class Parser(argparse.ArgumentParser):
@@ -71,6 +71,8 @@ def parser() -> Parser:
     add("--dry-run", action="store_true", default=given,
         help="decide and publish, but send the autopilot nothing")  # fmt: skip
     add("--log", metavar="FILE", default=given, help="write every MAVLink frame to this .tlog file")
+    add("--events", metavar="FILE", default=given,
+        help="record everything that happens in this file, for gcs replay --decide")  # fmt: skip
     add("--timing", metavar="FILE", default=given, help=argparse.SUPPRESS)
     add("--version", action="store_true", help="print the version and exit")
     commands = top.add_subparsers(dest="command", metavar="check", parser_class=Parser)
@@ -97,11 +99,14 @@ def run(arguments: list[str] | None = None) -> int:
     file = Path(given["config"]) if "config" in given else None
     options: dict[str, Any] = {name: given[name] for name in OPTIONS if name in given}
     from onboard.agent import config
-    from onboard.agent import program as agent
 
     settings = config.load(file, options)
     if given["command"] == "check":
-        return agent.check(settings, given["seconds"])
+        from onboard.agent import preflight
+
+        return preflight.check(settings, given["seconds"])
+    from onboard.agent import program as agent
+
     return agent.fly(settings, Path(given["timing"]) if "timing" in given else None)
 
 

@@ -14,8 +14,9 @@ from typing import Any, BinaryIO, NamedTuple
 from msgspec import convert
 
 from gcs.recording.recorder import Recorder
-from onboard.agent.agent import Agent
 from onboard.agent.config import AgentConfig
+from onboard.agent.event_file import EventFile, FileSink, unused
+from onboard.agent.shell import Agent, Equipment
 from onboard.core.math.constants import NS_PER_S
 from onboard.game.master import GameMaster
 from onboard.game.scenario import Scenario
@@ -181,16 +182,14 @@ class Rehearsal:
         if id in self._tlogs:
             record = self._tlogs[id][1].write
         bus = self.broker.connect(f"agent-{id}")
-        agent = Agent(
-            config,
-            self.clock,
-            [self.links[id]],
-            bus,
-            nonce=self._nonce(),
-            version=self._options.version,
-            log=self._tell,
-            record=record,
+        events = None
+        if self._options.folder is not None:
+            sink = FileSink(unused(self._options.folder / f"vehicle-{id}.events"))
+            events = EventFile(sink, round(config.events_max_mb * 1e6))
+        equipment = Equipment(
+            nonce=self._nonce(), version=self._options.version, log=self._tell, record=record, events=events
         )
+        agent = Agent(config, self.clock, [self.links[id]], bus, equipment)
         self.agents[id] = agent
         self._tasks[id] = asyncio.create_task(_live(agent, bus), name=f"agent-{id}")  # ended by kill_agent
         return agent

@@ -1,58 +1,49 @@
-"""`gcs replay --decide`: the strategies again over the recorded tracks, and where they decide otherwise.
+"""`gcs replay --decide`: flown agents fed again with what happened to them, and what they do otherwise.
 
-Each control step is thought again at its own instant by `onboard.pilot.Pilot`, from what its agent knew
-then: own state, team mates, the tracks that had arrived by then, wind, setup; predictors are trained at the
-same pace. So a changed strategy, or another one by name, shows its differences on flown data. A recording
-made on virtual time repeats nearly exactly; in a real one a track may have reached the agent a step
-earlier or later than the recorder: the tolerances are for that.
+Each agent recorded its configuration and its events (`onboard.agent.event_file`). The same machine is fed
+the same events at the same instants: unless it was changed, it wants exactly the same done again. Each
+question to a strategy is asked again, of the strategy that flew or of another one by name, and its answers
+are compared with the recorded ones; the machine itself is always given the recorded answer, so that what was
+flown stays the course of events.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Callable
 from math import degrees
+from pathlib import Path
 from typing import NamedTuple
 
-from gcs.recording.reader import Entry
-from onboard.core.game.rules import NO_TARGET, Target
-from onboard.core.math.constants import NS_PER_S
-from onboard.core.math.states import MateState, carried
-from onboard.core.math.vectors import NORTH, TINY, ZERO, Vec, along, angle_between, norm, unit
-from onboard.core.strategy.registry import EVADERS, PURSUERS
-from onboard.game.plugins import evader_strategy, pursuer_strategy
-from onboard.pilot.memory import Memory
-from onboard.pilot.pilot import Pilot, PilotDecision
-from onboard.pilot.setup import GameSetup, Own, Player, Side, TrackSample
-from onboard.wire.autopilot_kind import Kind
-from onboard.wire.bus import topics
-from onboard.wire.bus.messages import (
-    DecisionReport,
-    EvaderBrief,
-    Health,
-    Phase,
-    PhaseChange,
-    Role,
-    Setup,
-    State,
-    Track,
-    Triple,
-)
-from onboard.wire.bus.topics import Dispatcher
+from msgspec.structs import replace
+
+from onboard.agent.core.events import Answered, AnyEvent, Idle, Load, Send, Think
+from onboard.agent.core.machine import AgentCore
+from onboard.agent.event_file import SUFFIX, AnyRecorded, Full, Happened, Head, Lost, Story, read, recorded
+from onboard.agent.thinker import Thinker
+from onboard.config.strict import ConfigError
+from onboard.core.math.vectors import NORTH, TINY, angle_between, norm, scale, unit
+from onboard.core.strategy.knowledge import Decision
+from onboard.core.strategy.registry import DEFAULT
+from onboard.pilot.setup import Side
+from onboard.runtime.clock import RealClock
+from onboard.runtime.signing_keys import read_key
+from onboard.wire.bus.messages import Role
+from onboard.wire.mavlink.signing import MemoryStore, Signing
 
 ANGLE_DEG = 5.0  # directions closer than this are the same
 SPEED = 0.5  # [m/s] and speeds
 PAUSE_S = 0.5  # differences farther apart are told apart
-OLD_STATE_S = 1.0
-SLICES = 2  # of training after each control step, as the agent gives them
-WINGED = frozenset({Kind.ARDUPLANE})  # autopilots whose vehicles fly in the moving air mass
+SHOWN = 200  # characters of an effect that are shown
+
+Progress = Callable[[float, str], None]  # (share done, of what)
 
 
 class Difference(NamedTuple):
     """One vehicle deciding otherwise for a while."""
 
     id: int
-    start: float  # [s] since t₀
+    start: float  # [s] since its part began
     end: float
     decisions: int
     recorded: str  # rule at the start
@@ -70,240 +61,231 @@ class Difference(NamedTuple):
         )
 
 
-class Comparison(NamedTuple):
-    """All recorded decisions against those thought now."""
+class Fed(NamedTuple):
+    """One agent's file, fed again."""
 
-    compared: int
+    id: int
+    name: str  # of the file
+    events: int  # fed
+    otherwise: int  # of them: events after which the machine wants something else done
+    first: str  # the first of these in words, '' = none
+    compared: int  # decisions
     same: int
     differences: tuple[Difference, ...]
-    skipped: tuple[tuple[str, int], ...]  # why decisions were not compared, and how many
+    remarks: tuple[str, ...]  # what could not be fed or compared, and why
+
+    def lines(self) -> list[str]:
+        """For a person."""
+        done = "does the same again" if not self.otherwise else f"does otherwise after {self.otherwise}"
+        lines = [f"vehicle {self.id} ({self.name}): {self.events} events fed, {done}"]
+        lines += [f"  first: {self.first}"] if self.first else []
+        return lines + [f"  {remark}" for remark in self.remarks]
+
+
+class Comparison(NamedTuple):
+    """All agents of a run, fed again."""
+
+    fed: tuple[Fed, ...]
+
+    @property
+    def compared(self) -> int:
+        """Decisions compared."""
+        return sum(fed.compared for fed in self.fed)
+
+    @property
+    def same(self) -> int:
+        """Decisions that are the same."""
+        return sum(fed.same for fed in self.fed)
+
+    @property
+    def differences(self) -> tuple[Difference, ...]:
+        """Of all vehicles, in the order of time."""
+        found = [difference for fed in self.fed for difference in fed.differences]
+        return tuple(sorted(found, key=lambda d: (d.start, d.id)))
 
     def lines(self) -> list[str]:
         """For a person."""
         share = 100.0 * self.same / self.compared if self.compared else 0.0
         head = f"{self.compared} decisions compared, {self.same} the same ({share:.1f} %)"
-        left = [f"{count} not compared: {why}" for why, count in self.skipped]
-        return [head, *left, *(difference.text() for difference in self.differences)]
+        told = [line for fed in self.fed for line in fed.lines()]
+        return [head, *told, *(difference.text() for difference in self.differences)]
 
 
-def decide(entries: Iterable[Entry], strategies: dict[Role, str] | None = None) -> Comparison:
-    """Think every recorded decision again. `strategies` names others for a role; without, the recorded ones.
-
-    Raises ConfigError for a name that does not exist.
-    """
-    again = _Again(strategies or {})
-    for entry in entries:
-        again.take(entry)
-    return again.comparison()
-
-
-class _Mind:
-    """One vehicle's pilot with its memory of those it asks for: its opponents."""
-
-    def __init__(self, pilot: Pilot, opponents: list[int]) -> None:
-        self.pilot = pilot
-        self.memory = Memory(wanted=opponents)
-        self.samples: list[TrackSample] = []
-        self.thought: PilotDecision | None = None
-        self.thought_ns = 0  # the step that it is of
-
-
-class _Open:
-    """A difference that may still go on."""
-
-    def __init__(self, report: DecisionReport, thought: PilotDecision, angle: float, speed: float) -> None:
-        self.start = self.end = report.t
-        self.decisions = 1
-        self.recorded, self.now = report.rule, thought.rule
-        self.angle, self.speed = angle, speed
-
-    def closed(self, vehicle: int) -> Difference:
-        return Difference(
-            vehicle, self.start, self.end, self.decisions, self.recorded, self.now, self.angle, self.speed
+def files_of(run: Path) -> list[Path]:
+    """The agents' files of a run folder (or beside a recording). Raises ConfigError where there are none."""
+    folder = run if run.is_dir() else run.parent
+    found = sorted(folder.glob(f"*{SUFFIX}"))
+    if not found:
+        raise ConfigError(
+            f"{folder}: found no vehicle-N{SUFFIX}, expected what the agents record (their option --events)"
         )
+    return found
+
+
+def decide(
+    run: Path, strategies: dict[Role, str] | None = None, progress: Progress = lambda share, what: None
+) -> Comparison:
+    """Feed every agent of a run again. `strategies` names others for a role; without, the recorded ones.
+
+    Raises ConfigError for a strategy that does not exist, and for files that cannot be read."""
+    others = {role: name for role, name in (strategies or {}).items() if name}
+    thinker = Thinker(RealClock())
+    for role, name in others.items():  # a name that does not exist is told before anything else
+        error = thinker.load(Load(Side.EVADER if role is Role.EVADER else Side.PURSUER, name)).error
+        if error:
+            raise ConfigError(error)
+    files = files_of(run)
+    fed = []
+    for number, path in enumerate(files):
+        story = read(path)
+        again = _Again(story, path.name, others.get(story.head.config.role, ""), thinker)
+        for share, record in story.records:
+            progress((number + share) / len(files), f"vehicle {story.head.config.id}")
+            if not again.take(record):
+                break
+        fed.append(again.result())
+    return Comparison(tuple(fed))
 
 
 class _Again:
-    def __init__(self, strategies: dict[Role, str]) -> None:
-        for role, name in strategies.items():
-            _pilot(0, role, name)  # a name that does not exist is told before anything else
-        self._strategies = strategies
-        self._hear = (
-            Dispatcher(Counter())
-            .on(topics.STATE, self._take_state)
-            .on(topics.TRACK, self._take_track)
-            .on(topics.DECISION, self._compare)
-            .on(topics.HEALTH, self._take_health)
-            .on(topics.SETUP, self._take_setup)
-            .on(topics.PHASE, self._take_phase)
-            .on(topics.EVADER_BRIEF, self._take_brief)
-        )
-        self._setup: Setup | None = None
-        self._phase: PhaseChange | None = None
-        self._target: Triple | None = None
-        self._states: dict[int, State] = {}
-        self._heights: dict[int, float] = {}  # of each vehicle at its first decision [m]
-        self._winged: set[int] = set()
-        self._minds: dict[int, _Mind] = {}
-        self._base_ns = 0
-        self._skipped: Counter[str] = Counter()
-        self._open: dict[int, _Open] = {}
-        self._found: list[Difference] = []
-        self._compared = self._same = 0
+    """One agent, fed again."""
 
-    def take(self, entry: Entry) -> None:
-        self._base_ns = self._base_ns or entry.stamp_ns
-        self._hear((entry.key, entry.payload))
+    def __init__(self, story: Story, name: str, strategy: str, thinker: Thinker) -> None:
+        self._head = story.head
+        self._name = name
+        self._remarks: Counter[str] = Counter()
+        self._core = AgentCore(story.head.config, story.head.facts, self._signing(story.head))
+        self._strategy = strategy
+        self._thinker = thinker
+        self._asked: Think | None = None
+        self._start: float | None = None
+        self._events = self._otherwise = 0
+        self._first = ""
+        self._decisions = _Decisions(story.head.config.id)
 
-    def _take_state(self, state: State) -> None:
-        self._states[state.id] = state
-        self._step(state)
+    def take(self, record: Happened | Full | Lost) -> bool:
+        """Feed one record; False where no more can be fed."""
+        if isinstance(record, Full):
+            size = record.limit / 1e6
+            self._remarks[f"the file was full at {size:g} MB: what came later is not in it"] += 1
+            return False
+        if isinstance(record, Lost):
+            self._remarks["the disk was too slow in flight: from here on records are missing"] += 1
+            return False
+        event, now = record.event, record.now
+        self._start = now.s if self._start is None else self._start
+        if isinstance(event, Answered):
+            self._ask_again(event, self._core.part.time(now.wall_ns))
+        wanted = self._core.idle(now) if isinstance(event, Idle) else self._core.handle(event, now)
+        for effect in wanted:
+            if isinstance(effect, Think):
+                self._asked = effect
+        self._events += 1
+        found = self._comparable(recorded(wanted))
+        expected = self._comparable(record.effects)
+        if found != expected:
+            self._otherwise += 1
+            if not self._first:
+                self._first = _told(now.s - self._start, event, expected, found)
+        return True
 
-    def _take_health(self, health: Health) -> None:
-        if health.autopilot in WINGED:
-            self._winged.add(health.id)
+    def result(self) -> Fed:
+        """What came of it."""
+        decisions = self._decisions
+        remarks = tuple(f"{n} × {why}" if n > 1 else why for why, n in sorted(self._remarks.items()))
+        return Fed(
+            self._head.config.id, self._name, self._events, self._otherwise, self._first, decisions.compared,
+            decisions.same, decisions.close(), remarks,
+        )  # fmt: skip
 
-    def _take_setup(self, setup: Setup) -> None:
-        if setup == self._setup:
+    def _ask_again(self, answer: Answered, time: float) -> None:
+        asked = self._asked
+        if asked is None or asked.number != answer.number:
+            self._remarks["an answer to a question that the machine no longer asks"] += 1
             return
-        self._setup = setup
-        players = [m for m in setup.roster if m.role is not Role.TRACKER]
-        self._minds = {
-            m.id: _Mind(
-                _pilot(m.id, m.role, self._strategies.get(m.role) or m.strategy),
-                [other.id for other in players if other.role is not m.role],
-            )
-            for m in players
-        }
-
-    def _take_phase(self, phase: PhaseChange) -> None:
-        self._phase = phase
-
-    def _take_brief(self, brief: EvaderBrief) -> None:
-        self._target = brief.target
-
-    def comparison(self) -> Comparison:
-        for vehicle, opened in sorted(self._open.items()):
-            self._found.append(opened.closed(vehicle))
-        self._open = {}
-        found = tuple(sorted(self._found, key=lambda d: (d.start, d.id)))
-        return Comparison(self._compared, self._same, found, tuple(sorted(self._skipped.items())))
-
-    def _take_track(self, track: Track) -> None:
-        sample = TrackSample(
-            track.id,
-            self._seconds(track.stamp_ns),
-            Vec(*track.position),
-            Vec(*track.velocity),
-            track.covariance,
-        )
-        for vehicle, mind in self._minds.items():
-            if vehicle != track.id:
-                mind.samples.append(sample)
-
-    def _step(self, state: State) -> None:
-        """The control step that published this state."""
-        mind = self._minds.get(state.id)
-        if mind is None or self._setup is None:
+        if answer.decision is None:
+            self._remarks[f"the strategy failed in flight: {answer.error}"] += 1
             return
-        phase = self._phase
-        if phase is not None and phase.phase is Phase.RUNNING and state.stamp_ns >= phase.t0_ns:
-            self._think(mind, state, state.stamp_ns, self._setup)
-        else:
-            mind.memory.take(tuple(mind.samples))
-            mind.samples.clear()
-        mind.memory.train(self._seconds(state.stamp_ns), SLICES)
-
-    def _compare(self, report: DecisionReport) -> None:
-        setup, state, mind = self._setup, self._states.get(report.id), self._minds.get(report.id)
-        if setup is None or mind is None:
-            self._skipped["no setup that names the vehicle"] += 1
-            return
-        if report.rule in ("", "none"):
-            self._skipped["the agent had nothing to decide"] += 1
-            return
-        if state is None or abs(report.stamp_ns - state.stamp_ns) > OLD_STATE_S * NS_PER_S:
-            self._skipped["no state of the vehicle at that time"] += 1
-            return
-        wanted = self._strategies.get(state.role) or report.strategy
-        thought = mind.thought
-        if wanted and mind.pilot.strategy != wanted:  # configured onboard, or changed in flight
-            mind.pilot = _pilot(report.id, state.role, wanted)
-            thought = None
-        if thought is None or mind.thought_ns != report.stamp_ns:
-            thought = self._think(mind, state, report.stamp_ns, setup)
-        if not thought.decides:
-            self._skipped[f"lacks {', '.join(thought.lacks)}"] += 1
-            return
-        self._judge(report, thought)
-
-    def _think(self, mind: _Mind, state: State, at_ns: int, setup: Setup) -> PilotDecision:
-        self._heights.setdefault(state.id, -state.position[2])
-        now = self._seconds(at_ns)
-        late = min(max(0.0, now - self._seconds(state.stamp_ns)), 0.5)
-        wind = Vec(*state.wind) if state.id in self._winged else ZERO
-        own = Own(along(Vec(*state.position), Vec(*state.velocity), late), Vec(*state.velocity), wind)
-        mates = tuple(
-            carried(MateState(s.id, self._seconds(s.stamp_ns), Vec(*s.position), Vec(*s.velocity)), now)
-            for s in self._states.values()
-            if s.role is state.role and s.id != state.id
-        )
-        game = self._game(setup, state.role is Role.EVADER)
-        mind.memory.take(tuple(mind.samples))
-        mind.samples.clear()
-        thought = mind.pilot.step(now, own, mates, game, mind.memory)
-        mind.thought, mind.thought_ns = thought, at_ns
-        return thought
-
-    def _judge(self, report: DecisionReport, thought: PilotDecision) -> None:
-        was = Vec(*report.velocity)
-        angle = 0.0
-        if norm(was) > TINY and norm(thought.velocity) > TINY:
-            angle = degrees(angle_between(unit(was, NORTH), unit(thought.velocity, NORTH)))
-        speed = abs(norm(was) - norm(thought.velocity))
-        self._compared += 1
-        opened = self._open.get(report.id)
-        if thought.rule == report.rule and angle <= ANGLE_DEG and speed <= SPEED:
-            self._same += 1
-            return
-        if opened is not None:
-            goes_on = report.t - opened.end <= PAUSE_S
-            if goes_on and (opened.recorded, opened.now) == (report.rule, thought.rule):
-                opened.end = report.t
-                opened.decisions += 1
-                opened.angle, opened.speed = max(opened.angle, angle), max(opened.speed, speed)
+        name = self._strategy or asked.strategy
+        if (asked.side, name) not in self._thinker.strategies:
+            error = self._thinker.load(Load(asked.side, name)).error
+            if error:
+                self._remarks[f"not compared: {error}"] += 1
                 return
-            self._found.append(opened.closed(report.id))
-        self._open[report.id] = _Open(report, thought, angle, speed)
+        again = self._thinker.answer(Think(asked.number, asked.side, name, asked.view))
+        if again.decision is None:
+            self._remarks[f"the strategy {name or DEFAULT} fails now: {again.error}"] += 1
+            return
+        self._decisions.judge(time, answer.decision, again.decision)
 
-    def _game(self, setup: Setup, evader: bool) -> GameSetup:
-        """The game as the agent told it to its pilot; the target for the evader alone."""
-        players = tuple(
-            Player(
-                m.id,
-                Side.EVADER if m.role is Role.EVADER else Side.PURSUER,
-                m.speed,
-                m.limits.core(),
-                -m.start[2] if -m.start[2] >= 1.0 else self._heights.get(m.id, -m.start[2]),
-            )
-            for m in setup.roster
-            if m.role is not Role.TRACKER
-        )
-        target = self._target if evader else None
-        return GameSetup(
-            roster=players,
-            rules=setup.rules.core()._replace(planar=setup.flat),
-            target=NO_TARGET if target is None else Target(True, Vec(*target)),
-        )
+    def _comparable(self, effects: tuple[AnyRecorded, ...]) -> tuple[AnyRecorded, ...]:
+        """Effects as they can be compared: without signatures, whose stamps belong to the flight."""
+        return _unsigned(effects) if self._head.facts.signed else effects
 
-    def _seconds(self, stamp_ns: int) -> float:
-        return (stamp_ns - self._base_ns) / NS_PER_S
+    def _signing(self, head: Head) -> Signing | None:
+        if not head.facts.signed or head.config.signing is None:
+            return None
+        return Signing(read_key(Path(head.config.signing.key)), MemoryStore())
 
 
-def _pilot(vehicle: int, role: Role, name: str) -> Pilot:
-    """The pilot of a vehicle. Raises ConfigError for a strategy that does not exist."""
-    if role is Role.EVADER:
-        evade = evader_strategy(name)
-        return Pilot(vehicle, Side.EVADER, name, evader=None if name in ("", *EVADERS) else evade)
-    pursue = pursuer_strategy(name)
-    return Pilot(vehicle, Side.PURSUER, name, pursuer=None if name in ("", *PURSUERS) else pursue)
+def _unsigned(effects: tuple[AnyRecorded, ...]) -> tuple[AnyRecorded, ...]:
+    return tuple(
+        replace(effect, frame=effect.frame[:-13]) if isinstance(effect, Send) else effect
+        for effect in effects
+    )
+
+
+def _told(
+    at: float, event: AnyEvent, expected: tuple[AnyRecorded, ...], found: tuple[AnyRecorded, ...]
+) -> str:
+    """The first effect that differs, in words."""
+    for was, now in zip(expected, found, strict=False):
+        if was != now:
+            return f"{at:.3f} s after its start, {_short(event)}: recorded {_short(was)}, now {_short(now)}"
+    longer, word = (expected, "no longer") if len(expected) > len(found) else (found, "now also")
+    extra = longer[min(len(expected), len(found))]
+    return f"{at:.3f} s after its start, {_short(event)}: {word} {_short(extra)}"
+
+
+def _short(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= SHOWN else f"{text[:SHOWN]}…"
+
+
+class _Decisions:
+    """Compares one vehicle's decisions, and joins differences that go on."""
+
+    def __init__(self, id: int) -> None:
+        self.compared = self.same = 0
+        self._id = id
+        self._open: Difference | None = None
+        self._found: list[Difference] = []
+
+    def judge(self, time: float, was: Decision, now: Decision) -> None:
+        """Compare the recorded decision at `time` [s] with the one made now."""
+        before, after = scale(was.direction, was.speed), scale(now.direction, now.speed)
+        angle = 0.0
+        if norm(before) > TINY and norm(after) > TINY:
+            angle = degrees(angle_between(unit(before, NORTH), unit(after, NORTH)))
+        speed = abs(norm(before) - norm(after))
+        self.compared += 1
+        if now.rule == was.rule and angle <= ANGLE_DEG and speed <= SPEED:
+            self.same += 1
+            return
+        rules = (was.rule.name.lower(), now.rule.name.lower())
+        last = self._open
+        if last is not None and time - last.end <= PAUSE_S and (last.recorded, last.now) == rules:
+            self._open = last._replace(
+                end=time, decisions=last.decisions + 1, angle_deg=max(last.angle_deg, angle),
+                speed=max(last.speed, speed),
+            )  # fmt: skip
+            return
+        self.close()
+        self._open = Difference(self._id, time, time, 1, *rules, angle, speed)
+
+    def close(self) -> tuple[Difference, ...]:
+        """All differences; the one that may still go on ends."""
+        if self._open is not None:
+            self._found.append(self._open)
+            self._open = None
+        return tuple(self._found)

@@ -41,6 +41,7 @@ StrategyAge = Annotated[float, Meta(gt=0, le=0.2, description="a time in (0, 0.2
 Horizon = Annotated[float, Meta(gt=0, le=60, description="a time in (0, 60] s")]
 TakeOffHeight = Annotated[float, Meta(ge=2, le=500, description="2 to 500 m above home")]
 LinkId = Annotated[int, Meta(ge=0, le=255, description="a link id from 0 to 255")]
+FileSize = Annotated[float, Meta(ge=1, le=1e5, description="1 to 100000 MB")]
 Links = Annotated[tuple[str, ...], Meta(max_length=2, description="at most two links")]
 
 
@@ -168,6 +169,8 @@ class AgentConfig(StrictConfig, frozen=True):
     prediction: Predicting = Predicting.NETWORK  # what carries tracks forward
     field: bool = False  # refuse what only a simulation may do (docs/safety.md)
     log: str = ""  # .tlog of the own link; missing = none
+    events: str = ""  # file of everything that happens, for `gcs replay --decide`; missing = none
+    events_max_mb: FileSize = 256.0  # its largest size [MB]: some two hours of a game of six
     envelope: EnvelopeConfig = EnvelopeConfig()
     safety: SafetyConfig = SafetyConfig()
     signing: SigningConfig | None = None

@@ -8,27 +8,27 @@ from __future__ import annotations
 import asyncio
 import importlib.util
 import shutil
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from enum import Enum
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
-from onboard.agent.bus_view import Table
 from onboard.agent.config import AgentConfig
-from onboard.agent.journal import Journal
-from onboard.agent.mavlink_radio import Radio
-from onboard.agent.program import close_bus, open_bus, open_links, signing_of
-from onboard.agent.vehicle_link import Craft
+from onboard.agent.core.bus_view import BusView
+from onboard.agent.core.events import Instant, LinkFacts, Outbox, Send, Subscribe
+from onboard.agent.core.journal import Journal
+from onboard.agent.core.mavlink_radio import Radio
+from onboard.agent.core.vehicle_link import VehicleLink
+from onboard.agent.opening import close_bus, open_bus, open_links, signing_of
 from onboard.autopilot.base import Telemetry
 from onboard.autopilot.parameters import findings
 from onboard.config.strict import ConfigError
 from onboard.core.math.constants import NEVER, NS_PER_S
 from onboard.runtime.clock import RealClock
-from onboard.runtime.protocols import Bus, Clock, Link
+from onboard.runtime.protocols import Bus, Clock, Link, Sample
 from onboard.runtime.zenoh_config import DEFAULT_ENDPOINT
-from onboard.wire.bus.topics import Delivery
 from onboard.wire.mavlink import commands
-from onboard.wire.mavlink.frames import Packet
 from onboard.wire.mavlink.ids import MessageId
 from onboard.wire.mavlink.modes import Kind
 from onboard.wire.mavlink.signing import Signing
@@ -37,6 +37,7 @@ ENOUGH = 0.7  # of the position rate that was asked for
 DISK_MIN = 200e6  # bytes free, for logs
 HARMLESS = ("no_peer", "muted", "twin")  # counted, but no bad frames
 DIALECT = "pymavlink.dialects.v20.ardupilotmega"
+PEERS_MAX = 64  # of one link that are told apart
 
 
 class Mark(Enum):
@@ -186,6 +187,11 @@ def table(rows: list[Row]) -> list[str]:
     return lines
 
 
+def check(config: AgentConfig, seconds: float) -> int:
+    """The preflight; gives the exit code. Raises ConfigError."""
+    return asyncio.run(preflight(config, seconds, print))
+
+
 async def preflight(config: AgentConfig, seconds: float, say: Callable[[str], None]) -> int:
     """Listen for `seconds`, print the table; 0 where nothing failed, else 1."""
     seen = await look(config, seconds)
@@ -199,7 +205,10 @@ async def preflight(config: AgentConfig, seconds: float, say: Callable[[str], No
 
 
 async def look(config: AgentConfig, seconds: float) -> Sight:
-    """See what there is. Nothing is commanded: message rates and parameters are asked for."""
+    """See what there is. Nothing is commanded: message rates and parameters are asked for.
+
+    No heartbeat is sent: an autopilot that watches this system as its ground station would take the end of
+    the check for the loss of it."""
     seen = Sight(bytecode=bytecode(), free_bytes=free_bytes(config))
     signing: Signing | None = None
     try:
@@ -207,84 +216,121 @@ async def look(config: AgentConfig, seconds: float) -> Sight:
         seen = seen._replace(signed=signing is not None)
     except ConfigError as error:
         seen = seen._replace(key_trouble=str(error))
-    clock = RealClock()
-    journal = Journal(config.id, config.game, 0, clock, _unpublished, _unsaid)
     bus: Bus | None = None
     try:
         bus = await open_bus(config)
     except ConfigError as error:
         seen = seen._replace(bus_trouble=str(error))
     try:
-        heard = None
-        if bus is not None:
-            heard = Table(config.game, config.id, config.role, 0, clock, bus, journal)
-            heard.open()
+        links: list[Link] = []
         try:
             links = await open_links(config)
         except ConfigError as error:
             seen = seen._replace(link_trouble=str(error))
-            await asyncio.sleep(min(seconds, 2.0))
-        else:
-            seen = await _listen(config, seen, links, signing, journal, clock, seconds)
-        if bus is not None and heard is not None:
-            seen = seen._replace(
-                bus=config.bus or config.zenoh or DEFAULT_ENDPOINT,
-                connected=bus.connected(),
-                master=heard.clock.known,
-                offset_s=heard.clock.offset_s,
-            )
-            heard.close()
+        try:
+            seen = await Ears(config, links, bus, signing, RealClock()).listen(seen, seconds)
+        finally:
+            for link in links:
+                link.close()
     finally:
         if bus is not None:
             await close_bus(bus)
     return seen
 
 
-async def _listen(
-    config: AgentConfig,
-    seen: Sight,
-    links: Sequence[Link],
-    signing: Signing | None,
-    journal: Journal,
-    clock: Clock,
-    seconds: float,
-) -> Sight:
-    radio = Radio(links, config.id, clock, signing=signing, mute=config.dry_run)
-    craft = Craft(config, radio, journal)
+class Ears:
+    """The listening parts of the agent: radio, vehicle link and bus view, without anything that flies."""
 
-    def hear(packet: Packet, now: float) -> None:
-        craft.hear(packet, now)
+    def __init__(
+        self,
+        config: AgentConfig,
+        links: Sequence[Link],
+        bus: Bus | None,
+        signing: Signing | None,
+        clock: Clock,
+    ) -> None:
+        self._config = config
+        self._links = links
+        self._bus = bus
+        self._clock = clock
+        self._out = Outbox()
+        self._journal = Journal(config.id, config.game, 0)
+        facts = [LinkFacts(link.name, link.name.startswith("serial:")) for link in links]
+        self._radio = Radio(facts, config.id, self._out, signing=signing, mute=config.dry_run)
+        self._vehicle = VehicleLink(config, self._radio, self._journal, self._out)
+        self._view = BusView(config, 0, self._out, self._journal)
+        self._numbers: list[dict[Hashable, int]] = [{} for _ in links]
 
-    radio.open(hear)
-    try:
-        begun = clock.monotonic_ns()
-        beats = 0
-        while (past := (clock.monotonic_ns() - begun) / NS_PER_S) < seconds:
-            craft.chores(clock.monotonic_ns() / NS_PER_S)
-            if past >= beats:
-                beats += 1
-                craft.heartbeat()
-                if craft.version is None:
-                    radio.send(commands.request_message(craft.to, MessageId.AUTOPILOT_VERSION))
+    async def listen(self, seen: Sight, seconds: float) -> Sight:
+        """Listen for `seconds`; shorter where there is no link."""
+        for index, link in enumerate(self._links):
+            link.receive(partial(self._arrived, index))
+        self._view.open()
+        self._do(self._instant())
+        begun = self._instant().s
+        asked = 0
+        while (past := self._instant().s - begun) < (seconds if self._links else min(seconds, 2.0)):
+            if self._links:
+                now = self._instant()
+                self._vehicle.chores(now.s)
+                if past >= asked and self._vehicle.version is None:
+                    asked += 1
+                    self._radio.send(commands.request_message(self._vehicle.to, MessageId.AUTOPILOT_VERSION))
+                self._do(now)
             await asyncio.sleep(0.05)
-        now = clock.monotonic_ns() / NS_PER_S
-        found = craft.version
+        return self._found(seen)
+
+    def _found(self, seen: Sight) -> Sight:
+        config, vehicle, now = self._config, self._vehicle, self._instant()
+        if self._bus is not None:
+            seen = seen._replace(
+                bus=config.bus or config.zenoh or DEFAULT_ENDPOINT,
+                connected=self._bus.connected(),
+                master=self._view.clock.known,
+                offset_s=self._view.clock.offset_s,
+            )
+        if not self._links:
+            return seen
+        version = vehicle.version
         return seen._replace(
-            now=now,
-            link=radio.active,
-            datagrams=sum(link.counters().get("received", 0) for link in links),
-            kind=craft.adapter.kind.value if craft.adapter is not None else "",
-            refusal=craft.refusal,
-            other_systems=tuple(sorted(craft.heard_systems)),
-            version="" if found is None else ".".join(map(str, found.flight[:3])),
-            telemetry=craft.look(now),
-            position_rate=craft.position_rate.value,
-            parameters=craft.parameters,
-            bad_frames={cause: n for cause, n in radio.causes.items() if cause not in HARMLESS},
+            now=now.s,
+            link=self._radio.active,
+            datagrams=self._radio.received,
+            kind=vehicle.adapter.kind.value if vehicle.adapter is not None else "",
+            refusal=vehicle.refusal,
+            other_systems=tuple(sorted(vehicle.heard_systems)),
+            version="" if version is None else ".".join(map(str, version.flight[:3])),
+            telemetry=vehicle.look(now.s),
+            position_rate=vehicle.position_rate.value,
+            parameters=vehicle.parameters,
+            bad_frames={cause: n for cause, n in self._radio.causes.items() if cause not in HARMLESS},
         )
-    finally:
-        for link in links:
-            link.close()
+
+    def _instant(self) -> Instant:
+        return Instant(self._clock.monotonic_ns() / NS_PER_S, self._clock.wall_ns())
+
+    def _arrived(self, index: int, data: bytes, peer: Hashable) -> None:
+        numbers = self._numbers[index]
+        if peer not in numbers and len(numbers) >= PEERS_MAX:
+            return
+        now = self._instant()
+        for packet in self._radio.take(index, numbers.setdefault(peer, len(numbers)), data, now).packets:
+            self._vehicle.hear(packet, now.s)
+        self._do(now)
+
+    def _heard(self, sample: Sample) -> None:
+        self._view.take(sample.key, sample.payload, self._instant())
+
+    def _do(self, now: Instant) -> None:
+        """Send and subscribe; everything else that the parts want is an agent's."""
+        self._radio.flush(now)
+        for effect in self._out.take():
+            if isinstance(effect, Send):
+                numbers = self._numbers[effect.link]
+                peer = next((p for p, number in numbers.items() if number == effect.peer), None)
+                self._links[effect.link].send(effect.frame, peer)
+            elif isinstance(effect, Subscribe) and self._bus is not None:
+                self._bus.subscribe(effect.key, self._heard)
 
 
 def bytecode() -> bool:
@@ -300,11 +346,3 @@ def free_bytes(config: AgentConfig) -> float:
         return float(shutil.disk_usage(place).free)
     except OSError:
         return 0.0
-
-
-def _unpublished(key: str, payload: bytes, delivery: Delivery) -> None:
-    """A check publishes no events."""
-
-
-def _unsaid(line: str) -> None:
-    """A check prints its table alone."""

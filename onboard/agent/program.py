@@ -12,43 +12,26 @@ import signal
 from collections.abc import Sequence
 from pathlib import Path
 
-from onboard.agent.agent import Agent, to_stderr
 from onboard.agent.config import AgentConfig
+from onboard.agent.event_file import EventFile, ThreadSink, unused
+from onboard.agent.opening import close_bus, open_bus, open_links, signing_of
+from onboard.agent.shell import Agent, Equipment
 from onboard.agent.version import version
 from onboard.config.strict import ConfigError
 from onboard.core.math.constants import NS_PER_S
-from onboard.runtime.bus_zenoh import open_zenoh
+from onboard.game.route_file import load_route
 from onboard.runtime.clock import RealClock
-from onboard.runtime.links import open_link
-from onboard.runtime.protocols import Bus, Link
-from onboard.runtime.signing_keys import StampFile, read_key
+from onboard.runtime.protocols import Link
 from onboard.runtime.systemd import Notifier
-from onboard.wire.mavlink.signing import Signing
+from onboard.wire.bus.messages import Role
 from onboard.wire.mavlink.tlog import TlogWriter
 
-CLOSE_S = 0.5  # for the bus to close; the process ends within 2 s of a signal
 FLUSH_NS = NS_PER_S
 
 
 def fly(config: AgentConfig, timing: Path | None = None) -> int:
     """Fly until SIGTERM or ctrl-C; gives the exit code. Raises ConfigError."""
     return asyncio.run(_fly(config, timing))
-
-
-def check(config: AgentConfig, seconds: float) -> int:
-    """The preflight; gives the exit code. Raises ConfigError."""
-    from onboard.agent.preflight import preflight
-
-    return asyncio.run(preflight(config, seconds, print))
-
-
-def signing_of(config: AgentConfig) -> Signing | None:
-    """Signing as configured. Raises ConfigError for a key that is missing or that others may read."""
-    if config.signing is None:
-        return None
-    path = Path(config.signing.key)
-    stamps = Path(config.signing.stamps or f"{config.signing.key}.stamps")
-    return Signing(read_key(path), StampFile(stamps))
 
 
 class LogFile:
@@ -79,45 +62,29 @@ class LogFile:
             self._file.close()
 
 
-async def open_links(config: AgentConfig) -> list[Link]:
-    """Open all links. Raises ConfigError."""
-    links: list[Link] = []
-    try:
-        for url in config.links:
-            links.append(await open_link(url))
-    except ConfigError:
-        for link in links:
-            link.close()
-        raise
-    return links
-
-
-async def open_bus(config: AgentConfig) -> Bus:
-    """Open the bus, there or not. Raises ConfigError."""
-    file = Path(config.zenoh) if config.zenoh else None
-    return await open_zenoh(config.bus or None, config_file=file)
-
-
 async def _fly(config: AgentConfig, timing: Path | None) -> int:
     clock = RealClock()
     signing = signing_of(config)
+    route = load_route(Path(config.route)) if config.role is Role.TRACKER else None
     log = LogFile(Path(config.log)) if config.log else None
     links = await open_links(config)
     try:
+        events = None
+        if config.events:
+            sink = ThreadSink(unused(Path(config.events)))
+            events = EventFile(sink, round(config.events_max_mb * 1e6))
         bus = await open_bus(config)
         notifier = Notifier(clock)
-        agent = Agent(
-            config,
-            clock,
-            links,
-            bus,
+        equipment = Equipment(
             nonce=secrets.randbits(48),
             version=version(),
-            log=to_stderr,
             record=log.record if log is not None else None,
+            events=events,
             signing=signing,
             beat=notifier.alive,
+            route=route,
         )
+        agent = Agent(config, clock, links, bus, equipment)
         _catch_signals(agent)
         gc.collect()
         gc.freeze()  # what was imported is never garbage: collections in flight stay short
@@ -142,16 +109,6 @@ def _release(links: Sequence[Link], log: LogFile | None) -> None:
         log.close()
 
 
-async def close_bus(bus: Bus) -> bool:
-    """Close the bus within `CLOSE_S`; False where it does not answer."""
-    try:
-        async with asyncio.timeout(CLOSE_S):
-            await bus.close()
-    except TimeoutError:
-        return False
-    return True
-
-
 def _catch_signals(agent: Agent) -> None:
     """The first signal lands softly, the second ends at once."""
     loop = asyncio.get_running_loop()
@@ -174,6 +131,8 @@ def _write_timing(path: Path, agent: Agent) -> None:
         "id": agent.id,
         "latency_p50_us": t.percentile_us(0.5),
         "latency_p99_us": t.percentile_us(0.99),
+        "control_steps": agent.core.steps,
+        "control_steps_by_timer": agent.core.timer_steps,
         **t.counters(),
     }
     with contextlib.suppress(OSError):

@@ -12,7 +12,16 @@ from math import inf
 from typing import NamedTuple
 
 from onboard.core.game.advance import EvaderStrategy, PursuerStrategy
-from onboard.core.game.views import Sighting, evader_view, heading_at, level, nearest_mate, pursuer_view
+from onboard.core.game.views import (
+    EvaderView,
+    PursuerView,
+    Sighting,
+    evader_view,
+    heading_at,
+    level,
+    nearest_mate,
+    pursuer_view,
+)
 from onboard.core.geometry.apollonius import apollonius_sphere
 from onboard.core.geometry.assessment import half_angle
 from onboard.core.geometry.cones import blocked_cones
@@ -66,7 +75,103 @@ def drawing(thought: PilotDecision, side: Side) -> tuple[tuple[Quad, ...], tuple
     return tuple(cones), tuple(circles)
 
 
-class Pilot:
+class Question(NamedTuple):
+    """What a strategy is shown, and what is needed to make a decision with its reasons of its answer."""
+
+    view: EvaderView | PursuerView
+    own: Own
+    me: Player
+    seen: Vehicle  # the own vehicle as the strategy sees it
+    others: tuple[Vehicle, ...]  # opponents as the strategy sees them
+    wind: Vec  # that the view was made in [m/s; where the air moves to]
+    sigma: float  # stated error of the worst track that is needed [m]; inf = one is missing
+    predictor: str  # what spoke for that track
+    lacks: tuple[str, ...]  # what is missing, in words
+
+
+class Viewpoint:
+    """Makes the view of one vehicle's strategy, and of the strategy's answer a decision with its reasons.
+
+    `strategy` names it; the names of other distributions' strategies are as good as the core's.
+    """
+
+    def __init__(self, id: int, side: Side, strategy: str = "") -> None:
+        self.id = id
+        self.side = side
+        self.strategy = strategy or DEFAULT
+        known = (EVADERS if side is Side.EVADER else PURSUERS).get(self.strategy)
+        self._modules: dict[int, Module] = {} if known is None else {r.id: r.module for r in known.table}
+
+    def look(
+        self, now: float, own: Own, mates: tuple[Mate, ...], setup: GameSetup, memory: Memory
+    ) -> Question | PilotDecision:
+        """What the strategy is to be asked at instant `now` [s]; where it cannot be asked, a decision that
+        says what is lacking.
+
+        `mates` are the team mates as they are now (`carried`); the own vehicle among them is left out.
+        `memory` holds the tracks that were taken so far; it is changed in place.
+        """
+        me = setup.player(self.id)
+        if me is None:
+            return self._silent(own, ("a place in the roster",))
+        planar = setup.rules.planar
+        wind = level(own.wind, planar)
+        seen = Vehicle(level(own.position, planar), sub(level(own.velocity, planar), wind), me.speed)
+        known: list[tuple[Player, Prediction]] = []
+        lacks: list[str] = []
+        for player in setup.opponents(self.side):
+            prediction = memory.predict(player.id, now)
+            if prediction is None:
+                lacks.append(f"track of {player.side.value} {player.id}")
+            else:
+                known.append((player, prediction))
+        if not known:
+            return self._silent(own, tuple(lacks))
+        worst = max((p for _, p in known), key=lambda p: p.sigma)
+        others = tuple(_opponent(player, p, now, wind, planar, memory) for player, p in known)
+        view: EvaderView | PursuerView
+        if self.side is Side.EVADER:
+            goal = setup.target._replace(position=level(setup.target.position, planar))
+            view = evader_view(seen, me.limits, others, goal, wind, setup.rules)
+        else:
+            later = memory.predict(known[0][0].id, now + setup.control.lookahead)
+            places = tuple(level(mate.position, planar) for mate in mates if mate.id != self.id)
+            mate = nearest_mate(seen.position, places, -1)
+            sighting = _sighting(others[0], later, wind, setup)
+            view = pursuer_view(seen, me.limits, sighting, mate, setup.control, setup.rules)
+        sigma = inf if lacks else worst.sigma
+        return Question(view, own, me, seen, others, wind, sigma, worst.source.name.lower(), tuple(lacks))
+
+    def conclude(self, question: Question, decision: Decision, setup: GameSetup) -> PilotDecision:
+        """The strategy's answer to a question, with everything a person needs to see why."""
+        own, planar = question.own, setup.rules.planar
+        return PilotDecision(
+            decides=True,
+            velocity=_steered(decision, own, question.me, planar),
+            level=Level.TACTICAL.name.lower(),
+            module=self._modules.get(decision.rule, Module.INTELLIGENT).name.lower(),
+            strategy=self.strategy,
+            rule=decision.rule.name.lower(),
+            aim=along(_at_height(decision.aim, own.position, planar), question.wind, decision.time),
+            time=decision.time,
+            miss=decision.miss,
+            sigma=question.sigma,
+            predictor=question.predictor,
+            lacks=question.lacks,
+            own=question.seen,
+            others=question.others,
+            rho=setup.rules.rho,
+        )
+
+    def _silent(self, own: Own, lacks: tuple[str, ...]) -> PilotDecision:
+        here = Vehicle(own.position, own.velocity, 0.0)
+        return PilotDecision(
+            False, ZERO, Level.TACTICAL.name.lower(), "", self.strategy, "none", own.position, 0.0, 0.0,
+            inf, PredictorKind.NOTHING.name.lower(), lacks, here, (), 0.0,
+        )
+
+
+class Pilot(Viewpoint):
     """Thinks for one vehicle. The strategies are functions: by default the core's own, by name.
 
     Raises KeyError for a name that the core does not have; other distributions' strategies come in as
@@ -82,80 +187,24 @@ class Pilot:
         pursuer: PursuerStrategy | None = None,
         evader: EvaderStrategy | None = None,
     ) -> None:
-        self.id = id
-        self.side = side
-        self.strategy = strategy or DEFAULT
-        self._modules: dict[int, Module] = {}
+        super().__init__(id, side, strategy)
         self._pursue: PursuerStrategy = PURSUERS[DEFAULT].decide if pursuer is None else pursuer
         self._evade: EvaderStrategy = EVADERS[DEFAULT].decide if evader is None else evader
         if side is Side.PURSUER and pursuer is None:
-            named = PURSUERS[self.strategy]
-            self._pursue = named.decide
-            self._modules = {rule.id: rule.module for rule in named.table}
+            self._pursue = PURSUERS[self.strategy].decide
         if side is Side.EVADER and evader is None:
-            flown = EVADERS[self.strategy]
-            self._evade = flown.decide
-            self._modules = {rule.id: rule.module for rule in flown.table}
+            self._evade = EVADERS[self.strategy].decide
 
     def step(
         self, now: float, own: Own, mates: tuple[Mate, ...], setup: GameSetup, memory: Memory
     ) -> PilotDecision:
-        """Decide at instant `now` [s].
-
-        `mates` are the team mates as they are now (`carried`); the own vehicle among them is left out.
-        `memory` holds the tracks that were taken so far; it is changed in place.
-        """
-        me = setup.player(self.id)
-        if me is None:
-            return self._silent(own, ("a place in the roster",))
-        planar = setup.rules.planar
-        wind = level(own.wind, planar)
-        self_ = Vehicle(level(own.position, planar), sub(level(own.velocity, planar), wind), me.speed)
-        known: list[tuple[Player, Prediction]] = []
-        lacks: list[str] = []
-        for player in setup.opponents(self.side):
-            prediction = memory.predict(player.id, now)
-            if prediction is None:
-                lacks.append(f"track of {player.side.value} {player.id}")
-            else:
-                known.append((player, prediction))
-        if not known:
-            return self._silent(own, tuple(lacks))
-        worst = max((p for _, p in known), key=lambda p: p.sigma)
-        others = tuple(_opponent(player, p, now, wind, planar, memory) for player, p in known)
-        if self.side is Side.EVADER:
-            goal = setup.target._replace(position=level(setup.target.position, planar))
-            decision = self._evade(evader_view(self_, me.limits, others, goal, wind, setup.rules))
-        else:
-            later = memory.predict(known[0][0].id, now + setup.control.lookahead)
-            seen = _sighting(others[0], later, wind, setup)
-            places = tuple(level(mate.position, planar) for mate in mates if mate.id != self.id)
-            mate = nearest_mate(self_.position, places, -1)
-            decision = self._pursue(pursuer_view(self_, me.limits, seen, mate, setup.control, setup.rules))
-        return PilotDecision(
-            decides=True,
-            velocity=_steered(decision, own, me, planar),
-            level=Level.TACTICAL.name.lower(),
-            module=self._modules.get(decision.rule, Module.INTELLIGENT).name.lower(),
-            strategy=self.strategy,
-            rule=decision.rule.name.lower(),
-            aim=along(_at_height(decision.aim, own.position, planar), wind, decision.time),
-            time=decision.time,
-            miss=decision.miss,
-            sigma=inf if lacks else worst.sigma,
-            predictor=worst.source.name.lower(),
-            lacks=tuple(lacks),
-            own=self_,
-            others=others,
-            rho=setup.rules.rho,
-        )
-
-    def _silent(self, own: Own, lacks: tuple[str, ...]) -> PilotDecision:
-        here = Vehicle(own.position, own.velocity, 0.0)
-        return PilotDecision(
-            False, ZERO, Level.TACTICAL.name.lower(), "", self.strategy, "none", own.position, 0.0, 0.0,
-            inf, PredictorKind.NOTHING.name.lower(), lacks, here, (), 0.0,
-        )
+        """Decide at instant `now` [s]; see `look`."""
+        question = self.look(now, own, mates, setup, memory)
+        if isinstance(question, PilotDecision):
+            return question
+        view = question.view
+        decision = self._evade(view) if isinstance(view, EvaderView) else self._pursue(view)
+        return self.conclude(question, decision, setup)
 
 
 def _opponent(

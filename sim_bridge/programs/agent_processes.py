@@ -131,13 +131,15 @@ class AgentProcesses:
             "may_arm": flight.ground_start,
             "control_rate_hz": flight.control_rate_hz,
             "prediction": flight.prediction.value,
-            "log": str(self._folder / f"vehicle-{id}.tlog"),
+            "log": f"vehicle-{id}.tlog",
+            "events": f"vehicle-{id}.events",
         }
         path = self._folder / f"agent-{id}.toml"
-        text = run_folder.toml_of({**settings, "log": f"vehicle-{id}.tlog"})
+        text = run_folder.toml_of(settings)
         run_folder.write_bytes(path, text.encode())
         timing = self._folder / f".timing-{id}.json"
         return [
-            sys.executable, "-m", "onboard.cli", "--config", str(path), "--log", settings["log"],
+            sys.executable, "-m", "onboard.cli", "--config", str(path),
+            "--log", str(self._folder / settings["log"]), "--events", str(self._folder / settings["events"]),
             "--timing", str(timing),
         ]  # fmt: skip

@@ -55,12 +55,12 @@ async def test_in_the_log_of_a_reboot_sequence_and_boot_time_begin_anew_and_the_
 ) -> None:
     async with game_of(chase(pursuers=2), folder=tmp_path) as game:
         await under_way(game, 8.0)
-        before = game.agents[PURSUER].craft.telemetry.link_quality
+        before = game.agents[PURSUER].core.vehicle.telemetry.link_quality
         game.expects(PURSUER, "reboot", "supervisor_end")
         autopilot(game, PURSUER).reboot(game.bridge.world.elapsed_ns)
         await game.forward(5.0, until=lambda: "reboot" in game.kinds(PURSUER))
         await game.forward(30.0, until=lambda: flies(game.agents[PURSUER]))
-        assert game.agents[PURSUER].craft.telemetry.link_quality > before - 0.2
+        assert game.agents[PURSUER].core.vehicle.telemetry.link_quality > before - 0.2
         assert flies(game.agents[MATE])
         assert "reboot" not in game.kinds(MATE)
         assert game.phase is Phase.RUNNING
@@ -103,7 +103,7 @@ async def flown(game, stranger: bool) -> list[tuple[float, ...]]:  # type: ignor
     assert flies(agent)
     assert "take_over" not in game.kinds(PURSUER)
     if stranger:
-        assert agent.craft.foreign["foreign_system"] >= 200
+        assert agent.core.vehicle.foreign["foreign_system"] >= 200
         assert autopilot(game, PURSUER).counters["for_others"] >= 200
         assert game.health[PURSUER].counters["foreign_system"] > 100
     return way
@@ -159,7 +159,7 @@ async def test_a_pilot_takes_one_vehicle_out_of_the_game_and_its_setpoints_cease
         choose_mode(game, PURSUER, "ALT_HOLD")
         await game.forward(8.0)
         assert heard == [] or heard[-1] - taken_ns <= 100_000_000
-        assert game.agents[PURSUER].craft.stage is Stage.TAKEN
+        assert game.agents[PURSUER].core.vehicle.stage is Stage.TAKEN
         assert game.health[PURSUER].stage == AgentStage.HANDED_OVER
         assert [event.text for event in game.events if event.id == PURSUER and event.kind == "take_over"]
         assert mode(game, PURSUER) == "ALT_HOLD"

@@ -6,8 +6,8 @@ import asyncio
 
 import pytest
 
-from onboard.agent.agent import Agent
 from onboard.agent.config import AgentConfig
+from onboard.agent.shell import Agent, Equipment
 from onboard.core.math.vectors import Vec
 from onboard.runtime.links import memory_pair
 from onboard.wire.bus.messages import AgentStage, OutcomeResult, Phase, Role
@@ -42,8 +42,8 @@ async def test_a_bus_that_comes_ten_seconds_late_delays_the_game_and_no_more() -
         game.broker.kill()
         await game.forward(10.0)
         for agent in game.agents.values():
-            assert agent.stage == AgentStage.WAITING
-            assert {"the bus", "a game's setup", "a master"} <= set(agent.lacks)
+            assert agent.core.stage == AgentStage.WAITING
+            assert {"the bus", "a game's setup", "a master"} <= set(agent.core.lacks)
         assert game.phase is Phase.STAGING
         game.broker.restore()
         await under_way(game, 0.5)
@@ -57,7 +57,8 @@ async def test_with_two_agents_of_one_id_no_game_begins_until_one_of_them_is_sto
         game.expects(PURSUER, "double_id")
         near, _ = memory_pair("another aircraft")
         config = AgentConfig(id=PURSUER, game=game.game, role=Role.PURSUER)
-        twin = Agent(config, game.clock, [near], game.broker.connect("twin"), nonce=99, log=game.told.append)
+        twin = Agent(config, game.clock, [near], game.broker.connect("twin"),
+                     Equipment(nonce=99, log=game.told.append))  # fmt: skip
         task = asyncio.create_task(twin.run())
         await game.forward(15.0)
         assert game.phase is Phase.STAGING

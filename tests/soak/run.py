@@ -155,8 +155,8 @@ class Soak:
             agent = self.game.agents[id]
             alive = f"killed {id}" not in self._in_force
             flying = alive and flies(agent)
-            kinds = agent.journal.kinds
-            explained = sum(kinds.get(kind, 0) for kind in self.explains) + agent.journal.suppressed
+            kinds = agent.core.journal.kinds
+            explained = sum(kinds.get(kind, 0) for kind in self.explains) + agent.core.journal.suppressed
             if flying or not alive:
                 vehicle.stopped_at, vehicle.explained = -1.0, explained
             elif vehicle.flew:
@@ -189,12 +189,13 @@ class Soak:
     def story(self, id: int, what: str) -> str:
         """What a person needs to know of a failure."""
         agent, autopilot = self.game.agents[id], self.game.bridge.world.vehicles[id].autopilot
-        verdict = agent.acting.verdict
+        verdict = agent.core.flight.output
         last = [line for line in self.game.told if f"vehicle {id} " in line][-12:]
         return (
             f"vehicle {id} {what} at {self.now:.1f} s: mode {autopilot.mode_name}, "
-            f"{'armed' if autopilot.armed else 'disarmed'}, agent {agent.stage}, lacks {agent.lacks}, "
-            f"{agent.craft.stage}, {verdict and verdict.cause!r}, in force {sorted(self._in_force)}\n"
+            f"{'armed' if autopilot.armed else 'disarmed'}, "
+            f"agent {agent.core.stage}, lacks {agent.core.lacks}, "
+            f"{agent.core.vehicle.stage}, {verdict and verdict.cause!r}, in force {sorted(self._in_force)}\n"
             + "\n".join(last)
         )
 

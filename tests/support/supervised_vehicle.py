@@ -6,8 +6,8 @@ from collections.abc import Callable
 from math import atan2, cos, pi, sin
 
 from onboard.core.math.vectors import ZERO, Vec, add, norm, sub
-from onboard.core.safety.policy import Envelope, Fence, Policy, Seen
-from onboard.core.safety.supervisor import Verdict, Watch, supervise
+from onboard.core.safety.policy import Envelope, Fence, Policy, SupervisorInput
+from onboard.core.safety.supervisor import SupervisorOutput, SupervisorState, handed_back, supervise
 
 DT = 0.05
 SQUARE = Fence(((-100.0, -100.0), (100.0, -100.0), (100.0, 100.0), (-100.0, 100.0)), 10.0, 60.0)
@@ -30,16 +30,16 @@ class SupervisedVehicle:
 
     def __init__(self, policy: Policy, position: Vec, velocity: Vec = ZERO, wind: Vec = ZERO) -> None:
         self.policy = policy
-        self.seen = Seen(now=100.0, id=2, position=position, velocity=velocity, wind=wind)
-        self.watch = Watch()
+        self.seen = SupervisorInput(now=100.0, id=2, position=position, velocity=velocity, wind=wind)
+        self.state = SupervisorState()
         self.transitions: list[tuple[str, str]] = []
-        self.verdict: Verdict | None = None
+        self.verdict: SupervisorOutput | None = None
 
-    def step(self, wanted: Vec, **what: object) -> Verdict:
+    def step(self, wanted: Vec, **what: object) -> SupervisorOutput:
         """One control step: supervise, then move for 50 ms."""
         self.seen = self.seen._replace(**what)  # type: ignore[arg-type]
-        verdict = supervise(wanted, self.seen, self.policy, self.watch)
-        self.watch = verdict.watch
+        verdict = supervise(wanted, self.seen, self.policy, self.state)
+        self.state = verdict.state
         self.verdict = verdict
         if verdict.changed:
             self.transitions.append((verdict.action.name, verdict.cause.name))
@@ -48,7 +48,11 @@ class SupervisedVehicle:
         self.seen = self.seen._replace(now=self.seen.now + DT, position=position, velocity=velocity)
         return verdict
 
-    def fly(self, seconds: float, wanted: Vec | Callable[[float], Vec], **what: object) -> Verdict:
+    def hand_back(self) -> None:
+        """Pilot or ground give control back."""
+        self.state = handed_back(self.state)
+
+    def fly(self, seconds: float, wanted: Vec | Callable[[float], Vec], **what: object) -> SupervisorOutput:
         """Let time pass."""
         verdict = None
         for n in range(round(seconds / DT)):
@@ -58,7 +62,7 @@ class SupervisedVehicle:
         assert verdict is not None
         return verdict
 
-    def _answer(self, verdict: Verdict) -> Vec:
+    def _answer(self, verdict: SupervisorOutput) -> Vec:
         e = self.policy.envelope
         ground = verdict.ground if verdict.stream else ZERO
         if e.hovers:
@@ -79,7 +83,7 @@ class SupervisedVehicle:
         return add(Vec(speed * cos(heading), speed * sin(heading), z), self.seen.wind)
 
 
-def assert_within(verdict: Verdict, policy: Policy) -> None:
+def assert_within(verdict: SupervisorOutput, policy: Policy) -> None:
     """The setpoint keeps the limits of speed and climb."""
     e = policy.envelope
     assert norm(verdict.air) <= e.speed_max * (1.0 + 1e-6)

@@ -11,7 +11,7 @@ from collections import Counter
 from collections.abc import Callable, Hashable
 from typing import Any
 
-from onboard.agent.agent import Agent
+from onboard.agent.shell import Agent
 from onboard.autopilot.base import Stage
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec, distance, norm
@@ -167,8 +167,9 @@ def place(game: Rehearsal, id: int) -> Vec:
 
 def flies(agent: Agent) -> bool:
     """Whether the agent's setpoints count and go out."""
-    verdict = agent.acting.verdict
-    return agent.craft.stage is Stage.ACTIVE and verdict is not None and verdict.stream
+    verdict = agent.core.flight.output
+    decided = agent.core.flight.playing and verdict is not None and verdict.stream
+    return agent.core.vehicle.stage is Stage.ACTIVE and decided
 
 
 def setpoints_heard(game: Rehearsal, vehicle: int) -> list[int]:

@@ -17,7 +17,20 @@ class Action(IntEnum):
     CLIP = 1  # the nearest thing that is allowed goes out
     HOLD = 2  # stay here: hover or loiter
     RETURN = 3  # the autopilot's own way home
-    END = 4  # end the stream of setpoints; what that means is the adapter's business
+    LAND = 4  # the autopilot's own landing, where the vehicle is
+    END = 5  # end the stream of setpoints; what that means is the adapter's business
+
+
+class Command(IntEnum):
+    """What the adapter is to do: the supervisor alone says when a vehicle leaves the guided mode, and how."""
+
+    STREAM = 0  # send the setpoint
+    HOVER = 1  # send zero velocity: a multicopter holds under the agent's control
+    RELEASE_TO_HOLD = 2  # leave the vehicle in the autopilot's own mode to hold
+    RELEASE_TO_RETURN = 3  # … to fly home
+    RELEASE_TO_LAND = 4  # … to land
+    END_STREAM = 5  # send nothing more
+    HANDS_OFF = 6  # a pilot flies: ask for nothing
 
 
 class Cause(IntEnum):
@@ -47,6 +60,7 @@ class Cause(IntEnum):
     PILOT = 21
     ORDER = 22
     FAR_OUTSIDE_FENCE = 23
+    OVER = 24
 
 
 class Envelope(NamedTuple):
@@ -102,7 +116,7 @@ class Policy(NamedTuple):
     settle: float = 1.0  # a cause must be gone for so long before its action ends [s]
 
 
-class Seen(NamedTuple):
+class SupervisorInput(NamedTuple):
     """Everything the supervisor looks at in one step. Ages in seconds, of the local monotonic clock."""
 
     now: float  # monotonic [s]
@@ -122,4 +136,4 @@ class Seen(NamedTuple):
     gps_fix: int = 3
     pilot: bool = False  # somebody else changed the autopilot's mode
     order: Action = Action.PASS  # what the ground ordered
-    handed_back: bool = False  # the pilot or the ground gives control back
+    over: bool = False  # what the vehicle was to do is done: nothing is left to fly

@@ -13,8 +13,8 @@ from onboard.core.math.vectors import ZERO, Vec, add, along, clamp, is_finite, n
 from onboard.core.safety.envelope import believable, bounded, slewed
 from onboard.core.safety.fence import brake, keep_height, outside_by, turn
 from onboard.core.safety.field_profile import keep_layer
-from onboard.core.safety.health import Demand, health
-from onboard.core.safety.policy import Action, Cause, Policy, Seen
+from onboard.core.safety.health import HealthAction, health
+from onboard.core.safety.policy import Action, Cause, Command, Policy, SupervisorInput
 from onboard.core.safety.separation import keep_apart
 
 PROTECTIVE = (
@@ -27,7 +27,7 @@ PROTECTIVE = (
 )
 
 
-class Watch(NamedTuple):
+class SupervisorState(NamedTuple):
     """The supervisor's memory from step to step."""
 
     action: Action = Action.PASS  # in force
@@ -41,15 +41,16 @@ class Watch(NamedTuple):
     stamp: float = NEVER  # when that was [s]
 
 
-class Verdict(NamedTuple):
+class SupervisorOutput(NamedTuple):
     """What becomes of one decision."""
 
     action: Action
     cause: Cause
-    stream: bool  # whether `ground` goes out; False: hold, return or end by the autopilot's own modes
+    command: Command  # what the adapter is to do
+    stream: bool  # whether `ground` goes out; False: hold, return, land or end without it
     ground: Vec  # setpoint [m/s; over ground]; ZERO unless `stream`
     air: Vec  # the same relative to the air [m/s]
-    watch: Watch
+    state: SupervisorState
     changed: bool  # a transition happened: publish it
 
 
@@ -60,34 +61,64 @@ class Allowed(NamedTuple):
     cause: Cause
 
 
-def supervise(wanted: Vec, seen: Seen, policy: Policy, watch: Watch) -> Verdict:
+def supervise(wanted: Vec, seen: SupervisorInput, policy: Policy, state: SupervisorState) -> SupervisorOutput:
     """One step: the decision's velocity `wanted` [m/s; relative to the air] through all rules."""
     demand = health(seen, policy, _far_outside(seen, policy))
     allowed = Allowed(ZERO, Cause.NONE)
     wind = ZERO if policy.envelope.hovers or not believable(ZERO, seen.wind) else seen.wind
     if demand.action < Action.HOLD:
         if is_finite(wanted):
-            allowed = _allow(wanted, wind, seen, policy, watch)
+            allowed = _allow(wanted, wind, seen, policy, state)
         if not is_finite(wanted) or not is_finite(allowed.air):
-            demand = Demand(Action.HOLD, Cause.NOT_FINITE, False)
+            demand = HealthAction(Action.HOLD, Cause.NOT_FINITE, False)
         elif allowed.cause != Cause.NONE:
-            demand = Demand(Action.CLIP, allowed.cause, False)
-    after = advance(watch, demand, seen.handed_back, seen.now, policy.settle)
-    changed = after.action != watch.action or after.cause != watch.cause
+            demand = HealthAction(Action.CLIP, allowed.cause, False)
+    after = advance(state, demand, seen.now, policy.settle)
+    changed = after.action != state.action or after.cause != state.cause
     if after.action >= Action.HOLD:
         after = after._replace(demand=ZERO, stamp=NEVER)
-        return Verdict(after.action, after.cause, False, ZERO, ZERO, after, changed)
+        command = commanded(after.action, after.cause, seen.order, policy.envelope.hovers)
+        return SupervisorOutput(after.action, after.cause, command, False, ZERO, ZERO, after, changed)
     after = after._replace(demand=allowed.air, stamp=seen.now)
-    return Verdict(after.action, after.cause, True, add(allowed.air, wind), allowed.air, after, changed)
+    ground = add(allowed.air, wind)
+    return SupervisorOutput(
+        after.action, after.cause, Command.STREAM, True, ground, allowed.air, after, changed
+    )
 
 
-def advance(watch: Watch, demand: Demand, handed_back: bool, now: float, settle: float) -> Watch:
+def commanded(action: Action, cause: Cause, order: Action, hovers: bool) -> Command:
+    """What the adapter is to do where no decision goes out.
+
+    Against a pilot's hands nothing is asked for. An order from the ground leaves the guided mode even where a
+    fault ends the stream: of an order and a graver rule that also leaves it, the graver one is followed.
+    """
+    if cause == Cause.PILOT:
+        return Command.HANDS_OFF
+    release = max(order, action) if action < Action.END else order
+    if release == Action.LAND:
+        return Command.RELEASE_TO_LAND
+    if release == Action.RETURN:
+        return Command.RELEASE_TO_RETURN
+    if release == Action.HOLD:
+        released = order >= Action.HOLD or cause == Cause.OVER or not hovers
+        return Command.RELEASE_TO_HOLD if released else Command.HOVER
+    return Command.END_STREAM
+
+
+def reordered(state: SupervisorState) -> SupervisorState:
+    """The state once another order is given: it need not wait until the last one has settled."""
+    return state._replace(urged=NEVER)
+
+
+def handed_back(state: SupervisorState) -> SupervisorState:
+    """The state once pilot or ground give control back: nothing is latched, and nothing need settle."""
+    return state._replace(floor=Action.PASS, floor_cause=Cause.NONE, urged=NEVER)
+
+
+def advance(state: SupervisorState, demand: HealthAction, now: float, settle: float) -> SupervisorState:
     """The state machine alone: what is in force after a demand."""
-    floor = watch.floor
-    floor_cause = watch.floor_cause
-    if handed_back:
-        floor = Action.PASS
-        floor_cause = Cause.NONE
+    floor = state.floor
+    floor_cause = state.floor_cause
     if demand.latched and demand.action >= floor:
         floor = demand.action
         floor_cause = demand.cause
@@ -97,18 +128,18 @@ def advance(watch: Watch, demand: Demand, handed_back: bool, now: float, settle:
         action = floor
         cause = floor_cause
     urged = now
-    if action < watch.action and not handed_back and now - watch.urged < settle:
-        action = watch.action
-        cause = watch.cause
-        urged = watch.urged
+    if action < state.action and now - state.urged < settle:
+        action = state.action
+        cause = state.cause
+        urged = state.urged
     named = urged
-    other = action == Action.CLIP and watch.action == Action.CLIP and cause != watch.cause
-    graver = cause in PROTECTIVE and watch.cause not in PROTECTIVE
-    if other and not graver and now - watch.named < settle:
-        cause = watch.cause  # one event for a clip of many reasons, not one a step
-        named = watch.named
-    since = watch.since if action == watch.action and cause == watch.cause else now
-    return watch._replace(
+    other = action == Action.CLIP and state.action == Action.CLIP and cause != state.cause
+    graver = cause in PROTECTIVE and state.cause not in PROTECTIVE
+    if other and not graver and now - state.named < settle:
+        cause = state.cause  # one event for a clip of many reasons, not one a step
+        named = state.named
+    since = state.since if action == state.action and cause == state.cause else now
+    return state._replace(
         action=action,
         cause=cause,
         since=since,
@@ -119,20 +150,20 @@ def advance(watch: Watch, demand: Demand, handed_back: bool, now: float, settle:
     )
 
 
-def _allow(wanted: Vec, wind: Vec, seen: Seen, policy: Policy, watch: Watch) -> Allowed:
+def _allow(wanted: Vec, wind: Vec, seen: SupervisorInput, policy: Policy, state: SupervisorState) -> Allowed:
     """Clip by limits, then give way to team mates, then keep inside the fences: the later rule outranks."""
     e = policy.envelope
     age = clamp(seen.telemetry_age, 0.0, policy.telemetry_age)
     position = along(seen.position, seen.velocity, age)
-    running = 0.0 <= seen.now - watch.stamp <= 1.0
-    before = watch.demand if running else bounded(sub(seen.velocity, wind), wanted, e).velocity
+    running = 0.0 <= seen.now - state.stamp <= 1.0
+    before = state.demand if running else bounded(sub(seen.velocity, wind), wanted, e).velocity
     if policy.layered:
         wanted = keep_layer(wanted, position, policy)
     limited = bounded(wanted, before, e)
     cause = limited.cause
     if policy.layered and abs(policy.layer + position.z) > policy.layer_band:
         cause = Cause.LAYER
-    slow = slewed(limited.velocity, before, seen.now - watch.stamp if running else 0.05, e)
+    slow = slewed(limited.velocity, before, seen.now - state.stamp if running else 0.05, e)
     if cause == Cause.NONE:
         cause = slow.cause
     ground = add(bounded(slow.velocity, before, e).velocity, wind)
@@ -156,7 +187,7 @@ def _allow(wanted: Vec, wind: Vec, seen: Seen, policy: Policy, watch: Watch) -> 
     return Allowed(bounded(sub(walls.velocity, wind), before, e).velocity, cause)
 
 
-def _far_outside(seen: Seen, policy: Policy) -> bool:
+def _far_outside(seen: SupervisorInput, policy: Policy) -> bool:
     if not believable(seen.position, seen.velocity):
         return False
     return any(outside_by(seen.position, fence) > policy.fence_far for fence in policy.fences)

@@ -9,6 +9,7 @@ ACTIONS: dict[Action, str] = {
     Action.CLIP: "clip",
     Action.HOLD: "hold",
     Action.RETURN: "return",
+    Action.LAND: "land",
     Action.END: "end",
 }
 
@@ -37,4 +38,5 @@ CAUSES: dict[Cause, str] = {
     Cause.PILOT: "somebody else changed the mode: hands off until control is handed back",
     Cause.ORDER: "ordered from the ground",
     Cause.FAR_OUTSIDE_FENCE: "far outside the fence",
+    Cause.OVER: "the vehicle's part is over",
 }

@@ -89,6 +89,7 @@ class SupervisorAction(Enum):
     CLIP = "clip"  # brought it within the vehicle's limits
     HOLD = "hold"
     RETURN = "return"
+    LAND = "land"
     END = "end"  # stopped sending setpoints
 
 

@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 from msgspec.structs import replace
 
-from onboard.agent.agent import Agent
 from onboard.agent.config import AgentConfig
+from onboard.agent.shell import Agent, Equipment
 from onboard.config.strict import convert
 from onboard.runtime.clock import SkewedClock
 from onboard.runtime.links import memory_pair
@@ -18,7 +18,7 @@ from onboard.runtime.patterns import matches
 from onboard.wire.autopilot_kind import Kind
 from onboard.wire.bus import messages, topics
 from onboard.wire.bus.messages import AgentStage, Master, Role, Track
-from onboard.wire.bus.topics import DECISION, EVADER_BRIEF, MASTER, SETUP, STATE, TRACK, Delivery
+from onboard.wire.bus.topics import DECISION, EVADER_BRIEF, MASTER, SETUP, STATE, TRACK
 from tests.support.small_scenarios import EVADER, MATE, PURSUER, chase
 from tests.support.virtual_time import virtual
 from tests.support.whole_games import flies, game_of, under_way
@@ -36,7 +36,7 @@ async def test_no_agent_listens_to_an_opponents_state_or_to_the_evaders_brief() 
         }
         for id, agent in game.agents.items():
             asked[id] = [listener.pattern for listener in agent.bus.listeners]  # type: ignore[attr-defined]
-            assert sorted(asked[id]) == sorted(agent.table.keys())
+            assert sorted(asked[id]) == sorted(agent.core.bus.keys())
             for secret in secrets[id]:
                 assert not any(matches(pattern, secret) for pattern in asked[id]), (id, secret)
                 for decision in (DECISION.key(game.game, EVADER), DECISION.key(game.game, PURSUER)):
@@ -51,23 +51,21 @@ async def test_the_setpoint_leaves_before_anything_is_published() -> None:
         await under_way(game, 2.0)
         agent = game.agents[PURSUER]
         order: list[str] = []
-        send, publish = agent.radio.send, agent.bus.publish
+        for kind, do in dict(agent._effects).items():
 
-        def sending(message: Any) -> None:
-            order.append(type(message).__name__)
-            send(message)
+            def doing(effect: Any, kind: type = kind, do: Any = do) -> None:
+                order.append(kind.__name__)
+                do(effect)
 
-        def publishing(key: str, payload: bytes, delivery: Delivery) -> None:
-            order.append(key.rsplit("/", 1)[-1])
-            publish(key, payload, delivery)
-
-        agent.radio.send = sending  # type: ignore[method-assign]
-        agent.bus.publish = publishing  # type: ignore[method-assign]
-        for _ in range(20):
-            await game.forward(0.049)
-            order.clear()
-            agent.step(agent.now)
-            assert order[0] == "VelocityTarget"
+            agent._effects[kind] = doing
+        await game.forward(2.0)
+        steps = " ".join(order).split("Beat")[1:-1]
+        assert len(steps) > 30
+        for step in steps:  # from the end of one control step to the end of the next
+            words = step.split()
+            assert words.index("Publish") < words.index("Think")
+            assert "Send" in words[words.index("Think") :]
+            assert "Publish" not in words[words.index("Think") :]
 
 
 @virtual
@@ -90,12 +88,12 @@ async def test_without_an_autopilot_of_its_own_number_it_says_which_it_hears() -
         game.expects(9, "setup_refused")
         other = Agent(
             AgentConfig(id=9, game=game.game), game.clock, [game.links[EVADER]], game.broker.connect("nine"),
-            nonce=9, log=lambda line: None,
+            Equipment(nonce=9, log=lambda line: None),
         )  # fmt: skip
         task = asyncio.create_task(other.run())
         await game.forward(3.0)
-        assert any("system 1" in lack for lack in other.lacks)
-        assert other.craft.counters()["foreign_system"] > 10
+        assert any("system 1" in lack for lack in other.core.lacks)
+        assert other.core.vehicle.counters()["foreign_system"] > 10
         task.cancel()
 
 
@@ -129,8 +127,8 @@ def skewed(offset_s: float) -> Callable[[Any, Any], Agent]:
     def make(game: Any, clock: Any) -> Agent:
         config = AgentConfig(id=PURSUER, game=game.game, take_control=True)
         wrong = SkewedClock(clock, round(offset_s * 1e9))
-        return Agent(config, wrong, [game.links[PURSUER]], game.broker.connect("skewed"), nonce=7,
-                     log=lambda line: None)  # fmt: skip
+        return Agent(config, wrong, [game.links[PURSUER]], game.broker.connect("skewed"),
+                     Equipment(nonce=7, log=lambda line: None))  # fmt: skip
 
     return make
 
@@ -145,9 +143,9 @@ async def test_a_clock_off_is_an_alert_and_far_off_not_ready(offset: float, aler
         agent = skewed(offset)(game, game.clock)
         task = asyncio.create_task(agent.run())
         await game.forward(6.0)
-        assert agent.table.clock.offset_s == pytest.approx(offset, abs=0.02)
-        assert ("clock_offset" in agent.journal.kinds) == alert
-        assert any("a clock that agrees" in lack for lack in agent.lacks) != ready
+        assert agent.core.bus.clock.offset_s == pytest.approx(offset, abs=0.02)
+        assert ("clock_offset" in agent.core.journal.kinds) == alert
+        assert any("a clock that agrees" in lack for lack in agent.core.lacks) != ready
         task.cancel()
 
 
@@ -157,7 +155,7 @@ async def test_a_jump_of_the_clock_makes_it_hold_and_say_so() -> None:
         game.expects(PURSUER, "clock_jump")
         await under_way(game, 3.0)
         agent = game.agents[PURSUER]
-        agent.clock = agent.acting._clock = SkewedClock(game.clock, 700_000_000)  # type: ignore[arg-type]
+        agent.clock = SkewedClock(game.clock, 700_000_000)  # type: ignore[arg-type]
         await game.forward(0.3)
         assert "clock_jump" in game.kinds(PURSUER)
         assert not flies(agent)
@@ -171,12 +169,12 @@ async def test_two_agents_with_one_id_are_reported() -> None:
         near, _ = memory_pair("nowhere")
         twin = Agent(
             AgentConfig(id=PURSUER, game=game.game), game.clock, [near], game.broker.connect("twin"),
-            nonce=99, log=lambda line: None,
+            Equipment(nonce=99, log=lambda line: None),
         )  # fmt: skip
         task = asyncio.create_task(twin.run())
         await game.forward(2.0)
         assert "double_id" in game.kinds(PURSUER)
-        assert twin.journal.kinds["double_id"] == 1
+        assert twin.core.journal.kinds["double_id"] == 1
         task.cancel()
 
 
@@ -192,7 +190,7 @@ async def test_two_masters_are_reported_and_the_first_ones_clock_counts() -> Non
             await game.forward(0.25)
         agent = game.agents[PURSUER]
         assert game.kinds(PURSUER).count("two_masters") == 1
-        assert abs(agent.table.clock.offset_s) < 0.05
+        assert abs(agent.core.bus.clock.offset_s) < 0.05
         assert flies(agent)
 
 
@@ -203,11 +201,11 @@ async def test_a_setup_from_another_than_the_master_is_ignored() -> None:
             game.expects(id, "two_masters")
         await under_way(game, 1.0)
         agent = game.agents[PURSUER]
-        assert agent.table.setup is not None
-        other = replace(agent.table.setup, master="usurper", rules=messages.RulesMessage(99.0, 199.0))
+        assert agent.core.bus.setup is not None
+        other = replace(agent.core.bus.setup, master="usurper", rules=messages.RulesMessage(99.0, 199.0))
         game.bus.publish(SETUP.key(game.game), topics.SETUP.encode(other), SETUP.delivery)
         await game.forward(1.0)
-        assert agent.table.setup.master == "sim-bridge"
+        assert agent.core.bus.setup.master == "sim-bridge"
         assert "two_masters" in game.kinds(PURSUER)
         assert flies(agent)
 
@@ -219,7 +217,7 @@ async def test_a_bus_that_dies_and_returns_in_flight() -> None:
         agent = game.agents[PURSUER]
         game.broker.kill()
         await game.forward(4.0)
-        assert agent.lacks.count("the bus") == 1
+        assert agent.core.lacks.count("the bus") == 1
         game.broker.restore()
         await game.forward(3.0)
         assert game.kinds(PURSUER).count("bus") == 2
@@ -233,7 +231,7 @@ async def test_a_bus_that_comes_after_the_agent() -> None:
         agent = game.start_agent(PURSUER)
         game.start_agent(EVADER)
         await game.forward(3.0)
-        assert "the bus" in agent.lacks
+        assert "the bus" in agent.core.lacks
         game.broker.restore()
         await under_way(game, 2.0)
         assert flies(agent)
@@ -253,10 +251,10 @@ async def test_garbage_on_the_bus_is_counted_by_cause_and_changes_nothing() -> N
         bus.publish(TRACK.key(game.game, MATE), topics.TRACK.encode(foreign), TRACK.delivery)
         bus.publish(SETUP.key(game.game), b"\x92\x63\x90", SETUP.delivery)
         await game.forward(1.0)
-        assert agent.table.drops["undecodable"] == 1
-        assert agent.table.drops["not_finite"] == 1
-        assert agent.table.drops["wrong_id"] == 1
-        assert agent.table.drops["schema"] == 1
+        assert agent.core.bus.drops["undecodable"] == 1
+        assert agent.core.bus.drops["not_finite"] == 1
+        assert agent.core.bus.drops["wrong_id"] == 1
+        assert agent.core.bus.drops["schema"] == 1
         assert game.health[PURSUER].counters["wrong_id"] == 1
         assert flies(agent)
 

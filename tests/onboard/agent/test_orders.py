@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from onboard.agent.command_book import Orders
-from onboard.autopilot.base import ReleaseMode, Stage
+from onboard.agent.core.command_book import Orders
+from onboard.autopilot.base import Stage
 from onboard.core.safety.policy import Action
 from onboard.game.scenario import Kind
-from onboard.wire.bus.messages import AgentStage, CommandKind, CommandState
+from onboard.wire.bus.messages import AgentStage, CommandKind, CommandState, Phase
 from tests.support.small_scenarios import PURSUER, chase, lossy
 from tests.support.virtual_time import virtual
 from tests.support.whole_games import (
@@ -47,6 +47,21 @@ async def test_an_order_in_flight_is_pending_then_confirmed_by_the_autopilots_mo
         assert game.health[PURSUER].stage == AgentStage.HELD
         await game.forward(5.0)
         assert mode(game, PURSUER) == WORDS[kind][what]
+
+
+@virtual
+async def test_an_order_to_land_is_that_for_the_supervisor_too_and_before_the_game_as_well() -> None:
+    async with game_of(chase()) as game:
+        await game.forward(20.0, until=lambda: mode(game, PURSUER) == "LOITER")
+        await game.forward(1.0)
+        assert game.phase is Phase.STAGING
+        await order(game, PURSUER, command(CommandKind.LAND))
+        await game.forward(2.0, until=lambda: mode(game, PURSUER) == "LAND")
+        assert "supervisor_land" in game.kinds(PURSUER)
+        assert "supervisor_return" not in game.kinds(PURSUER)
+        await game.forward(1.2)
+        reply = await order(game, PURSUER, command(CommandKind.LAND))
+        assert reply.state is CommandState.CONFIRMED
 
 
 @virtual
@@ -121,15 +136,15 @@ async def test_a_later_order_supersedes_an_open_one_and_bytes_that_are_none_are_
         await game.forward(1.5)
         assert mode(game, PURSUER) == "RTL"
         agent = game.agents[PURSUER]
-        assert b"refused" in agent._command(b"\x00garbage")
-        assert agent.table.drops["undecodable"] == 1
+        assert b"refused" in agent._request(b"\x00garbage")
+        assert agent.core.bus.drops["undecodable"] == 1
     assert autopilot(game, PURSUER) is not None
 
 
 def test_what_is_not_obeyed_confirms_nothing() -> None:
-    orders = Orders(ReleaseMode.HOLD)
+    orders = Orders(Action.HOLD)
     entry, new = orders.give(command(CommandKind.HOLD), "no autopilot")
-    assert (entry.state, new, orders.action) == (CommandState.REFUSED, True, Action.PASS)
+    assert (entry.state, new, orders.order) == (CommandState.REFUSED, True, Action.PASS)
     assert orders.review(Stage.LEFT) is None
     for n in range(200):
         orders.give(command(CommandKind.HOLD, f"n-{n}"), "")

@@ -44,7 +44,7 @@ def test_nothing_heavy_is_on_the_agents_import_path() -> None:
     )
     run = program(code)
     modules = json.loads(run.stdout)
-    assert "onboard.agent.agent" in modules
+    assert "onboard.agent.shell" in modules
     assert [name for name in modules if name.startswith(HEAVY)] == []
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from onboard.agent.core.events import Think
 from onboard.autopilot.base import Stage
 from onboard.game.scenario import Kind
 from onboard.runtime.impairment import CLEAR, CUT
@@ -94,7 +95,7 @@ async def test_without_the_masters_resume_an_agent_that_comes_late_does_not_fly(
         agent = game.start_agent(PURSUER)
         await game.forward(5.0)
         assert not flies(agent)
-        assert "the master's resume" in agent.lacks
+        assert "the master's resume" in agent.core.lacks
         assert game.health[PURSUER].stage == AgentStage.WAITING
         assert "late" in game.kinds(PURSUER)
 
@@ -107,10 +108,10 @@ async def test_when_a_pilot_changes_the_mode_the_agent_stops_at_once_and_says_so
         await under_way(game)
         agent = game.agents[PURSUER]
         choose_mode(game, PURSUER, "POSCTL" if kind is Kind.PX4 else HOLD[kind])
-        await game.forward(1.5, until=lambda: agent.craft.stage is Stage.TAKEN)
-        sent = agent.craft.sent_at
+        await game.forward(1.5, until=lambda: agent.core.vehicle.stage is Stage.TAKEN)
+        sent = agent.core.vehicle.sent_at
         await game.forward(10.0)
-        assert agent.craft.sent_at == sent
+        assert agent.core.vehicle.sent_at == sent
         assert mode(game, PURSUER) != GUIDED[kind]
         assert game.health[PURSUER].stage == AgentStage.HANDED_OVER
         assert {"take_over", "supervisor_end"} <= set(game.kinds(PURSUER))
@@ -139,7 +140,7 @@ async def test_without_leave_to_take_control_the_agent_waits_for_a_pilot() -> No
     async with game_of(chase(), configure=quiet) as game:
         await under_way(game)
         agent = game.agents[PURSUER]
-        assert agent.craft.stage is Stage.IDLE
+        assert agent.core.vehicle.stage is Stage.IDLE
         assert mode(game, PURSUER) == "LOITER"
         choose_mode(game, PURSUER, "GUIDED")
         await game.forward(3.0, until=lambda: flies(agent))
@@ -155,9 +156,35 @@ async def test_a_dry_run_decides_and_publishes_but_sends_nothing() -> None:
         vehicle.autopilot.receive = lambda now, data, peer: sent.append(data) or receive(now, data, peer)  # type: ignore[method-assign,func-returns-value]
         await under_way(game)
         agent = game.agents[PURSUER]
-        assert agent.acting.thought is not None
-        assert agent.acting.thought.decides
+        assert agent.core.flight.decision is not None
+        assert agent.core.flight.decision.decides
         assert sent == []
+
+
+@virtual
+async def test_a_battery_that_is_low_while_the_vehicle_waits_under_control_sends_it_home() -> None:
+    async with game_of(chase()) as game:
+        await game.forward(
+            30.0, until=lambda: mode(game, PURSUER) == "GUIDED" and game.phase is Phase.READY
+        )
+        autopilot(game, PURSUER).set_battery(0.1)
+        await game.forward(4.0, until=lambda: mode(game, PURSUER) == "RTL")
+        assert "supervisor_return" in game.kinds(PURSUER)
+
+
+@virtual
+async def test_a_strategy_that_never_answers_ends_the_stream() -> None:
+    async with game_of(chase()) as game:
+        game.expects(PURSUER, "strategy", "supervisor_end")
+        await under_way(game, 3.0)
+        agent = game.agents[PURSUER]
+        agent._effects[Think] = lambda effect: None
+        begun = agent.now
+        await game.forward(1.0, until=lambda: not flies(agent))
+        assert agent.core.vehicle.sent_at - begun <= 0.3
+        assert "supervisor_end" in game.kinds(PURSUER)
+        await game.forward(5.0)
+        assert speed(game, PURSUER) < 0.3
 
 
 @virtual

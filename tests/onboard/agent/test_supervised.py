@@ -7,8 +7,8 @@ from itertools import pairwise
 
 import pytest
 
-from onboard.agent.agent import Agent
 from onboard.agent.config import AgentConfig
+from onboard.agent.shell import Agent, Equipment
 from onboard.core.math.vectors import distance
 from onboard.core.safety.policy import Cause
 from onboard.game.scenario import Kind, SensorSpec
@@ -32,8 +32,8 @@ from tests.support.whole_games import (
 
 def cause(agent: Agent) -> Cause:
     """Why the supervisor does what it does."""
-    assert agent.acting.verdict is not None
-    return agent.acting.verdict.cause
+    assert agent.core.flight.output is not None
+    return agent.core.flight.output.cause
 
 
 @virtual
@@ -79,16 +79,15 @@ async def test_a_strategy_that_fails_ends_the_stream_within_200_ms_and_the_autop
         game.expects(PURSUER, "strategy", "supervisor_end")
         await under_way(game, 3.0)
         agent = game.agents[PURSUER]
-        flying = agent.acting.flying
-        assert flying is not None
 
         def fail(view: object) -> None:
             raise ZeroDivisionError("a plug-in of somebody's")
 
-        flying.pilot._pursue = fail  # type: ignore[assignment]
+        assert agent.thinker.strategies
+        agent.thinker.strategies = dict.fromkeys(agent.thinker.strategies, fail)  # type: ignore[arg-type]
         begun = agent.now
         await game.forward(1.0, until=lambda: not flies(agent))
-        assert agent.craft.sent_at - begun <= 0.2 + 1e-6
+        assert agent.core.vehicle.sent_at - begun <= 0.2 + 1e-6
         assert cause(agent) is Cause.STRATEGY
         await game.forward(5.0)
         assert speed(game, PURSUER) < 0.3
@@ -101,9 +100,7 @@ async def test_a_plane_whose_strategy_fails_is_told_to_loiter() -> None:
     async with game_of(chase(Kind.ARDUPLANE)) as game:
         game.expects(PURSUER, "strategy", "supervisor_end")
         await under_way(game, 3.0)
-        flying = game.agents[PURSUER].acting.flying
-        assert flying is not None
-        flying.pilot._pursue = None  # type: ignore[assignment]
+        game.agents[PURSUER].thinker.strategies.clear()
         await game.forward(3.0, until=lambda: mode(game, PURSUER) == "LOITER")
 
 
@@ -127,18 +124,18 @@ async def test_with_two_links_the_second_takes_over_and_no_frame_counts_twice() 
         second = Impaired(far, CLEAR, generator(1, "second"))
         config = AgentConfig(id=PURSUER, game=game.game, take_control=True)
         agent = Agent(
-            config, game.clock, [game.links[PURSUER], second], game.broker.connect("two"), nonce=5,
-            log=lambda line: None,
+            config, game.clock, [game.links[PURSUER], second], game.broker.connect("two"),
+            Equipment(nonce=5, log=lambda line: None),
         )  # fmt: skip
         task = asyncio.create_task(agent.run())
         await under_way(game, 3.0)
         assert flies(agent)
-        assert agent.craft.position_rate.value == pytest.approx(20.0, abs=1.5)
+        assert agent.core.vehicle.position_rate.value == pytest.approx(20.0, abs=1.5)
         game.impair(PURSUER, CUT)
         await game.forward(3.0)
         assert flies(agent)
-        assert agent.radio.active == "second/b"
-        assert agent.journal.kinds["link"] == 1
+        assert agent.core.radio.active == "second/b"
+        assert agent.core.journal.kinds["link"] == 1
         second.change(CUT)
         await game.forward(1.0)
         assert not flies(agent)

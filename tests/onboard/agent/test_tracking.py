@@ -6,10 +6,11 @@ import asyncio
 
 import pytest
 
-from onboard.agent.agent import Agent
 from onboard.agent.config import AgentConfig, load
+from onboard.agent.shell import Agent, Equipment
 from onboard.config.strict import ConfigError
 from onboard.core.math.vectors import Vec, distance
+from onboard.game.route_file import load_route
 from onboard.game.scenario import Kind
 from onboard.wire.bus.messages import Role
 from tests.support.small_scenarios import EVADER, chase
@@ -42,17 +43,16 @@ async def test_a_route_is_flown_in_time_and_the_vehicle_holds_at_its_end(
     file.write_text(text, encoding="utf-8")
     async with game_of(chase(kind), agents=False) as game:
         config = AgentConfig(id=EVADER, role=Role.TRACKER, route=str(file), take_control=True, game=game.game)
-        agent = Agent(
-            config, game.clock, [game.links[EVADER]], game.broker.connect("t"), nonce=3, log=lambda line: None
-        )
+        equipment = Equipment(nonce=3, log=lambda line: None, route=load_route(file))
+        agent = Agent(config, game.clock, [game.links[EVADER]], game.broker.connect("t"), equipment)
         task = asyncio.create_task(agent.run())
         scale = 1.0 if kind is Kind.ARDUCOPTER else 10.0
         await game.forward(5.0, until=lambda: flies(agent))
-        await game.forward(40.0, until=lambda: "waypoint" in agent.journal.kinds)
+        await game.forward(40.0, until=lambda: "waypoint" in agent.core.journal.kinds)
         assert distance(place(game, EVADER), Vec(120.0 * scale, 0.0, -120.0)) < near
-        assert agent.acting.thought is not None
-        assert agent.acting.thought.level == "tactical"
-        await game.forward(45.0, until=lambda: agent.acting.over)
+        assert agent.core.flight.decision is not None
+        assert agent.core.flight.decision.level == "tactical"
+        await game.forward(45.0, until=lambda: agent.core.part.state(0).over)
         assert distance(place(game, EVADER), Vec(120.0 * scale, 120.0 * scale, -120.0)) < near
         await game.forward(3.0, until=lambda: mode(game, EVADER) == "LOITER")
         task.cancel()
@@ -69,9 +69,8 @@ async def test_a_pilot_takes_the_tracker_over_and_gives_it_back(
         config = AgentConfig(
             id=EVADER, role=Role.TRACKER, route=str(file), take_control=True, game=game.game
         )
-        agent = Agent(
-            config, game.clock, [game.links[EVADER]], game.broker.connect("t"), nonce=3, log=lambda line: None
-        )
+        equipment = Equipment(nonce=3, log=lambda line: None, route=load_route(file))
+        agent = Agent(config, game.clock, [game.links[EVADER]], game.broker.connect("t"), equipment)
         task = asyncio.create_task(agent.run())
         await game.forward(5.0, until=lambda: flies(agent))
         choose_mode(game, EVADER, "LOITER")

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from onboard.core.math.states import Mate
 from onboard.core.math.vectors import Vec
 from onboard.core.safety.fence import fits, inside, outside_by
-from onboard.core.safety.health import Demand
-from onboard.core.safety.policy import Action, Cause, Fence, Seen
-from onboard.core.safety.supervisor import Watch, advance, supervise
+from onboard.core.safety.health import HealthAction
+from onboard.core.safety.policy import Action, Cause, Fence, SupervisorInput
+from onboard.core.safety.supervisor import SupervisorState, advance, handed_back, supervise
 from tests.support.supervised_vehicle import COPTER, FIELD, PLANE, SupervisedVehicle, assert_within
 
 anything = st.floats(allow_nan=True, allow_infinity=True)
@@ -22,7 +22,7 @@ sane_vec = st.builds(Vec, sane, sane, sane)
 vecs = st.one_of(any_vec, sane_vec)
 mates = st.lists(st.builds(Mate, st.integers(1, 9), vecs, vecs, anything), max_size=3).map(tuple)
 seens = st.builds(
-    Seen,
+    SupervisorInput,
     now=st.floats(0.0, 1e6),
     id=st.integers(1, 9),
     position=vecs,
@@ -40,11 +40,11 @@ seens = st.builds(
 @settings(max_examples=1500, deadline=None)
 @given(wanted=vecs, seen=seens, copter=st.booleans(), before=vecs, gap=anything)
 def test_no_setpoint_leaves_that_is_not_a_number_or_outside_the_limits(
-    wanted: Vec, seen: Seen, copter: bool, before: Vec, gap: float
+    wanted: Vec, seen: SupervisorInput, copter: bool, before: Vec, gap: float
 ) -> None:
     policy = (COPTER if copter else PLANE)._replace(separation=10.0)
     demand = before if all(map(isfinite, before)) else Vec(1.0, 0.0, 0.0)
-    watch = Watch(demand=demand, stamp=seen.now - abs(gap))
+    watch = SupervisorState(demand=demand, stamp=seen.now - abs(gap))
     verdict = supervise(wanted, seen, policy, watch)
     assert all(map(isfinite, (*verdict.ground, *verdict.air)))
     if verdict.stream:
@@ -95,24 +95,24 @@ def test_no_plane_leaves_its_fence_in_wind_whatever_its_strategy_wants(
 
 
 demands = st.builds(
-    lambda action, cause, latched: Demand(action, cause, latched and action >= Action.HOLD),
+    lambda action, cause, latched: HealthAction(action, cause, latched and action >= Action.HOLD),
     st.sampled_from(Action), st.sampled_from(Cause), st.booleans(),
 )
 
 
 @settings(max_examples=300, deadline=None)
 @given(st.lists(demands, min_size=1, max_size=40))
-def test_nothing_milder_than_the_demand_is_ever_in_force_and_latches_hold(story: list[Demand]) -> None:
-    watch = Watch()
+def test_nothing_milder_than_the_demand_is_ever_in_force_and_latches_hold(story: list[HealthAction]) -> None:
+    watch = SupervisorState()
     now = 0.0
     floor = Action.PASS
     for demand in story:
         now += 0.05
-        watch = advance(watch, demand, False, now, 1.0)
+        watch = advance(watch, demand, now, 1.0)
         floor = max(floor, demand.action) if demand.latched else floor
         assert watch.action >= demand.action
         assert watch.action >= floor
-    calm = advance(watch, Demand(Action.PASS, Cause.NONE, False), True, now + 0.05, 1.0)
+    calm = advance(handed_back(watch), HealthAction(Action.PASS, Cause.NONE, False), now + 0.05, 1.0)
     assert calm.action == Action.PASS
 
 

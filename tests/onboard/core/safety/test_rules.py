@@ -8,7 +8,8 @@ import pytest
 
 from onboard.core.math.states import Mate
 from onboard.core.math.vectors import ZERO, Vec, distance, norm
-from onboard.core.safety.policy import Action, Cause
+from onboard.core.safety.policy import Action, Cause, Command
+from onboard.core.safety.supervisor import commanded, reordered
 from onboard.core.safety.words import ACTIONS, CAUSES
 from tests.support.paths import ROOT
 from tests.support.supervised_vehicle import COPTER, PLANE, SupervisedVehicle
@@ -115,7 +116,8 @@ def test_far_outside_the_fence_the_autopilot_flies_home_until_handed_back() -> N
     assert flight.step(NORTH).action == Action.RETURN
     flight.seen = flight.seen._replace(position=Vec(0.0, 0.0, -30.0))
     assert flight.fly(10.0, NORTH).action == Action.RETURN
-    assert flight.fly(0.1, NORTH, handed_back=True).stream
+    flight.hand_back()
+    assert flight.fly(0.1, NORTH).stream
 
 
 def test_two_multicopters_that_fly_at_each_other_stay_apart() -> None:
@@ -157,6 +159,7 @@ def test_a_quiet_team_mate_gets_twice_the_distance() -> None:
         ({"gps_fix": 2}, Action.END, Cause.GPS),
         ({"order": Action.HOLD}, Action.HOLD, Cause.ORDER),
         ({"order": Action.RETURN}, Action.RETURN, Cause.ORDER),
+        ({"order": Action.LAND}, Action.LAND, Cause.ORDER),
     ],
 )
 def test_a_fault_takes_hold_at_once_and_leaves_a_second_after_it_is_gone(
@@ -194,7 +197,8 @@ def test_when_a_pilot_takes_over_hands_go_off_until_he_hands_back() -> None:
     assert flight.step(NORTH, pilot=True).action == Action.END
     verdict = flight.fly(30.0, NORTH, pilot=False)
     assert (verdict.action, verdict.cause) == (Action.END, Cause.PILOT)
-    assert flight.step(NORTH, handed_back=True).stream
+    flight.hand_back()
+    assert flight.step(NORTH).stream
 
 
 def test_a_graver_fault_on_top_and_gone_again_leaves_the_latched_one_in_force() -> None:
@@ -229,3 +233,29 @@ def test_the_document_names_every_cause() -> None:
     page = (ROOT / "docs" / "safety.md").read_text(encoding="utf-8")
     rows = {line.split("|")[1].strip() for line in page.splitlines() if line.startswith("|")}
     assert {cause.name for cause in Cause if cause != Cause.NONE} <= rows
+
+
+@pytest.mark.parametrize(
+    ("action", "cause", "order", "copter_does", "plane_does"),
+    [
+        (Action.HOLD, Cause.TRACKS, Action.PASS, Command.HOVER, Command.RELEASE_TO_HOLD),
+        (Action.HOLD, Cause.ORDER, Action.HOLD, Command.RELEASE_TO_HOLD, Command.RELEASE_TO_HOLD),
+        (Action.RETURN, Cause.BATTERY, Action.HOLD, Command.RELEASE_TO_RETURN, Command.RELEASE_TO_RETURN),
+        (Action.LAND, Cause.ORDER, Action.LAND, Command.RELEASE_TO_LAND, Command.RELEASE_TO_LAND),
+        (Action.END, Cause.EKF, Action.PASS, Command.END_STREAM, Command.END_STREAM),
+        (Action.END, Cause.EKF, Action.LAND, Command.RELEASE_TO_LAND, Command.RELEASE_TO_LAND),
+        (Action.END, Cause.PILOT, Action.LAND, Command.HANDS_OFF, Command.HANDS_OFF),
+    ],
+)
+def test_what_the_adapter_is_commanded_where_no_decision_goes_out(
+    action: Action, cause: Cause, order: Action, copter_does: Command, plane_does: Command
+) -> None:
+    assert commanded(action, cause, order, hovers=True) is copter_does
+    assert commanded(action, cause, order, hovers=False) is plane_does
+
+
+def test_a_milder_order_that_follows_a_graver_one_counts_at_once() -> None:
+    flight = copter()
+    assert flight.step(NORTH, order=Action.LAND).command is Command.RELEASE_TO_LAND
+    flight.state = reordered(flight.state)
+    assert flight.step(NORTH, order=Action.HOLD).command is Command.RELEASE_TO_HOLD

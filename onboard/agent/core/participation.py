@@ -8,7 +8,7 @@ from onboard.wire.bus.messages import Phase, PhaseChange
 JUST_STARTED_S = 1.0  # who first hears of a running game this soon after t₀ was there for the start
 
 
-class Part:
+class Participation:
     """Follows the phases. An agent that was not there at the start acts only after the master's resume."""
 
     def __init__(self, id: int) -> None:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from onboard.agent.bus_view import Table
-from onboard.agent.vehicle_link import Craft
+from onboard.agent.core.bus_view import BusView
+from onboard.agent.core.vehicle_link import VehicleLink
 from onboard.autopilot.health import Thresholds, read
 from onboard.core.math.constants import NEVER
 from onboard.core.safety.policy import Policy
@@ -12,14 +12,14 @@ from onboard.wire.bus.messages import Role
 MASTER_S = 5.0  # a master silent for longer counts as lacking
 
 
-def vehicle_lacks(now: float, craft: Craft, policy: Policy) -> list[str]:
+def vehicle_lacks(now: float, vehicle: VehicleLink, policy: Policy) -> list[str]:
     """What is missing of the vehicle itself."""
     lacks: list[str] = []
-    t = craft.telemetry
-    if craft.adapter is None:
-        others = sorted(craft.heard_systems)
+    t = vehicle.telemetry
+    if vehicle.adapter is None:
+        others = sorted(vehicle.heard_systems)
         heard = f" (heard: system {', '.join(map(str, others))})" if others else ""
-        return [f"an autopilot: {craft.refusal}" if craft.refusal else f"an autopilot{heard}"]
+        return [f"an autopilot: {vehicle.refusal}" if vehicle.refusal else f"an autopilot{heard}"]
     fresh = now - t.position_at <= policy.telemetry_age
     limits = Thresholds(
         heartbeat_age=policy.heartbeat_alone if fresh else policy.heartbeat_age,
@@ -34,20 +34,20 @@ def vehicle_lacks(now: float, craft: Craft, policy: Policy) -> list[str]:
 
 
 def lacking(
-    now: float, craft: Craft, table: Table, policy: Policy, role: Role, why_not: str, connected: bool
+    now: float, vehicle: VehicleLink, bus: BusView, policy: Policy, role: Role, why_not: str
 ) -> tuple[str, ...]:
     """What is missing at `now` [s, monotonic]; `why_not`: why the setup at hand was refused."""
-    lacks = vehicle_lacks(now, craft, policy)
-    if not connected:
+    lacks = vehicle_lacks(now, vehicle, policy)
+    if not bus.connected:
         lacks.append("the bus")
-    if table.setup is None:
+    if bus.setup is None:
         lacks.append("a game's setup")
     elif why_not:
         lacks.append(f"a setup that fits: {why_not}")
-    if table.master_at == NEVER or now - table.master_at > MASTER_S:
+    if bus.master_at == NEVER or now - bus.master_at > MASTER_S:
         lacks.append("a master")
-    elif not table.clock.ready:
-        lacks.append(f"a clock that agrees with the master's ({table.clock.offset_s * 1e3:+.0f} ms)")
-    if role is Role.EVADER and table.setup is not None and not table.briefed:
+    elif not bus.clock.ready:
+        lacks.append(f"a clock that agrees with the master's ({bus.clock.offset_s * 1e3:+.0f} ms)")
+    if role is Role.EVADER and bus.setup is not None and not bus.briefed:
         lacks.append("the evader's brief")
     return tuple(lacks)

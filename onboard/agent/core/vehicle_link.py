@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections import Counter
+from enum import Enum
 
 from onboard.agent.config import AgentConfig
-from onboard.agent.journal import Journal
-from onboard.agent.mavlink_radio import Radio
-from onboard.agent.telemetry_requests import Requests
+from onboard.agent.core.child_courier import ChildCourier
+from onboard.agent.core.events import Outbox
+from onboard.agent.core.journal import Journal
+from onboard.agent.core.mavlink_radio import Radio
+from onboard.agent.core.telemetry_requests import Requests
 from onboard.autopilot.base import Adapter, Envelope, Refusal, Setpoint, Stage, Telemetry
 from onboard.autopilot.choose import AdapterOptions, adapter_for
-from onboard.autopilot.mavsdk import MavsdkAdapter
 from onboard.autopilot.telemetry_state import Observer
 from onboard.core.math.constants import NEVER, NS_PER_S
 from onboard.wire.bus.messages import Severity
@@ -30,6 +32,25 @@ from onboard.wire.mavlink.values import (
 
 RATE_WINDOW_S = 2.0  # over which rates are measured
 _SEVERITIES = {"info": Severity.INFO, "warning": Severity.WARNING, "error": Severity.ERROR}
+
+
+class Control(Enum):
+    """Whether control of the vehicle changed hands in a step."""
+
+    SAME = "same"
+    TAKEN = "taken"  # somebody else changed the autopilot's mode
+    HANDED_BACK = "handed back"  # a pilot chose the guided mode: the agent flies again
+    RESTARTED = "restarted"  # what looked like a take-over was the autopilot starting again
+
+
+def _change(before: Stage, after: Stage) -> Control:
+    if after is Stage.TAKEN and before is not Stage.TAKEN:
+        return Control.TAKEN
+    if after is Stage.ACTIVE and before in (Stage.TAKEN, Stage.LEFT):
+        return Control.HANDED_BACK
+    if after is Stage.IDLE and before is Stage.TAKEN:
+        return Control.RESTARTED
+    return Control.SAME
 
 
 class Rate:
@@ -54,10 +75,10 @@ class Rate:
         return self.value
 
 
-class Craft:
+class VehicleLink:
     """One vehicle and its autopilot. Time is an argument throughout."""
 
-    def __init__(self, config: AgentConfig, radio: Radio, journal: Journal) -> None:
+    def __init__(self, config: AgentConfig, radio: Radio, journal: Journal, out: Outbox) -> None:
         self.config = config
         self.radio = radio
         self.observer = Observer(config.id)
@@ -68,12 +89,10 @@ class Craft:
         self.heard_systems: dict[int, float] = {}
         self.position_rate, self.setpoint_rate = Rate(), Rate()
         self.sent_at = NEVER  # of the last setpoint [s]
-        self.handed_back = False  # a pilot gave control back since somebody last looked
-        self.rebooted = False  # what looked like a take-over was a restart, since somebody last looked
-        self.taken = False  # somebody else took it since somebody last looked
         self.version: Version | None = None  # of the autopilot, once it has said so
         self.to = Target(config.id)
         self._journal = journal
+        self._child = ChildCourier(out)
         self._heartbeat: Heartbeat | None = None
         self._envelope = Envelope()
         self._asking: Requests | None = None
@@ -148,11 +167,11 @@ class Craft:
             self.adapter = None
             self._discover(self._heartbeat)
 
-    def step(self, now: float, setpoint: Setpoint | None) -> None:
-        """Send what the adapter wants sent, and publish its notes."""
+    def step(self, now: float, setpoint: Setpoint | None) -> Control:
+        """Send what the adapter wants sent, and note what it says; gives whether control changed hands."""
         adapter = self.adapter
         if adapter is None:
-            return
+            return Control.SAME
         before = adapter.stage
         step = adapter.step(now, self.telemetry, setpoint)
         self._stepped_at = now
@@ -163,28 +182,24 @@ class Craft:
             self.sent_at = now
         for note in step.notes:
             self._journal.say(_SEVERITIES.get(note.severity, Severity.INFO), note.kind, note.text)
-        if adapter.stage is Stage.TAKEN and before is not Stage.TAKEN:
-            self.taken = True
-        if adapter.stage is Stage.ACTIVE and before in (Stage.TAKEN, Stage.LEFT):
-            self.handed_back = True
-        if adapter.stage is Stage.IDLE and before is Stage.TAKEN:
-            self.rebooted = True  # it was no pilot: the autopilot had started again
+        return _change(before, adapter.stage)
 
     def chores(self, now: float) -> None:
         """Everything that is due beside setpoints: requests, and the adapter's own retries."""
-        if self.radio.took_over:
-            self.radio.took_over = False
-            self._journal.warning("link", f"{self.radio.active} takes over")
-            if self._asking is not None:
-                self._asking.again()
         if self._asking is not None:
             for message in self._asking.due(now, self.telemetry.link_quality):
                 self.radio.send(message)
         self.position_rate.review(now)
         self.setpoint_rate.review(now)
 
-    def idle(self, now: float) -> float:
-        """Since the adapter was last stepped [s]."""
+    def other_link(self) -> None:
+        """Another link is used from now on: what was asked for on the last one is asked for again."""
+        self._journal.warning("link", f"{self.radio.active} takes over")
+        if self._asking is not None:
+            self._asking.again()
+
+    def since_step(self, now: float) -> float:
+        """Time since the adapter was last stepped [s]."""
         return now - self._stepped_at
 
     def counters(self) -> dict[str, int]:
@@ -194,10 +209,13 @@ class Craft:
             counts["timesync_round_trip_us"] = self._asking.clock.offset().round_trip_ns // 1000
         return counts
 
-    def close(self) -> None:
-        """End what an adapter has running beside it."""
-        if isinstance(self.adapter, MavsdkAdapter):
-            self.adapter.close()
+    def child_said(self, line: bytes) -> None:
+        """A child process of the adapter's wrote a line."""
+        self._child.heard(line)
+
+    def child_exited(self) -> None:
+        """A child process of the adapter's has ended."""
+        self._child.exited()
 
     def heartbeat(self) -> None:
         """Our own heartbeat, at 1 Hz."""
@@ -219,6 +237,7 @@ class Craft:
                 self.config.hold_mode,
                 self.config.mavsdk,
                 self._envelope,
+                self._child.launch,
             ),
             self.parameters,
         )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import OrderedDict
 
-from onboard.autopilot.base import ReleaseMode, Stage
+from onboard.autopilot.base import Stage
 from onboard.core.safety.policy import Action
 from onboard.wire.bus.messages import Command, CommandKind, CommandState
 
@@ -21,26 +21,15 @@ class Entry:
 
 
 class Orders:
-    """Who ordered what, and whether the autopilot reports it.
+    """Who ordered what, and whether the autopilot reports it."""
 
-    `way` is what is in force: how the vehicle has to leave the agent's control, or None.
-    """
-
-    def __init__(self, abort: ReleaseMode) -> None:
-        self.way: ReleaseMode | None = None
+    def __init__(self, abort: Action) -> None:
+        self.order = Action.PASS  # in force: HOLD, RETURN, LAND, or PASS for none
         self.granted = False  # a start or resume gave the agent control
-        self.resumed = False  # set by a resume until the supervisor has heard of it
         self.obeyed = ""
         self._abort = abort
         self._known: OrderedDict[str, Entry] = OrderedDict()
         self._open: Entry | None = None
-
-    @property
-    def action(self) -> Action:
-        """The order in force, as the supervisor knows it."""
-        if self.way is None:
-            return Action.PASS
-        return Action.HOLD if self.way is ReleaseMode.HOLD else Action.RETURN
 
     def give(self, command: Command, refusal: str) -> tuple[Entry, bool]:
         """Take a command; `refusal` says why it cannot be obeyed now ('' if it can). True for a new one."""
@@ -60,14 +49,13 @@ class Orders:
         self.obeyed = command.sender
         kind = command.kind
         if kind in (CommandKind.START, CommandKind.RESUME):
-            self.way = None
+            self.order = Action.PASS
             self.granted = True
-            self.resumed = True
         else:
-            self.way = {
-                CommandKind.HOLD: ReleaseMode.HOLD,
-                CommandKind.RETURN: ReleaseMode.RETURN,
-                CommandKind.LAND: ReleaseMode.LAND,
+            self.order = {
+                CommandKind.HOLD: Action.HOLD,
+                CommandKind.RETURN: Action.RETURN,
+                CommandKind.LAND: Action.LAND,
                 CommandKind.ABORT: self._abort,
             }[kind]
         return entry, True
@@ -87,9 +75,11 @@ class Orders:
             return None
         return entry
 
-    def pilot(self, hands_back: bool) -> None:
-        """A pilot took over, or hands back: no order is in force any more."""
-        self.way = None
-        self.resumed = hands_back
-        if not hands_back:
-            self.granted = False
+    def taken(self) -> None:
+        """A pilot took over: no order is in force any more, and control must be granted anew."""
+        self.order = Action.PASS
+        self.granted = False
+
+    def handed_back(self) -> None:
+        """A pilot hands back: no order is in force any more."""
+        self.order = Action.PASS

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from onboard.agent.vehicle_link import Craft
+from onboard.agent.core.vehicle_link import VehicleLink
 from onboard.autopilot.base import Stage
 from onboard.wire.mavlink import commands
 from onboard.wire.mavlink.commands import CommandLong
@@ -22,9 +22,9 @@ class TakeOff:
         self.climbing = False
         self._retry = CommandRetry(RETRY)
 
-    def step(self, now: float, craft: Craft) -> bool:
+    def step(self, now: float, vehicle: VehicleLink) -> bool:
         """Do what is due at `now` [s]; True while the vehicle is on its way up (send it no setpoints)."""
-        t, adapter = craft.telemetry, craft.adapter
+        t, adapter = vehicle.telemetry, vehicle.adapter
         if adapter is None:
             return False
         if t.landed_state == ON_GROUND and not self.climbing:
@@ -38,21 +38,22 @@ class TakeOff:
         armable = {Kind.ARDUPLANE: t.mode == "TAKEOFF", Kind.ARDUCOPTER: adapter.stage is Stage.ACTIVE}
         if not t.armed and armable.get(adapter.kind, True):
             adapter.arm(now)
-        message = self._next(craft)
+        message = self._next(vehicle)
         if message is not None and self._retry.due(now):
-            craft.radio.send(message._replace(confirmation=self._retry.tries - 1))
+            vehicle.radio.send(message._replace(confirmation=self._retry.tries - 1))
         return True
 
-    def _next(self, craft: Craft) -> CommandLong | None:
-        t, adapter = craft.telemetry, craft.adapter
+    def _next(self, vehicle: VehicleLink) -> CommandLong | None:
+        t, adapter = vehicle.telemetry, vehicle.adapter
         assert adapter is not None
         if adapter.kind is Kind.ARDUPLANE:
             mode = custom_mode(Kind.ARDUPLANE, "TAKEOFF")
             if t.mode == "TAKEOFF" or mode is None:
                 return None
-            return commands.set_mode(craft.to, mode, px4=False)
+            return commands.set_mode(vehicle.to, mode, px4=False)
         if not t.armed or t.landed_state != ON_GROUND:
             return None
         if adapter.kind is Kind.ARDUCOPTER:
-            return commands.takeoff(craft.to, self.height) if adapter.stage is Stage.ACTIVE else None
-        return commands.takeoff(craft.to, t.altitude_m - t.above_home_m + self.height)  # PX4: above sea level
+            return commands.takeoff(vehicle.to, self.height) if adapter.stage is Stage.ACTIVE else None
+        above_sea = t.altitude_m - t.above_home_m + self.height  # what PX4 wants
+        return commands.takeoff(vehicle.to, above_sea)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 
+from onboard.agent.core.events import Instant
 from onboard.core.math.constants import NEVER, NS_PER_S
 
 WINDOW = 20  # of the master's stamps (2 Hz: ten seconds)
@@ -55,11 +56,11 @@ class JumpWatch:
         self._difference: int | None = None
         self.jumped_at = NEVER  # monotonic [s]
 
-    def look(self, wall_ns: int, monotonic_ns: int) -> float:
+    def look(self, now: Instant) -> float:
         """Compare the clocks; the size of a jump since the last look [s], 0 where there was none."""
-        difference = wall_ns - monotonic_ns
+        difference = now.wall_ns - round(now.s * NS_PER_S)
         last, self._difference = self._difference, difference
         if last is None or abs(difference - last) <= self._threshold_ns:
             return 0.0
-        self.jumped_at = monotonic_ns / NS_PER_S
+        self.jumped_at = now.s
         return (difference - last) / NS_PER_S

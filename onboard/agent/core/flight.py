@@ -1,0 +1,298 @@
+"""One vehicle flown: ask, supervise, command. The one place from which setpoints go out."""
+
+from __future__ import annotations
+
+from math import inf
+from typing import NamedTuple
+
+from onboard.agent.config import AgentConfig
+from onboard.agent.core.bus_view import BusView
+from onboard.agent.core.clocks import JumpWatch
+from onboard.agent.core.command_book import Orders
+from onboard.agent.core.events import Answered, Instant, Think
+from onboard.agent.core.journal import Journal
+from onboard.agent.core.part import Part, PartState
+from onboard.agent.core.takeoff import TakeOff
+from onboard.agent.core.vehicle_link import Control, VehicleLink
+from onboard.autopilot.base import ReleaseMode, Setpoint, Stage, Telemetry
+from onboard.core.math.constants import NEVER
+from onboard.core.math.vectors import ZERO, Vec, along, sub
+from onboard.core.safety.policy import Action, Cause, Command, SupervisorInput
+from onboard.core.safety.supervisor import (
+    SupervisorOutput,
+    SupervisorState,
+    handed_back,
+    reordered,
+    supervise,
+)
+from onboard.core.safety.words import ACTIONS, CAUSES
+from onboard.pilot.pilot import PilotDecision, Question
+from onboard.pilot.setup import Own
+from onboard.wire.bus.messages import Severity
+
+SILENT_S = 1.0  # a link silent for longer explains that the autopilot changed to hold by itself
+REGAIN_S = 6.0  # … for so long afterwards
+WIND_FRESH_S = 10.0
+RELEASES = {
+    Command.RELEASE_TO_HOLD: ReleaseMode.HOLD,
+    Command.RELEASE_TO_RETURN: ReleaseMode.RETURN,
+    Command.RELEASE_TO_LAND: ReleaseMode.LAND,
+}
+
+
+class OpenStep(NamedTuple):
+    """A control step that waits for its strategy's answer."""
+
+    number: int
+    begun: Instant
+    telemetry: Telemetry
+    wind: Vec  # [m/s; where the air moves to], ZERO for multicopters
+    question: Question | None
+
+
+class Flight:
+    """Flies one vehicle's part under supervision."""
+
+    def __init__(
+        self, config: AgentConfig, vehicle: VehicleLink, bus: BusView, orders: Orders, journal: Journal,
+        part: Part,
+    ) -> None:  # fmt: skip
+        self.config = config
+        self.part = part
+        self.decision: PilotDecision | None = None  # the last one; None while the part is not on
+        self.output: SupervisorOutput | None = None  # the last one; None while nothing is supervised
+        self.playing = False  # the part is on
+        self.setpoint = ZERO  # [m/s; ground] let through in this step
+        self.failures = 0  # of the strategy
+        self.take_off = TakeOff(config.take_off_height)
+        self.open: OpenStep | None = None
+        self._vehicle, self._bus, self._orders, self._journal = vehicle, bus, orders, journal
+        self._state = SupervisorState()
+        self._policy = part.policy
+        self._jumps = JumpWatch(config.safety.clock_jump_s)
+        self._number = 0
+        self._failing = False
+        self._alive_at = NEVER  # the strategy's last sign of life [s]
+        self._silent_at = NEVER  # when the link was last found silent [s]
+
+    # ------------------------------------------------------------------ the control step
+
+    def step(self, now: Instant) -> Think | None:
+        """Begin a control step. Where a strategy is to be asked, `answered` completes it."""
+        jump = self._jumps.look(now)
+        if jump != 0.0:
+            self._bus.clock.restart()
+            self._journal.error("clock_jump", f"the wall clock jumped by {jump:+.3f} s")
+        telemetry = self._vehicle.look(now.s)
+        self.part.follow(now)
+        state = self.part.state(now.wall_ns)
+        if self.part.policy is not self._policy:  # another game: what was latched in the last one is over
+            self._policy, self._state = self.part.policy, SupervisorState()
+        heard_at = max(telemetry.heartbeat_at, telemetry.position_at)
+        if telemetry.heartbeat_at != NEVER and now.s - heard_at > SILENT_S:
+            self._silent_at = now.s
+        self.setpoint = ZERO
+        if not state.on:
+            self.decision = self.output = self.open = None
+            self.playing = False
+            self._stand_by(now.s, telemetry, state)
+            return None
+        self.playing = True
+        return self._ask(now, telemetry)
+
+    def answered(self, answer: Answered) -> bool:
+        """Complete the control step that asked; False where none waits for this answer."""
+        step = self.open
+        if step is None or step.number != answer.number:
+            return False
+        self.open = None
+        error = answer.error
+        if answer.decision is not None and step.question is not None:
+            try:
+                self.decision = self.part.conclude(step.question, answer.decision)
+            except Exception as trouble:  # a strategy of another distribution may answer anything
+                error = f"{type(trouble).__name__}: {trouble}"
+        self._complete(step, answer.took_s, error)
+        return True
+
+    def given_up(self, now: float) -> None:
+        """Complete the open control step without an answer: the strategy has not spoken in time."""
+        step, self.open = self.open, None
+        if step is not None:
+            took = now - step.begun.s
+            self._complete(step, took, f"no answer within {took:.2f} s")
+
+    def _ask(self, now: Instant, t: Telemetry) -> Think | None:
+        hovers = self._vehicle.hovers is not False
+        wind = t.wind if not hovers and now.s - t.wind_at < WIND_FRESH_S else ZERO
+        position = along(t.position, t.velocity, min(max(0.0, now.s - t.position_at), 0.5))
+        self._number += 1
+        step = OpenStep(self._number, now, t, wind, None)
+        try:
+            asked = self.part.ask(now, Own(position, t.velocity, wind))
+        except Exception as trouble:  # an error of thinking must not end the flight: the supervisor acts
+            self._complete(step, 0.0, f"{type(trouble).__name__}: {trouble}")
+            return None
+        if isinstance(asked, PilotDecision):
+            self.decision = asked
+            self._complete(step, 0.0, "")
+            return None
+        self.open = step._replace(question=asked)
+        return Think(step.number, self.part.side, self.part.strategy, asked.view)
+
+    def _complete(self, step: OpenStep, took_s: float, error: str) -> None:
+        """Supervise what was decided, and command it. `took_s`: how long the strategy took [s]."""
+        now, t = step.begun.s, step.telemetry
+        if error:
+            self.failures += 1
+            if not self._failing:
+                self._journal.error("strategy", error)
+        else:
+            self._alive_at = now + took_s
+        self._failing = bool(error)
+        decision = self.decision
+        seen = self._input(now, t)._replace(
+            wind=step.wind,
+            strategy_age=max(took_s, now - self._alive_at),
+            track_sigma=decision.sigma if decision is not None else inf,
+        )
+        wanted = decision.velocity if decision is not None and decision.decides else ZERO
+        self._supervise(wanted, seen)
+
+    def obey(self, now: float) -> None:
+        """Follow at once what the ground has ordered, or what it gives back."""
+        adapter = self._vehicle.adapter
+        if adapter is None:
+            return
+        telemetry = self._vehicle.look(now)
+        if self._orders.order is Action.PASS:
+            self.resumed()
+            adapter.enter(now)
+            self.drive(now, None)
+        else:
+            self._state = reordered(self._state)
+            self._supervise(ZERO, self._input(now, telemetry))
+
+    def _input(self, now: float, t: Telemetry) -> SupervisorInput:
+        """What the supervisor looks at, but for what belongs to a decision."""
+        return SupervisorInput(
+            now=now,
+            id=self.config.id,
+            position=t.position,
+            velocity=t.velocity,
+            mates=self._bus.mates_at(now),
+            telemetry_age=now - t.position_at if t.placed else inf,
+            heartbeat_age=now - t.heartbeat_at,
+            ground_age=now - self._bus.master_at,
+            clock_jump_age=now - self._jumps.jumped_at,
+            battery=t.battery,
+            ekf_ok=t.ekf_ok or t.ekf_at == NEVER,
+            gps_fix=t.gps_fix if t.gps_at != NEVER else 3,
+            pilot=self._vehicle.stage is Stage.TAKEN,
+            order=self._orders.order,
+        )
+
+    def _supervise(self, wanted: Vec, seen: SupervisorInput, *, streams: bool = True) -> None:
+        """Let the supervisor judge, do what it commands, and tell where that is something new.
+
+        Without `streams` a velocity that it lets pass is not sent."""
+        output = supervise(wanted, seen, self.part.policy, self._state)
+        self._state, self.output = output.state, output
+        self._carry_out(seen.now, output, seen.wind, streams=streams)
+        if output.changed:
+            self._say(output)
+
+    def _carry_out(self, now: float, output: SupervisorOutput, wind: Vec, *, streams: bool) -> None:
+        """From the supervisor's output to what the adapter is asked for: the one exit of setpoints."""
+        adapter = self._vehicle.adapter
+        if adapter is None:
+            return
+        ours = adapter.stage in (Stage.ACTIVE, Stage.ENTERING)
+        command = output.command
+        setpoint: Setpoint | None = None
+        if command is Command.STREAM and streams:
+            if not ours and adapter.stage is not Stage.TAKEN and self.may_control:
+                adapter.enter(now)
+            setpoint = Setpoint(output.air, wind)
+            self.setpoint = output.ground
+        elif command is Command.HOVER:
+            setpoint = Setpoint(ZERO)
+        elif command is Command.END_STREAM:
+            adapter.end(now)
+        elif command in RELEASES:
+            # Without an order only what is ours is released, or what is on its way to a milder mode.
+            leaving = adapter.stage is Stage.LEAVING and command is not Command.RELEASE_TO_HOLD
+            if ours or leaving or self._orders.order is not Action.PASS:
+                adapter.leave(now, RELEASES[command])
+        self.drive(now, setpoint)
+
+    # ------------------------------------------------------------------ before and after the part
+
+    def _stand_by(self, now: float, t: Telemetry, state: PartState) -> None:
+        """Take control when the part is about to begin; what is under control is supervised from then on."""
+        adapter = self._vehicle.adapter
+        if adapter is None:
+            return
+        ordered = self._orders.order is not Action.PASS
+        if not ordered and not state.over:
+            idle = adapter.stage in (Stage.IDLE, Stage.LEFT)
+            if state.engaged and state.near and idle and self.may_control:
+                adapter.enter(now)
+            if self._takes_off(now, state):
+                self.drive(now, None)
+                return
+        if not ordered and adapter.stage not in (Stage.ENTERING, Stage.ACTIVE):
+            self.drive(now, None)
+            return
+        # A multicopter hovers; a plane flies on as it does: in its guided mode it circles by itself.
+        hovers = not adapter.holds_airspeed
+        seen = self._input(now, t)._replace(over=state.over, wind=ZERO if hovers else t.wind)
+        self._supervise(ZERO if hovers else sub(t.velocity, t.wind), seen, streams=hovers)
+
+    def _takes_off(self, now: float, state: PartState) -> bool:
+        """A ground start: whether the vehicle is on its way up, by this agent's doing."""
+        allowed = self.config.may_arm and state.engaged and self.may_control
+        if not allowed:
+            return False
+        return self.take_off.step(now, self._vehicle)
+
+    # ------------------------------------------------------------------ whose hands fly
+
+    @property
+    def may_control(self) -> bool:
+        """Whether this agent may enter the guided mode by itself."""
+        return self.config.take_control or self._orders.granted
+
+    def drive(self, now: float, setpoint: Setpoint | None) -> None:
+        """Let the adapter do what is due, with the setpoint of this step or without one."""
+        change = self._vehicle.step(now, setpoint)
+        if change is Control.TAKEN:
+            self._taken(now)
+        elif change is not Control.SAME:
+            self._orders.handed_back()
+            self.resumed()
+
+    def resumed(self) -> None:
+        """Control is given back to the agent: what the supervisor had latched is over."""
+        self._state = SupervisorState() if not self.playing else handed_back(self._state)
+
+    def _taken(self, now: float) -> None:
+        t, adapter = self._vehicle.telemetry, self._vehicle.adapter
+        fell_back = t.mode == "HOLD" and now - self._silent_at < REGAIN_S
+        if fell_back and self.may_control and adapter is not None:
+            self._journal.warning("regain", f"{t.mode} while the link was silent: asking again")
+            adapter.enter(now)
+        else:
+            self._orders.taken()
+
+    # ------------------------------------------------------------------ inside
+
+    def _say(self, output: SupervisorOutput) -> None:
+        """Tell a transition of the supervisor, with the level and module whose decision it met."""
+        action, decision = output.action, self.decision
+        severity = Severity.INFO
+        if action > Action.CLIP and output.cause is not Cause.OVER:
+            severity = Severity.ERROR if action is Action.END else Severity.WARNING
+        level, module = (decision.level, decision.module) if decision is not None else ("", "")
+        word = ACTIONS[action]
+        self._journal.say(severity, f"supervisor_{word}", f"{word}: {CAUSES[output.cause]}", level, module)

@@ -1,0 +1,187 @@
+"""The agent's part in a game: takes a setup, follows the phases, and asks the strategy."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from onboard.agent.config import AgentConfig
+from onboard.agent.core import policy_from_config as limits
+from onboard.agent.core.bus_view import BusView
+from onboard.agent.core.events import Instant, Load, Outbox
+from onboard.agent.core.journal import Journal
+from onboard.agent.core.part import PartState
+from onboard.agent.core.participation import Participation
+from onboard.agent.core.readiness import lacking
+from onboard.agent.core.vehicle_link import VehicleLink
+from onboard.core.game.rules import Target
+from onboard.core.math.constants import NS_PER_S
+from onboard.core.math.vectors import Vec
+from onboard.core.strategy.knowledge import Decision
+from onboard.pilot.memory import Memory
+from onboard.pilot.pilot import PilotDecision, Question, Viewpoint
+from onboard.pilot.setup import GameSetup, Own, Side, TrackSample
+from onboard.wire.bus.messages import Phase, PhaseChange, Role, Setup, Track
+from onboard.wire.geodesy import Frame
+
+TRAINING_SLICES = 2  # of about 1 ms, after each control step
+
+
+class Flying(NamedTuple):
+    """What a game needs, made once from a setup that fits."""
+
+    game: GameSetup
+    viewpoint: Viewpoint
+
+
+class GamePlayer:
+    """One vehicle's part in one game after another; see `part.Part`."""
+
+    def __init__(
+        self, config: AgentConfig, vehicle: VehicleLink, bus: BusView, out: Outbox, journal: Journal
+    ) -> None:
+        self.config = config
+        self.side = Side.EVADER if config.role is Role.EVADER else Side.PURSUER
+        self.policy = limits.policy_of(config, None, True)
+        self.strategy = ""
+        self.flying: Flying | None = None
+        self.why_not = ""  # why the setup at hand was refused
+        self._participation = Participation(config.id)
+        self._vehicle, self._bus, self._out, self._journal = vehicle, bus, out, journal
+        self._memory = Memory(config.prediction)
+        self._base_ns = 0  # where the pilot's seconds begin
+        self._setup_seen = 0
+        self._phase_seen: PhaseChange | None = None
+        self._loaded: dict[str, str] = {}  # strategies looked up → why they cannot be used, '' = they can
+        self._asked_for: set[str] = set()
+
+    # ------------------------------------------------------------------ what arrives
+
+    def begin(self, now: Instant) -> None:
+        """The agent begins."""
+        self._base_ns = now.wall_ns
+
+    def heard_setup(self, setup: Setup) -> None:
+        """A setup arrived: its strategy is looked up before it is considered."""
+        name = self._strategy_of(setup)
+        if name not in self._asked_for:
+            self._asked_for.add(name)
+            self._out.put(Load(self.side, name))
+
+    def loaded(self, strategy: str, error: str) -> None:
+        """A strategy was looked up; `error` says why it cannot be used."""
+        self._loaded[strategy] = error
+
+    def measured(self, track: Track, now: Instant) -> None:
+        """A measurement came: the predictor takes it now, so that no setpoint waits for that."""
+        sample = TrackSample(
+            track.id, self._seconds(track.stamp_ns), Vec(*track.position), Vec(*track.velocity),
+            track.covariance,
+        )  # fmt: skip
+        self._memory.take((sample,))
+        if self.state(now.wall_ns).on:  # what the next step asks for is reckoned now
+            self._memory.predict(track.id, self._seconds(now.wall_ns))
+
+    # ------------------------------------------------------------------ the part
+
+    def follow(self, now: Instant) -> None:
+        """Consider a new setup, and follow the master's phases."""
+        bus = self._bus
+        retry = self.flying is None and bool(self.why_not) and self._vehicle.hovers is not None
+        if bus.setup is not None and (bus.setup_number != self._setup_seen or retry):
+            name = self._strategy_of(bus.setup)
+            if name in self._loaded:
+                self._setup_seen = bus.setup_number
+                self._consider(bus.setup, self._loaded[name])
+        self._follow_phase(now.wall_ns)
+
+    def state(self, wall_ns: int) -> PartState:
+        """Where the game stands for this vehicle."""
+        phase, part = self._bus.phase, self._participation
+        late = part.waits_for_resume(phase)
+        engaged = self.flying is not None
+        return PartState(
+            engaged=engaged,
+            near=part.about_to(phase) and not late,
+            on=engaged and part.running(phase, wall_ns),
+            late=late,
+            over=part.over(phase),
+        )
+
+    def ask(self, now: Instant, own: Own) -> Question | PilotDecision:
+        """The view of the game at `now`."""
+        flying, bus = self.flying, self._bus
+        assert flying is not None
+        game = flying.game
+        if self.side is Side.EVADER and bus.target is not None and game.target.position != bus.target:
+            game = game._replace(target=Target(True, bus.target))
+            self.flying = flying._replace(game=game)
+        at = self._seconds(now.wall_ns)
+        return flying.viewpoint.look(at, own, bus.mates_at(now.s), game, self._memory)
+
+    def conclude(self, question: Question, decision: Decision) -> PilotDecision:
+        """What the strategy's answer means in this game."""
+        assert self.flying is not None
+        return self.flying.viewpoint.conclude(question, decision, self.flying.game)
+
+    def lacks(self, now: Instant) -> tuple[str, ...]:
+        """What is missing before this agent can play."""
+        return lacking(now.s, self._vehicle, self._bus, self.policy, self.config.role, self.why_not)
+
+    def time(self, wall_ns: int) -> float:
+        """Seconds since t₀; 0 before it is fixed."""
+        return self._participation.game_time(self._bus.phase, wall_ns)
+
+    def train(self, wall_ns: int) -> None:
+        """Give the predictors a little time."""
+        if self.flying is not None:
+            self._memory.train(self._seconds(wall_ns), TRAINING_SLICES)
+
+    # ------------------------------------------------------------------ what the master says
+
+    def _follow_phase(self, wall_ns: int) -> None:
+        phase = self._bus.phase
+        if phase is None or phase is self._phase_seen:
+            return
+        before, self._phase_seen = self._phase_seen, phase
+        was = self._participation.joined
+        self._participation.follow(phase, wall_ns)
+        if phase.phase is Phase.RUNNING and not self._participation.joined:
+            self._journal.warning("late", "the game runs already: waiting for the master's resume")
+        elif phase.phase is Phase.RUNNING and not was:
+            self._journal.info("resumed", "the master lets this agent act")
+        elif before is None or before.phase is not phase.phase:
+            self._journal.info("phase", phase.phase.value + (f": {phase.reason}" if phase.reason else ""))
+
+    def _consider(self, setup: Setup, strategy_error: str) -> None:
+        """A new setup: take it, or refuse it with the reason."""
+        if self.flying is not None:
+            self._participation.leave()
+            self._phase_seen = None
+            self.flying = None
+        why = limits.contradiction(self.config, setup, self._vehicle.hovers) or strategy_error
+        if why:
+            if why != self.why_not:
+                self._journal.error("setup_refused", why)
+            self.why_not = why
+            return
+        self.why_not = ""
+        hovers = self._vehicle.hovers is not False
+        origin = setup.origin
+        self._vehicle.observer.frame = Frame(origin.latitude_deg, origin.longitude_deg, origin.altitude_m)
+        self.policy = limits.policy_of(self.config, setup, hovers)
+        self._vehicle.envelope(limits.adapter_envelope(self.config, self.policy.envelope))
+        mates = (m.id for m in setup.roster if m.role is self.config.role and m.id != self.config.id)
+        self._bus.follow(tuple(mates))
+        game = limits.game_setup(self.config, setup, self._bus.target, hovers)
+        opponents = [player.id for player in game.opponents(self.side)]
+        self._memory = Memory(self.config.prediction, opponents)
+        self.strategy = self._strategy_of(setup)
+        self.flying = Flying(game, Viewpoint(self.config.id, self.side, self.strategy))
+        self._journal.info("setup", f"{setup.scenario} from {setup.master}: {len(setup.roster)} vehicles")
+
+    def _strategy_of(self, setup: Setup) -> str:
+        member = limits.member_of(setup, self.config.id)
+        return self.config.strategy or (member.strategy if member is not None else "")
+
+    def _seconds(self, stamp_ns: int) -> float:
+        return (stamp_ns - self._base_ns) / NS_PER_S

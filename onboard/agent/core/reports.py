@@ -1,0 +1,135 @@
+"""What the agent says of itself on the bus: state, decision, health."""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import NamedTuple
+
+from onboard.agent.config import AgentConfig
+from onboard.agent.core.bus_view import BusView
+from onboard.agent.core.events import Instant
+from onboard.agent.core.flight import Flight
+from onboard.agent.core.vehicle_link import VehicleLink
+from onboard.core.math.vectors import Vec
+from onboard.core.safety.policy import Action
+from onboard.core.safety.words import ACTIONS, CAUSES
+from onboard.pilot.pilot import drawing
+from onboard.wire.bus.messages import (
+    AgentStage,
+    DecisionLevel,
+    DecisionModule,
+    DecisionReport,
+    Health,
+    State,
+    SupervisorAction,
+)
+
+UNSURE = 1e6  # stands for an error that is not known [m]
+
+
+class Standing(NamedTuple):
+    """How the agent as a whole stands."""
+
+    stage: AgentStage
+    lacks: tuple[str, ...]  # what is missing before it can play
+    counters: dict[str, int]
+
+
+class Reports:
+    """Makes what one agent publishes of itself."""
+
+    def __init__(
+        self,
+        config: AgentConfig,
+        nonce: int,
+        version: str,
+        vehicle: VehicleLink,
+        bus: BusView,
+        flight: Flight,
+    ) -> None:
+        self._id, self._role, self._nonce, self._version = config.id, config.role, nonce, version
+        self._vehicle, self._bus, self._flight = vehicle, bus, flight
+
+    def state(self, stamp_ns: int) -> State:
+        """`vehicles/<id>/state`."""
+        t = self._vehicle.telemetry
+        return State(
+            id=self._id,
+            role=self._role,
+            stamp_ns=stamp_ns,
+            position=t.position,
+            velocity=t.velocity,
+            airspeed=t.airspeed,
+            wind=t.wind,
+            roll=t.roll,
+            pitch=t.pitch,
+            yaw=t.yaw,
+            mode=t.mode,
+            armed=t.armed,
+            nonce=self._nonce,
+        )
+
+    def decision(self, stamp_ns: int) -> DecisionReport | None:
+        """`vehicles/<id>/decision`: with the pictures of what was decided, and what became of it.
+
+        None while nothing is decided."""
+        flight = self._flight
+        decision, output = flight.decision, flight.output
+        if decision is None or output is None:
+            return None
+        cones, circles = drawing(decision, flight.part.side)
+        return DecisionReport(
+            id=self._id,
+            stamp_ns=stamp_ns,
+            t=flight.part.time(stamp_ns),
+            level=DecisionLevel(decision.level),
+            module=DecisionModule(decision.module),
+            strategy=decision.strategy,
+            rule=decision.rule,
+            velocity=_sound(decision.velocity),
+            aim=_sound(decision.aim),
+            time_to_aim=_number(decision.time),
+            miss=_number(decision.miss),
+            cones=tuple(cone for cone in cones if all(map(isfinite, cone))),
+            circles=tuple(circle for circle in circles if all(map(isfinite, circle))),
+            supervisor=SupervisorAction(ACTIONS[output.action]),
+            reason=CAUSES[output.cause] if output.action != Action.PASS else ", ".join(decision.lacks),
+            predictor=decision.predictor,
+            predictor_sigma=min(_number(decision.sigma, UNSURE), UNSURE),
+            setpoint=_sound(flight.setpoint),
+        )
+
+    def health(self, standing: Standing, now: Instant) -> Health:
+        """`vehicles/<id>/health`."""
+        vehicle, t, output = self._vehicle, self._vehicle.telemetry, self._flight.output
+        return Health(
+            id=self._id,
+            role=self._role,
+            stamp_ns=now.wall_ns,
+            stage=standing.stage,
+            lacks=standing.lacks,
+            autopilot=None if vehicle.adapter is None else vehicle.adapter.kind,
+            mode=t.mode,
+            armed=t.armed,
+            battery=t.battery,
+            link_quality=t.link_quality,
+            telemetry_rate_hz=vehicle.position_rate.value,
+            setpoint_rate_hz=vehicle.setpoint_rate.value,
+            clock_offset_s=self._bus.clock.offset_s,
+            gps_fix=t.gps_fix,
+            ekf_ok=t.ekf_ok,
+            supervisor=SupervisorAction(ACTIONS[output.action if output is not None else Action.PASS]),
+            version=self._version,
+            counters=standing.counters,
+            telemetry_age_s=min(now.s - t.position_at, 1e6),
+            heartbeat_age_s=min(now.s - t.heartbeat_at, 1e6),
+            nonce=self._nonce,
+        )
+
+
+def _number(value: float, otherwise: float = 0.0) -> float:
+    return value if isfinite(value) else otherwise
+
+
+def _sound(v: Vec) -> tuple[float, float, float]:
+    return (_number(v.x), _number(v.y), _number(v.z))

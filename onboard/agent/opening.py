@@ -1,0 +1,54 @@
+"""Opens what an agent needs, as its configuration says: links, bus, signing."""
+
+from __future__ import annotations
+
+import asyncio
+from pathlib import Path
+
+from onboard.agent.config import AgentConfig
+from onboard.config.strict import ConfigError
+from onboard.runtime.bus_zenoh import open_zenoh
+from onboard.runtime.links import open_link
+from onboard.runtime.protocols import Bus, Link
+from onboard.runtime.signing_keys import StampFile, read_key
+from onboard.wire.mavlink.signing import Signing
+
+CLOSE_S = 0.5  # for the bus to close; the process ends within 2 s of a signal
+
+
+def signing_of(config: AgentConfig) -> Signing | None:
+    """Signing as configured. Raises ConfigError for a key that is missing or that others may read."""
+    if config.signing is None:
+        return None
+    path = Path(config.signing.key)
+    stamps = Path(config.signing.stamps or f"{config.signing.key}.stamps")
+    return Signing(read_key(path), StampFile(stamps))
+
+
+async def open_links(config: AgentConfig) -> list[Link]:
+    """Open all links. Raises ConfigError."""
+    links: list[Link] = []
+    try:
+        for url in config.links:
+            links.append(await open_link(url))
+    except ConfigError:
+        for link in links:
+            link.close()
+        raise
+    return links
+
+
+async def open_bus(config: AgentConfig) -> Bus:
+    """Open the bus, there or not. Raises ConfigError."""
+    file = Path(config.zenoh) if config.zenoh else None
+    return await open_zenoh(config.bus or None, config_file=file)
+
+
+async def close_bus(bus: Bus) -> bool:
+    """Close the bus within `CLOSE_S`; False where it does not answer."""
+    try:
+        async with asyncio.timeout(CLOSE_S):
+            await bus.close()
+    except TimeoutError:
+        return False
+    return True

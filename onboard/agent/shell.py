@@ -1,0 +1,340 @@
+"""The agent's shell: moves bytes between the machine and links, bus, files and children; decides nothing."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import os
+import sys
+from collections import OrderedDict, deque
+from collections.abc import Callable, Hashable, Sequence
+from functools import partial
+from math import inf
+from typing import Any, NamedTuple
+
+from onboard.agent.config import AgentConfig
+from onboard.agent.core.events import (
+    ANY_PEER,
+    Announce,
+    AnyEvent,
+    Beat,
+    BusMessage,
+    BusState,
+    ChildEnd,
+    ChildExited,
+    ChildLine,
+    ChildSaid,
+    ChildStart,
+    Count,
+    Counted,
+    End,
+    Idle,
+    Instant,
+    Keep,
+    LinkBytes,
+    LinkFacts,
+    Load,
+    Note,
+    Publish,
+    Reply,
+    Request,
+    Send,
+    Serve,
+    Started,
+    Stop,
+    Subscribe,
+    Think,
+    Tick,
+    Unsubscribe,
+)
+from onboard.agent.core.machine import AgentCore, Facts
+from onboard.agent.event_file import EventFile
+from onboard.agent.thinker import Thinker
+from onboard.agent.timing import Timing
+from onboard.autopilot.mavsdk import Child
+from onboard.core.math.constants import NS_PER_S
+from onboard.game.route_file import Route
+from onboard.runtime.protocols import Bus, Clock, Link, Sample, Subscription
+from onboard.wire.mavlink.signing import Signing
+
+PEERS_MAX = 64  # of one link that are numbered; who was heard longest ago is forgotten
+
+
+def to_stderr(line: str) -> None:
+    """One line to standard error: the journal's place under systemd."""
+    print(line, file=sys.stderr, flush=True)
+
+
+class Equipment(NamedTuple):
+    """What an agent is given besides its configuration, clock, links and bus."""
+
+    nonce: int = 0  # random for each process
+    version: str = ""  # of the package
+    log: Callable[[str], None] = to_stderr  # takes the lines of the agent's events
+    record: Callable[[int, bytes], None] | None = None  # (wall [ns], frame): sees every MAVLink frame
+    events: EventFile | None = None  # records everything that happens
+    signing: Signing | None = None
+    beat: Callable[[], None] | None = None  # called with each control step: a service's watchdog
+    route: Route | None = None  # of a tracker
+
+
+class _Port:
+    """One link, and the numbers of its peers."""
+
+    def __init__(self, link: Link) -> None:
+        self.link = link
+        self.numbers: OrderedDict[Hashable, int] = OrderedDict()
+        self.peers: dict[int, Hashable] = {}
+        self._next = 0
+
+    def number(self, peer: Hashable) -> int:
+        """The number of a peer: the same as long as it is not forgotten."""
+        number = self.numbers.get(peer)
+        if number is not None:
+            self.numbers.move_to_end(peer)
+            return number
+        if len(self.numbers) >= PEERS_MAX:
+            _, old = self.numbers.popitem(last=False)
+            del self.peers[old]
+        number, self._next = self._next, self._next + 1
+        self.numbers[peer] = number
+        self.peers[number] = peer
+        return number
+
+    def send(self, peer: int, frame: bytes) -> None:
+        """Send to a peer; nothing is sent to one who was forgotten."""
+        if peer == ANY_PEER:
+            self.link.send(frame, None)
+        elif peer in self.peers:
+            self.link.send(frame, self.peers[peer])
+
+
+class Agent:
+    """Flies one vehicle. Everything it needs is handed in; `run` it on any loop, end it with `stop`.
+
+    Cancelling `run` falls silent at once, as a kill would; `stop` first leaves the vehicle in a mode that its
+    autopilot can hold alone. Links and bus are the caller's. Raises ConfigError as `AgentCore` does.
+    """
+
+    def __init__(
+        self, config: AgentConfig, clock: Clock, links: Sequence[Link], bus: Bus, equipment: Equipment
+    ) -> None:
+        self.config = config
+        self.id = config.id
+        self.clock = clock
+        self.bus = bus
+        self.timing = Timing(1.0 / config.control_rate_hz)
+        self.thinker = Thinker(clock)
+        facts = Facts(
+            equipment.nonce,
+            tuple(LinkFacts(link.name, link.name.startswith("serial:")) for link in links),
+            equipment.version,
+            equipment.route,
+            equipment.signing is not None,
+        )
+        self.core = AgentCore(config, facts, equipment.signing)
+        self._equipment = equipment
+        if equipment.events is not None:
+            equipment.events.begin(config, facts)
+        self._ports = [_Port(link) for link in links]
+        self._child: Child | None = None
+        self._child_rest = b""
+        self._subscriptions: dict[str, Subscription] = {}
+        self._held: list[Subscription] = []
+        self._replies: dict[int, bytes] = {}
+        self._token = 0
+        self._connected = True
+        self._waiting: deque[tuple[AnyEvent, Instant]] = deque()
+        self._busy = False
+        self._arrived_ns = 0  # when the datagram arrived that is being handled; 0 = none is
+        self._timer: asyncio.TimerHandle | None = None
+        self._timer_at = inf
+        self._ended: asyncio.Future[None] | None = None
+        self._stopping = False
+        self._effects: dict[type, Callable[[Any], None]] = {
+            Send: lambda effect: self._ports[effect.link].send(effect.peer, effect.frame),
+            Think: lambda effect: self._put(self.thinker.answer(effect)),
+            Load: lambda effect: self._put(self.thinker.load(effect)),
+            Count: self._count,
+            Publish: lambda effect: self.bus.publish(effect.key, effect.payload, effect.delivery),
+            Reply: lambda effect: self._replies.__setitem__(effect.token, effect.payload),
+            Subscribe: self._subscribe,
+            Unsubscribe: lambda effect: self._subscriptions.pop(effect.key).close(),
+            Serve: lambda effect: self._held.append(self.bus.serve(effect.key, self._request)),
+            Announce: lambda effect: self._held.append(self.bus.announce(effect.key)),
+            ChildStart: self._start_child,
+            ChildLine: self._write_child,
+            ChildEnd: lambda effect: self._close_child(),
+            Keep: self._keep,
+            Beat: self._beat,
+            Note: lambda effect: equipment.log(effect.line),
+            End: lambda effect: self._end(),
+        }
+
+    @property
+    def now(self) -> float:
+        """Monotonic time [s]."""
+        return self.clock.monotonic_ns() / NS_PER_S
+
+    async def run(self) -> None:
+        """Fly until `stop` (or until cancelled). Raises what the machine raises."""
+        self._ended = asyncio.get_running_loop().create_future()
+        for index, port in enumerate(self._ports):
+            port.link.receive(partial(self._arrived, index))
+        self.feed(Started())
+        if self._stopping:
+            self.feed(Stop())
+        try:
+            await self._ended
+        finally:
+            self._ended = None
+            if self._timer is not None:
+                self._timer.cancel()
+            self._close_child()
+            for subscription in (*self._subscriptions.values(), *self._held):
+                subscription.close()
+            if self._equipment.events is not None:
+                self._equipment.events.close()
+
+    def stop(self) -> None:
+        """Leave the vehicle and end `run`."""
+        if self._stopping:
+            return
+        self._stopping = True
+        if self._ended is not None:
+            self.feed(Stop())
+
+    # ------------------------------------------------------------------ events in, effects out
+
+    def feed(self, event: AnyEvent) -> None:
+        """Give the machine an event and do what it wants done, and then what can wait."""
+        if self._ended is None or self._ended.done():
+            return
+        self._put(event)
+        if self._busy:
+            return
+        self._busy = True
+        try:
+            while self._waiting or self.core.pending:
+                if self._waiting:
+                    event, now = self._waiting.popleft()
+                    effects = self.core.handle(event, now)
+                else:
+                    event, now = Idle(), self._instant()
+                    effects = self.core.idle(now)
+                for effect in effects:
+                    self._effects[type(effect)](effect)
+                if self._equipment.events is not None:
+                    self._equipment.events.add(now, event, effects)
+            self._arm()
+        except Exception as error:  # on a loop's callback it would only be logged: the agent must end
+            if not self._ended.done():
+                self._ended.set_exception(error)
+        finally:
+            self._busy = False
+
+    def _put(self, event: AnyEvent) -> None:
+        self._waiting.append((event, self._instant()))
+
+    def _instant(self) -> Instant:
+        return Instant(self.clock.monotonic_ns() / NS_PER_S, self.clock.wall_ns())
+
+    def _arm(self) -> None:
+        """Set the one timer."""
+        at = self.core.next_deadline()
+        if at == self._timer_at and self._timer is not None:
+            return
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
+        self._timer_at = at
+        if at < inf:
+            loop = asyncio.get_running_loop()
+            self._timer = loop.call_later(max(0.0, at - self.now), self._tick)
+
+    def _tick(self) -> None:
+        self._timer = None
+        self.feed(Tick())
+
+    # ------------------------------------------------------------------ links, bus, requests
+
+    def _arrived(self, index: int, data: bytes, peer: Hashable) -> None:
+        self._arrived_ns = self.clock.monotonic_ns()
+        self.feed(LinkBytes(index, self._ports[index].number(peer), data))
+        self._arrived_ns = 0
+
+    def _subscribe(self, effect: Subscribe) -> None:
+        self._subscriptions[effect.key] = self.bus.subscribe(effect.key, self._heard)
+
+    def _heard(self, sample: Sample) -> None:
+        self.feed(BusMessage(sample.key, sample.payload))
+
+    def _request(self, payload: bytes) -> bytes:
+        """Answer a request; nothing where the agent has ended."""
+        self._token += 1
+        self.feed(Request(self._token, payload))
+        return self._replies.pop(self._token, b"")
+
+    def _count(self, effect: Count) -> None:
+        connected = self.bus.connected()
+        if connected != self._connected:
+            self._connected = connected
+            self._put(BusState(connected))
+        links: dict[str, int] = {}
+        for port in self._ports:
+            for cause, number in port.link.counters().items():
+                links[cause] = links.get(cause, 0) + number
+        shell = self.timing.counters()
+        if self._equipment.events is not None:
+            shell |= self._equipment.events.counters()
+        self._put(Counted(links, self.bus.counters(), shell))
+
+    def _keep(self, effect: Keep) -> None:
+        if self._equipment.record is not None:
+            self._equipment.record(effect.wall_ns, effect.frame)
+
+    def _beat(self, effect: Beat) -> None:
+        if self._arrived_ns:
+            self.timing.answered(self.clock.monotonic_ns() - self._arrived_ns)
+        if self._equipment.beat is not None:
+            self._equipment.beat()
+
+    def _end(self) -> None:
+        if self._ended is not None and not self._ended.done():
+            self._ended.set_result(None)
+
+    # ------------------------------------------------------------------ the adapter's child process
+
+    def _start_child(self, effect: ChildStart) -> None:
+        self._close_child()
+        self._child = Child(*effect.arguments)
+        self._child_rest = b""
+        asyncio.get_running_loop().add_reader(self._child.output, self._child_speaks)
+
+    def _write_child(self, effect: ChildLine) -> None:
+        if self._child is not None:
+            self._child.send(effect.data)
+
+    def _child_speaks(self) -> None:
+        child = self._child
+        if child is None:
+            return
+        try:
+            data = os.read(child.output, 65536)
+        except BlockingIOError:
+            return
+        except OSError:
+            data = b""
+        *lines, self._child_rest = (self._child_rest + data).split(b"\n")
+        for line in lines:
+            self.feed(ChildSaid(line))
+        if not data and self._child is child:
+            self._close_child()
+            self.feed(ChildExited())
+
+    def _close_child(self) -> None:
+        child, self._child = self._child, None
+        if child is not None:
+            with contextlib.suppress(ValueError, OSError):
+                asyncio.get_running_loop().remove_reader(child.output)
+            child.close()

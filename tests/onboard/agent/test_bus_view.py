@@ -1,0 +1,53 @@
+"""What one agent makes of the bus, message by message."""
+
+from __future__ import annotations
+
+import pytest
+
+from onboard.agent.config import AgentConfig
+from onboard.agent.core.bus_view import BusView
+from onboard.agent.core.events import Instant, Outbox, Subscribe, Unsubscribe
+from onboard.agent.core.journal import Journal
+from onboard.wire.bus.messages import Role, State
+from onboard.wire.bus.topics import STATE
+
+EPOCH_NS = 1_700_000_000_000_000_000
+
+
+def opened() -> tuple[BusView, Outbox]:
+    """The view of pursuer 2, which follows vehicle 3."""
+    config, out = AgentConfig(id=2, game="g"), Outbox()
+    view = BusView(config, 1, out, Journal(2, "g", 1))
+    view.open()
+    view.follow((2, 3))
+    return view, out
+
+
+def state(id: int, stamp_ns: int) -> bytes:
+    """A vehicle at 10 m north that flies east at 4 m/s."""
+    place, velocity, still = (10.0, 0.0, -50.0), (0.0, 4.0, 0.0), (0.0, 0.0, 0.0)
+    it = State(id, Role.PURSUER, stamp_ns, place, velocity, 4.0, still, 0.0, 0.0, 0.0, "GUIDED", True, id)
+    return STATE.encode(it)
+
+
+@pytest.mark.parametrize("off_s", [-5.0, 0.0, 5.0])
+def test_a_mate_is_carried_from_when_it_was_heard_whatever_its_clock_says(off_s: float) -> None:
+    view, _ = opened()
+    view.take(STATE.key("g", 3), state(3, EPOCH_NS + round(off_s * 1e9)), Instant(100.0, EPOCH_NS))
+    (mate,) = view.mates_at(100.4)
+    assert mate.position == pytest.approx((10.0, 1.6, -50.0))
+    assert mate.age == pytest.approx(0.4)
+    (later,) = view.mates_at(103.0)  # for no longer than a second
+    assert later.position == pytest.approx((10.0, 4.0, -50.0))
+    assert later.age == pytest.approx(3.0)
+
+
+def test_who_is_no_longer_a_mate_is_neither_heard_nor_kept() -> None:
+    view, out = opened()
+    view.take(STATE.key("g", 3), state(3, EPOCH_NS), Instant(100.0, EPOCH_NS))
+    out.take()
+    view.follow((4,))
+    assert view.mates_at(100.0) == ()
+    assert out.take() == [Unsubscribe(STATE.key("g", 3)), Subscribe(STATE.key("g", 4))]
+    view.take(STATE.key("g", 3), state(3, EPOCH_NS), Instant(101.0, EPOCH_NS))  # was on its way
+    assert view.mates_at(101.0) == ()
