@@ -75,6 +75,11 @@ def common_name(certificate: x509.Certificate) -> str:
     return str(names[0].value) if names else ""
 
 
+def fingerprint(certificate: x509.Certificate) -> str:
+    """The first 16 hexadecimal digits of a certificate's SHA-256, for people to compare."""
+    return certificate.fingerprint(hashes.SHA256()).hex()[:16]
+
+
 def pem(certificate: x509.Certificate) -> bytes:
     """A certificate as PEM text."""
     return certificate.public_bytes(serialization.Encoding.PEM)

@@ -11,8 +11,9 @@ from enum import Enum
 from typing import Any, NamedTuple
 
 from onboard.game.field_roster import FieldRoster, Member
-from onboard.wire.bus.topics import ID, TOPICS, Delivery, Table, Topic, everything
+from onboard.wire.bus.topics import COMMAND, ID, STATE, TOPICS, Delivery, Table, Topic, everything
 
+BY_DATAGRAM: tuple[Topic[Any], ...] = (STATE, COMMAND)  # these travel as datagrams too
 KEPT = (Delivery.CACHED, Delivery.EVENT)
 LATEST_FACTOR = 5.0  # a topic's nominal rate times this passes the listener, and no more
 PAYLOAD_MAX = 65_536  # [bytes] no message of the table comes near it
@@ -47,10 +48,11 @@ def grants(member: Member, roster: FieldRoster, table: Table = TOPICS) -> list[G
 
 
 def access_control(roster: FieldRoster, table: Table = TOPICS) -> dict[str, Any]:
-    """Zenoh's `access_control` for the station that listens; the others' connections are its subjects."""
+    """Zenoh's `access_control` for the station that listens. Connections are its subjects: the other
+    members', and those of other programs on its own computer."""
     rules: list[dict[str, Any]] = []
     subjects, policies = [], []
-    for member in roster.members[1:]:
+    for member in roster.members:
         own = _rules(member, roster, table)
         rules += own
         subjects.append({"id": member.name, "cert_common_names": [member.certificate]})
@@ -108,23 +110,24 @@ def _rules(member: Member, roster: FieldRoster, table: Table) -> list[dict[str, 
         there, back = ("ingress", "egress") if use is Use.WRITE else ("egress", "ingress")
         if topic.delivery is Delivery.TOKEN:
             allow(there, ["liveliness_token"], keys)
-            allow(back, ["liveliness_query", "declare_liveliness_subscriber"], [*keys, topic.key(roster.game)])
+            seen = [*keys, topic.key(roster.game)]
+            allow(back, ["liveliness_query", "declare_liveliness_subscriber"], seen)
             continue
         patterns = [topic.key(roster.game)] if use is Use.READ and len(ids) == len(roster.vehicles) else []
         allow(there, ["put"], keys)
         allow(back, ["declare_subscriber"], [*keys, *patterns])
-        if topic.delivery in KEPT:
+        if topic.delivery in KEPT:  # Zenoh's advanced publishers and subscribers talk below `@adv`
             extra = [f"{key}/@adv/**" for key in keys]
-            allow(there, ["put", "reply", "declare_queryable", "liveliness_token"], [*keys, *extra])
-            asked = [*keys, *extra, *patterns, *(f"{pattern}/@adv/**" for pattern in patterns)]
-            allow(back, ["declare_subscriber", "query"], asked)
-            allow(back, ["liveliness_query", "declare_liveliness_subscriber"], asked)
+            asked = [*extra, *(f"{pattern}/@adv/**" for pattern in patterns)]
+            allow(there, ["put", "declare_queryable", "liveliness_token"], extra)
+            allow(there, ["reply"], [*keys, *extra])
+            listening = ["declare_subscriber", "query", "liveliness_query", "declare_liveliness_subscriber"]
+            allow(back, listening, asked)
         whole += use is Use.READ and member.vehicle is None
     if whole:  # a station listens to the whole game, and is sent what the lines above name
-        every = [everything(roster.game), f"{everything(roster.game)}/@adv/**"]
-        listening = ["declare_subscriber", "liveliness_query", "declare_liveliness_subscriber", "query"]
-        allow("ingress", listening[:3], every)
-        allow("ingress", ["query"], every[1:])
+        every = f"{everything(roster.game)}/@adv/**"
+        allow("ingress", ["declare_subscriber"], [everything(roster.game), every])
+        allow("ingress", ["query", "liveliness_query", "declare_liveliness_subscriber"], [every])
     return [
         {
             "id": f"{member.name} {flow} {message}",

@@ -19,10 +19,12 @@ from typing import Any
 import zenoh
 from zenoh import ext, handlers
 
+from onboard.runtime import bus_security
 from onboard.runtime.inbox import Inbox
+from onboard.runtime.membership import membership_of
 from onboard.runtime.patterns import intersects
 from onboard.runtime.protocols import Sample, Subscription
-from onboard.runtime.zenoh_config import DEFAULT_ENDPOINT, Candidate, first_sentence, sessions_of
+from onboard.runtime.zenoh_config import Candidate, endpoint_of, first_sentence, sessions_of
 from onboard.wire.bus.topics import TOPICS, Delivery
 
 EVENTS_KEPT = 256  # events a publisher keeps of each key
@@ -63,9 +65,12 @@ class _Declared:
 class ZenohBus:
     """A Zenoh session that may come later, go and return. Made by `open_zenoh`, on an event loop."""
 
-    def __init__(self, sessions: list[Candidate], endpoint: str) -> None:
+    def __init__(
+        self, sessions: list[Candidate], endpoint: str, why_not: Callable[[], str] = lambda: ""
+    ) -> None:
         self._sessions = sessions  # what to try, in order, each time
         self._endpoint = endpoint
+        self._why_not = why_not  # asked, on a thread, for words when no session opens
         self._loop = asyncio.get_running_loop()
         self._inbox = Inbox(self._loop)
         self._declared: list[_Declared] = []
@@ -291,7 +296,8 @@ class ZenohBus:
                 try:
                     session = zenoh.open(config)
                 except zenoh.ZError as error:
-                    self._inbox.queue(partial(self._failed, first_sentence(error)))
+                    trouble = self._why_not() or first_sentence(error)
+                    self._inbox.queue(partial(self._failed, trouble))
                 else:
                     self._inbox.queue(partial(self._opened, session, how))
                     return
@@ -345,7 +351,9 @@ async def open_zenoh(
     configuration (JSON5) for TLS, access control, a router elsewhere; without an `endpoint` its own
     endpoints and mode stay. Raises ConfigError for a file or an endpoint that cannot be.
     """
-    where = endpoint or str(config_file or DEFAULT_ENDPOINT)
-    bus = ZenohBus(sessions_of(endpoint, listen, config_file), where)
+    sessions = sessions_of(endpoint, listen, config_file)
+    member = membership_of(config_file)
+    why_not = partial(bus_security.why_not, member, config_file) if member and config_file else str
+    bus = ZenohBus(sessions, endpoint_of(endpoint, config_file), why_not)
     await bus.first_attempt(FIRST_ATTEMPT_S)
     return bus

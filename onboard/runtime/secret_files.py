@@ -12,16 +12,20 @@ from onboard.config.strict import ConfigError
 FILE_MAX = 1 << 20  # [bytes] a longer file holds no key
 
 
-def write_secret(path: Path, content: bytes) -> None:
-    """Write a file of mode 0600 in place of what was there. Raises ConfigError, one line."""
+def write_secret(path: Path, content: bytes, *, durable: bool = True) -> None:
+    """Write a file of mode 0600 in place of what was there; `durable` waits for the disk.
+
+    Raises ConfigError, one line.
+    """
     beside = path.with_name(f".{path.name}.{secrets.token_hex(4)}")
     flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW
     try:
         try:
             with os.fdopen(os.open(beside, flags, 0o600), "wb") as file:
                 file.write(content)
-                file.flush()
-                os.fsync(file.fileno())
+                if durable:
+                    file.flush()
+                    os.fsync(file.fileno())
             beside.replace(path)
         finally:
             beside.unlink(missing_ok=True)

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import msgspec
 
 from onboard.config.strict import ConfigError
-from onboard.runtime.secret_files import read_secret
+from onboard.runtime.secret_files import read_secret, write_secret
 from onboard.wire.mavlink.signing import Stamps
 
 
@@ -66,10 +65,7 @@ class StampFile:
     def save(self, stamps: Stamps) -> None:
         """Replace the file."""
         saved = _Saved(stamps.own, [(*stream, stamp) for stream, stamp in stamps.streams.items()])
-        beside = self.path.with_name(self.path.name + ".new")
         try:
-            with os.fdopen(os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "wb") as file:
-                file.write(msgspec.json.encode(saved))
-            beside.replace(self.path)
-        except OSError:
+            write_secret(self.path, msgspec.json.encode(saved), durable=False)
+        except ConfigError:
             self.failures += 1
