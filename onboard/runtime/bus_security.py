@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import zenoh
 
+from onboard.config.strict import ConfigError
 from onboard.runtime.membership import Membership, membership_of
 from onboard.runtime.zenoh_config import DEFAULT_ENDPOINT
 
@@ -35,6 +36,13 @@ class BusSecurity(NamedTuple):
     words: str  # for people
     member: Membership | None = None
 
+    @property
+    def short(self) -> str:
+        """For a status line: "" on this computer alone."""
+        if self.lock is Lock.LOOPBACK:
+            return ""
+        return self.words if self.member is not None else self.lock.value
+
 
 def security_of(endpoint: str | None, config_file: Path | None, now_s: float) -> BusSecurity:
     """The protection of the bus that `open_zenoh` opens for the same arguments. Raises ConfigError.
@@ -46,6 +54,8 @@ def security_of(endpoint: str | None, config_file: Path | None, now_s: float) ->
         return BusSecurity(Lock.KEYS, member.lock(now_s), member)
     where = endpoint or DEFAULT_ENDPOINT
     if config_file is not None:
+        if not config_file.exists():
+            raise ConfigError(f"{config_file}: found no such file, expected a Zenoh configuration")
         try:
             config = zenoh.Config.from_file(str(config_file))
             tls = json.loads(config.get_json("transport/link/tls"))
