@@ -11,7 +11,7 @@ from enum import Enum
 from typing import Any, NamedTuple
 
 from onboard.game.field_roster import FieldRoster, Member
-from onboard.wire.bus.topics import COMMAND, ID, STATE, TOPICS, Delivery, Table, Topic, everything
+from onboard.wire.bus.topics import COMMAND, ID, STATE, TOPICS, Delivery, Table, Topic, echo_key, everything
 
 BY_DATAGRAM: tuple[Topic[Any], ...] = (STATE, COMMAND)  # these travel as datagrams too
 KEPT = (Delivery.CACHED, Delivery.EVENT)
@@ -99,6 +99,8 @@ def _rules(member: Member, roster: FieldRoster, table: Table) -> list[dict[str, 
             place = wanted.setdefault((flow, message), [])
             place += [key for key in keys if key not in place]
 
+    allow("ingress", ["query"], [echo_key(roster.game)])
+    allow("egress", ["reply", "declare_queryable"], [echo_key(roster.game)])
     whole = 0
     for topic, use, ids in grants(member, roster, table):
         keys = [topic.key(roster.game, id) for id in ids]

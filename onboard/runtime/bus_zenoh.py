@@ -49,6 +49,10 @@ class _Declared:
         """Declare it now."""
         self._entity = self._declare(session)
 
+    def forget(self) -> None:
+        """Its session is gone."""
+        self._entity = None
+
     def close(self) -> None:
         """Undeclare it; idempotent."""
         if not self.active:
@@ -75,7 +79,7 @@ class ZenohBus:
         self._inbox = Inbox(self._loop)
         self._declared: list[_Declared] = []
         self._publishers: dict[str, Any] = {}
-        self._waiting: dict[str, tuple[Delivery, deque[bytes]]] = {}  # kept until there is a session
+        self._kept: dict[str, tuple[Delivery, deque[bytes]]] = {}  # for a session that is yet to come
         self._session: Any = None
         self._how = ""
         self._trouble = ""
@@ -114,11 +118,11 @@ class ZenohBus:
         if self._stop.is_set():
             counts["closed"] += 1
             return
+        if delivery in _KEPT:
+            length = EVENTS_KEPT if delivery is Delivery.EVENT else 1
+            self._kept.setdefault(key, (delivery, deque(maxlen=length)))[1].append(payload)
         if session is None:
             counts["no_bus"] += 1
-            if delivery in _KEPT:
-                length = EVENTS_KEPT if delivery is Delivery.EVENT else 1
-                self._waiting.setdefault(key, (delivery, deque(maxlen=length)))[1].append(payload)
             return
         counts["published" if self.connected() else "no_bus"] += 1
         self._put(session, key, payload, delivery)
@@ -254,6 +258,22 @@ class ZenohBus:
         )
         return declared
 
+    def reopen(self) -> None:
+        """Give up the session, which no longer works, and open another: all that was declared comes back.
+
+        Values and events that were kept are put again; who has had them knows them by their numbers.
+        """
+        session, self._session = self._session, None
+        if session is None or self._stop.is_set():
+            return
+        self._inbox.counts["reopened"] += 1
+        self._how, self._trouble = "", "opening again"
+        self._publishers.clear()
+        for declared in self._declared:
+            declared.forget()
+        threading.Thread(target=self._close_in_thread, args=(session,), daemon=True).start()
+        threading.Thread(target=self._open_in_thread, name="zenoh-open", daemon=True).start()
+
     async def close(self) -> None:
         """Close the session, within `CLOSE_S`; what was declared ends with it."""
         if self._stop.is_set():
@@ -321,10 +341,9 @@ class ZenohBus:
         self._session, self._how = session, how
         for declared in self._declared:
             declared.open(session)
-        for key, (delivery, payloads) in self._waiting.items():
+        for key, (delivery, payloads) in self._kept.items():
             for payload in payloads:
                 self._put(session, key, payload, delivery)
-        self._waiting.clear()
         self._attempted.set()
 
 
@@ -353,7 +372,13 @@ async def open_zenoh(
     """
     sessions = sessions_of(endpoint, listen, config_file)
     member = membership_of(config_file)
-    why_not = partial(bus_security.why_not, member, config_file) if member and config_file else str
-    bus = ZenohBus(sessions, endpoint_of(endpoint, config_file), why_not)
+    where = endpoint_of(endpoint, config_file)
+    if member is None or config_file is None or endpoint is not None:
+        bus = ZenohBus(sessions, where)
+    else:
+        from onboard.runtime.bus_field import FieldBus  # it is a ZenohBus, and more
+
+        bus = FieldBus(sessions, where, partial(bus_security.why_not, member, config_file), member, listen)
+        await bus.open_datagrams()
     await bus.first_attempt(FIRST_ATTEMPT_S)
     return bus
