@@ -36,6 +36,7 @@ IN_DATA = {
     Opcode.SCHEMA, Opcode.CHANNEL, Opcode.MESSAGE, Opcode.ATTACHMENT,
 }  # fmt: skip
 CHUNK_FIXED = 40  # bytes of a chunk's record beside the name of its compression and its data
+UNPACKED_MAX = 1 << 30  # [bytes] of a chunk; what says more is damaged
 BROKEN = (McapError, ValueError, error, zstandard.ZstdError, MemoryError)
 
 
@@ -233,6 +234,8 @@ def _unpacked(content: bytes) -> bytes:
     chunk = Chunk.read(ReadDataStream(BytesIO(content)))
     if CHUNK_FIXED + len(chunk.compression.encode()) + len(chunk.data) != len(content):
         raise ValueError("the chunk's length is not that of its contents")
+    if chunk.uncompressed_size > UNPACKED_MAX:
+        raise ValueError("the chunk says it unpacks to more than any chunk")
     stream, length = get_chunk_data_stream(chunk, validate_crc=True)
     return stream.read(length)
 

@@ -8,11 +8,10 @@ and the plain variant's course (43002) never does: so to end is to command LOITE
 
 from __future__ import annotations
 
-from math import atan, atan2, isfinite, tan
+from math import atan, atan2, tan
 
-from onboard.autopilot.base import Envelope, Note, ReleaseMode, Setpoint, Stage, Telemetry
-from onboard.autopilot.envelope import within
-from onboard.autopilot.guided import Traits
+from onboard.autopilot.base import Note, ReleaseMode, Setpoint, Stage, Telemetry
+from onboard.autopilot.guided import LARGEST, Traits
 from onboard.core.math.angles import wrap
 from onboard.core.math.constants import NEVER, STANDARD_GRAVITY
 from onboard.core.math.vectors import Vec, add, clamp, norm
@@ -87,15 +86,16 @@ class _OnChange:
 class ArduPlaneEncoder:
     """Roll (or course), altitude and airspeed for an ArduPlane in GUIDED; see `guided.SetpointEncoder`.
 
-    `plain` commands a course in place of a bank angle. Until the first setpoint the plane circles.
+    `plain` commands a course in place of a bank angle of at most `bank_max` [rad]. Until the first setpoint
+    the plane circles.
     """
 
-    def __init__(self, to: Target, envelope: Envelope, *, plain: bool = False) -> None:
+    def __init__(self, to: Target, bank_max: float, *, plain: bool = False) -> None:
         name = "arduplane-plain" if plain else "arduplane"
         self.traits = Traits(
             name, Kind.ARDUPLANE, "GUIDED", RELEASE, holds_airspeed=True, stops_in_silence=False
         )
-        self._envelope = envelope
+        self._bank_max = bank_max  # [rad]
         self._plain = plain
         self._to = to
         self._altitude, self._speed = _OnChange(ALTITUDE_STEP), _OnChange(SPEED_STEP)
@@ -116,7 +116,7 @@ class ArduPlaneEncoder:
 
     def fault(self, setpoint: Setpoint) -> str:
         """Return "not_finite" for a setpoint that is no number, "no_direction" for a stop."""
-        if not (isfinite(norm(setpoint.velocity)) and isfinite(norm(setpoint.wind))):
+        if not (norm(setpoint.velocity) < LARGEST and norm(setpoint.wind) < LARGEST):
             return "not_finite"
         return "no_direction" if norm(setpoint.velocity) <= 1e-6 else ""
 
@@ -140,14 +140,13 @@ class ArduPlaneEncoder:
 
     def encode(self, now: float, telemetry: Telemetry, setpoint: Setpoint) -> list[Outgoing]:
         """Return the roll target (or course), and altitude and airspeed where they are due."""
-        air = within(setpoint.velocity, self._envelope)
-        ground = add(air, setpoint.wind)
+        ground = add(setpoint.velocity, setpoint.wind)
         if telemetry.reboots != self._reboots:
             self._reboots = telemetry.reboots
             self._altitude.forget()
             self._speed.forget()
         messages = self._turn(now, telemetry, ground) + self._climb(now, telemetry, ground)
-        speed = clamp(norm(air), self._envelope.speed_min, self._envelope.speed_max)
+        speed = norm(setpoint.velocity)
         if self._speed.due(now, speed):
             messages.append(commands.change_speed(self._to, speed))
         return messages
@@ -160,19 +159,19 @@ class ArduPlaneEncoder:
             if now - self._turned_at < ROLL_EVERY:
                 return []
             self._turned_at = now
-            bank = bank_for(course, telemetry.velocity, telemetry.yaw, self._envelope.bank_max)
+            bank = bank_for(course, telemetry.velocity, telemetry.yaw, self._bank_max)
             return [RollTarget(self._to, telemetry.time_boot_s, bank)]
         stale = now - self._turned_at >= 1.0  # it may have been lost
         new = self._course == NEVER or abs(wrap(course - self._course)) >= COURSE_STEP
         if now - self._turned_at < COURSE_EVERY or not (new or stale):
             return []
         self._turned_at, self._course = now, course
-        lateral = STANDARD_GRAVITY * tan(self._envelope.bank_max)
+        lateral = STANDARD_GRAVITY * tan(self._bank_max)
         return [commands.change_heading(self._to, course, lateral)]
 
     def _climb(self, now: float, telemetry: Telemetry, ground: Vec) -> list[Outgoing]:
         """Altitude that follows the commanded climb: a reference integrates it, so that level stays level."""
-        climb = clamp(-ground.z, -self._envelope.sink_max, self._envelope.climb_max)
+        climb = -ground.z
         present = telemetry.altitude_m
         gap = now - self._at
         self._at = now

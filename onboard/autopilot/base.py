@@ -68,21 +68,10 @@ class Telemetry(NamedTuple):
 
 
 class Setpoint(NamedTuple):
-    """A velocity that the supervisor let pass."""
+    """A velocity that the supervisor let pass: within the vehicle's limits already, and sent as it is."""
 
     velocity: Vec  # [m/s; relative to the air, NED]
     wind: Vec = ZERO  # [m/s; NED] added for motion over ground; 0 for those who hold groundspeed
-
-
-class Envelope(NamedTuple):
-    """What the aircraft can do. The adapter's last word; the supervisor's limits are tighter."""
-
-    speed_min: float = 0.0  # [m/s; air]
-    speed_max: float = 15.0  # [m/s; air]
-    climb_max: float = 3.0  # [m/s]
-    sink_max: float = 2.0  # [m/s]
-    acceleration: float = 5.0  # [m/s²] change of a velocity target
-    bank_max: float = 0.785  # [rad]
 
 
 class Stage(Enum):

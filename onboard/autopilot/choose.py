@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from math import pi
 from types import MappingProxyType
 from typing import NamedTuple
 
 from onboard.autopilot.arduplane import ArduPlaneEncoder
-from onboard.autopilot.base import Adapter, Envelope, Refusal
+from onboard.autopilot.base import Adapter, Refusal
 from onboard.autopilot.guided import GuidedAdapter
 from onboard.autopilot.mavsdk import Child, Courier, MavsdkAdapter, MavsdkEncoder
 from onboard.autopilot.parameters import gcs_failsafe
@@ -39,7 +40,7 @@ class AdapterOptions(NamedTuple):
     may_arm: bool = False  # whether the adapter may ever arm
     hold_mode: str = ""  # a multicopter's mode to hold in, in its autopilot's words; "": the adapter's
     mavsdk_url: str = ""  # the connection that MAVSDK opens for itself, beside the agent's link
-    envelope: Envelope = Envelope()
+    bank_max: float = pi / 4  # [rad] of a plane
     launch: Callable[..., Courier] = Child  # starts MAVSDK's child process with the arguments given
 
 
@@ -59,12 +60,12 @@ def adapter_for(
     if reason:
         return Refusal(reason)
     if options.scheme == "mavsdk":
-        encoder = MavsdkEncoder(kind, to, options.envelope)
+        encoder = MavsdkEncoder(kind, to)
         return MavsdkAdapter(
             to, encoder, options.mavsdk_url, may_arm=options.may_arm, launch=options.launch
         )
     if kind is not Kind.ARDUPLANE:
-        velocity = VelocityEncoder(kind, to, options.envelope, options.hold_mode)
+        velocity = VelocityEncoder(kind, to, options.hold_mode)
         return GuidedAdapter(to, velocity, may_arm=options.may_arm)
     plain = options.scheme == "arduplane-plain"
     finding = gcs_failsafe(kind, parameters, to.system) if plain else None
@@ -72,7 +73,7 @@ def adapter_for(
         return Refusal(
             f"the course command of arduplane-plain never lapses, and {finding.text}: {finding.remedy}"
         )
-    return GuidedAdapter(to, ArduPlaneEncoder(to, options.envelope, plain=plain), may_arm=options.may_arm)
+    return GuidedAdapter(to, ArduPlaneEncoder(to, options.bank_max, plain=plain), may_arm=options.may_arm)
 
 
 def _refusal(heartbeat: Heartbeat, options: AdapterOptions) -> str:

@@ -12,6 +12,7 @@ from onboard.wire.mavlink.ids import MessageId
 from onboard.wire.mavlink.modes import MODES, Kind
 from onboard.wire.mavlink.values import CommandAck
 
+LARGEST = 1e38  # a number beyond it does not fit a 32-bit float of MAVLink
 FAULTS = {
     "not_finite": "a setpoint that is no number was not sent",
     "no_direction": "a plane cannot stand still: give no setpoint, or leave to loiter",

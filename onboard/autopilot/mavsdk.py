@@ -17,7 +17,7 @@ from math import degrees
 from struct import Struct
 from typing import Protocol
 
-from onboard.autopilot.base import Envelope, Note, ReleaseMode, Setpoint, Stage, Step, Telemetry
+from onboard.autopilot.base import Note, ReleaseMode, Setpoint, Stage, Step, Telemetry
 from onboard.autopilot.guided import GuidedAdapter
 from onboard.autopilot.velocity import VelocityEncoder
 from onboard.core.math.constants import NEVER
@@ -105,8 +105,8 @@ class Child:
 class MavsdkEncoder(VelocityEncoder):
     """Velocity targets as the child takes them: always with a yaw, and while it asks for offboard too."""
 
-    def __init__(self, kind: Kind, to: Target, envelope: Envelope) -> None:
-        super().__init__(kind, to, envelope)
+    def __init__(self, kind: Kind, to: Target) -> None:
+        super().__init__(kind, to)
         self.traits = self.traits._replace(name="mavsdk")
         self._looks = True
 

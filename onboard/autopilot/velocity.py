@@ -12,17 +12,18 @@ LOITER needs a pilot's throttle stick in the middle: without a transmitter hold 
 
 from __future__ import annotations
 
-from math import atan2, isfinite
+from math import atan2
 
-from onboard.autopilot.base import Envelope, Note, ReleaseMode, Setpoint, Stage, Telemetry
-from onboard.autopilot.envelope import Shaper
-from onboard.autopilot.guided import Traits
+from onboard.autopilot.base import Note, ReleaseMode, Setpoint, Stage, Telemetry
+from onboard.autopilot.guided import LARGEST, Traits
+from onboard.core.math.constants import NEVER
 from onboard.core.math.vectors import Vec, add, norm
 from onboard.wire.mavlink.commands import Outgoing, Target, VelocityTarget
 from onboard.wire.mavlink.modes import Kind
 from onboard.wire.mavlink.values import CommandAck
 
 STREAM_BEFORE = 1.2  # [s] of targets before PX4 is asked for OFFBOARD (it wants 1 s at 2 Hz or more)
+GAP = 0.4  # [s] without a target after which the stream begins again
 TURNING = 0.5  # [m/s; ground] below this the vehicle keeps looking where it looks
 
 GUIDED = {Kind.PX4_MULTICOPTER: "OFFBOARD", Kind.ARDUCOPTER: "GUIDED"}
@@ -46,20 +47,42 @@ def yaw_along(velocity: Vec, present: float) -> float:
     return atan2(velocity.y, velocity.x) if moving else present
 
 
+class TargetStream:
+    """Since when targets have been flowing without a gap. Instants are local monotonic seconds."""
+
+    def __init__(self) -> None:
+        self._since = NEVER
+        self._at = NEVER  # of the newest target
+
+    def lasted(self, now: float) -> float:
+        """Return how long targets have been flowing [s]; 0 after a gap."""
+        return now - self._since if now - self._at <= GAP else 0.0
+
+    def sent(self, now: float) -> None:
+        """Hear that a target goes out."""
+        if now - self._at > GAP:
+            self._since = now
+        self._at = now
+
+    def restart(self) -> None:
+        """The next target begins a new stream."""
+        self._at = NEVER
+
+
 class VelocityEncoder:
     """Velocity targets for a PX4 multicopter or an ArduCopter; see `guided.SetpointEncoder`."""
 
-    def __init__(self, kind: Kind, to: Target, envelope: Envelope, hold_mode: str = "") -> None:
+    def __init__(self, kind: Kind, to: Target, hold_mode: str = "") -> None:
         release = {**RELEASE[kind], **({ReleaseMode.HOLD: hold_mode} if hold_mode else {})}
         self.traits = Traits("velocity", kind, GUIDED[kind], release)
         self._to = to
         self._px4 = kind is Kind.PX4_MULTICOPTER
         self._looks = self._px4  # targets say where the vehicle looks
-        self._shaper = Shaper(envelope)
+        self._stream = TargetStream()
 
     def ready(self, now: float) -> bool:
         """Return whether PX4 has seen enough targets; ArduCopter needs none."""
-        return not self._px4 or self._shaper.streamed(now) >= STREAM_BEFORE
+        return not self._px4 or self._stream.lasted(now) >= STREAM_BEFORE
 
     def sends_in(self, stage: Stage) -> bool:
         """Return whether targets count: in the guided mode, and before it for PX4."""
@@ -67,7 +90,7 @@ class VelocityEncoder:
 
     def fault(self, setpoint: Setpoint) -> str:
         """Return "not_finite" for a setpoint that is no number."""
-        return "" if isfinite(norm(add(setpoint.velocity, setpoint.wind))) else "not_finite"
+        return "" if norm(add(setpoint.velocity, setpoint.wind)) < LARGEST else "not_finite"
 
     def encode(self, now: float, telemetry: Telemetry, setpoint: Setpoint) -> list[Outgoing]:
         """Return one target."""
@@ -75,7 +98,8 @@ class VelocityEncoder:
 
     def target(self, now: float, telemetry: Telemetry, setpoint: Setpoint) -> VelocityTarget:
         """Return the target for a setpoint without fault."""
-        wanted = self._shaper.shape(now, add(setpoint.velocity, setpoint.wind))
+        self._stream.sent(now)
+        wanted = add(setpoint.velocity, setpoint.wind)
         yaw = yaw_along(wanted, telemetry.yaw) if self._looks else None
         return VelocityTarget(self._to, telemetry.time_boot_s, wanted, yaw)
 
@@ -85,4 +109,4 @@ class VelocityEncoder:
 
     def restart(self) -> None:
         """The next target begins a new stream."""
-        self._shaper.restart()
+        self._stream.restart()

@@ -19,7 +19,15 @@ from onboard.game.scenario import Scenario
 from onboard.runtime.loop import virtual_clock
 from onboard.runtime.protocols import Clock, Sample
 from onboard.wire.bus import topics
-from onboard.wire.bus.messages import Command, CommandKind, CommandReply, Event, Phase, Severity
+from onboard.wire.bus.messages import (
+    Command,
+    CommandKind,
+    CommandReply,
+    Event,
+    OutcomeResult,
+    Phase,
+    Severity,
+)
 from onboard.wire.bus.topics import COMMAND, everything
 from sim_bridge.rehearsal import Options, Rehearsal
 from sim_bridge.vehicle.autopilot.autopilot import Autopilot
@@ -27,7 +35,6 @@ from sim_bridge.vehicle.autopilot.autopilot import Autopilot
 STORY = ["staging", "ready", "running", "ended", "recovery"]
 LAST_EVENTS = 20  # of each vehicle, in the text of a failure
 SETPOINT = 84  # SET_POSITION_TARGET_LOCAL_NED, as the eighth byte of a frame tells
-ABORTED = "aborted"  # the verdict that a story may expect of its game
 
 
 class GameError(AssertionError):
@@ -107,7 +114,7 @@ class WholeGame(Rehearsal):
             expected = self._any_error or (event.id, event.kind) in self._expected
             if event.severity is Severity.ERROR and not expected:
                 raise GameError(f"vehicle {event.id} told an error that nobody expects: {self._told(event)}")
-        given_up = self.outcome is not None and self.outcome.verdict == ABORTED
+        given_up = self.outcome is not None and self.outcome.verdict is OutcomeResult.ABORTED
         if given_up and not self._aborts:
             raise GameError(f"the game was given up: {self.outcome and self.outcome.reason}")
 

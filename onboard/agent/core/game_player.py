@@ -169,7 +169,6 @@ class GamePlayer:
         origin = setup.origin
         self._vehicle.observer.frame = Frame(origin.latitude_deg, origin.longitude_deg, origin.altitude_m)
         self.policy = limits.policy_of(self.config, setup, hovers)
-        self._vehicle.envelope(limits.adapter_envelope(self.config, self.policy.envelope))
         mates = (m.id for m in setup.roster if m.role is self.config.role and m.id != self.config.id)
         self._bus.follow(tuple(mates))
         game = limits.game_setup(self.config, setup, self._bus.target, hovers)

@@ -1,11 +1,10 @@
-"""From configuration and setup to the supervisor's policy, the adapter's envelope, the strategy's limits."""
+"""From configuration and setup to the supervisor's policy and the strategy's limits."""
 
 from __future__ import annotations
 
 from math import asin, pi, radians, sin, tan
 
 from onboard.agent.config import AgentConfig
-from onboard.autopilot import base
 from onboard.core.game.rules import NO_TARGET, Control, Target
 from onboard.core.math.constants import STANDARD_GRAVITY
 from onboard.core.math.states import VehicleLimits
@@ -45,18 +44,6 @@ def envelope_of(config: AgentConfig, member: Member | None, hovers: bool) -> Env
         acceleration=e.acceleration,
         deceleration=e.deceleration,
         turn_radius=radius,
-    )
-
-
-def adapter_envelope(config: AgentConfig, envelope: Envelope) -> base.Envelope:
-    """The adapter's last word: a little wider than the supervisor's, so that both never fight."""
-    return base.Envelope(
-        speed_min=envelope.speed_min,
-        speed_max=envelope.speed_max,
-        climb_max=envelope.climb_max,
-        sink_max=envelope.sink_max,
-        acceleration=1.5 * envelope.acceleration,
-        bank_max=radians(config.envelope.bank_max_deg),
     )
 
 

@@ -113,7 +113,6 @@ class RoutePlayer:
         )  # fmt: skip
         envelope = limits.envelope_of(self.config, member, hovers)
         self.policy = limits.policy_of(self.config, setup, hovers)._replace(envelope=envelope)
-        vehicle.envelope(limits.adapter_envelope(self.config, envelope))
         self._placed = True
         last, count = self.route.waypoints[-1], len(self.route.waypoints)
         self._journal.info("route", f"{self.route.name}: {count} waypoints in {last.time:.0f} s")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from enum import Enum
+from math import radians
 
 from onboard.agent.config import AgentConfig
 from onboard.agent.core.child_courier import ChildCourier
@@ -11,7 +12,7 @@ from onboard.agent.core.events import Outbox
 from onboard.agent.core.journal import Journal
 from onboard.agent.core.mavlink_radio import Radio
 from onboard.agent.core.telemetry_requests import Requests
-from onboard.autopilot.base import Adapter, Envelope, Refusal, Setpoint, Stage, Telemetry
+from onboard.autopilot.base import Adapter, Refusal, Setpoint, Stage, Telemetry
 from onboard.autopilot.choose import AdapterOptions, adapter_for
 from onboard.autopilot.telemetry_state import Observer
 from onboard.core.math.constants import NEVER, NS_PER_S
@@ -94,7 +95,6 @@ class VehicleLink:
         self._journal = journal
         self._child = ChildCourier(out)
         self._heartbeat: Heartbeat | None = None
-        self._envelope = Envelope()
         self._asking: Requests | None = None
         self._reboots = 0
         self._stepped_at = NEVER
@@ -159,13 +159,6 @@ class VehicleLink:
             if self._asking is not None:
                 self._asking.again()
         return self.telemetry
-
-    def envelope(self, envelope: Envelope) -> None:
-        """Another game, another envelope: a new adapter, unless the present one is flying."""
-        self._envelope = envelope
-        if self._heartbeat is not None and self.stage in (Stage.IDLE, Stage.LEFT):
-            self.adapter = None
-            self._discover(self._heartbeat)
 
     def step(self, now: float, setpoint: Setpoint | None) -> Control:
         """Send what the adapter wants sent, and note what it says; gives whether control changed hands."""
@@ -236,7 +229,7 @@ class VehicleLink:
                 self.config.may_arm,
                 self.config.hold_mode,
                 self.config.mavsdk,
-                self._envelope,
+                radians(self.config.envelope.bank_max_deg),
                 self._child.launch,
             ),
             self.parameters,

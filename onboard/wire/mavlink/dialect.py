@@ -124,16 +124,24 @@ def dialect_packet(raw: bytes) -> DialectPacket:
 class DialectSender:
     """One MAVLink component: the dialect's messages → frames, with the running sequence number.
 
-    With `signing` every frame is signed for `link_id`, stamped by max(last + 1, clock).
+    `sequence` is the number of the first frame. With `signing` every frame is signed for `link_id`, stamped
+    by max(last + 1, clock).
     """
 
     def __init__(
-        self, system: int, component: int, *, signing: Signing | None = None, link_id: int = 0
+        self,
+        system: int,
+        component: int,
+        *,
+        signing: Signing | None = None,
+        link_id: int = 0,
+        sequence: int = 0,
     ) -> None:
         self.system = system
         self.component = component
         self._signing = signing
         self._mav = dialect.MAVLink(None, srcSystem=system, srcComponent=component)
+        self._mav.seq = sequence
         if signing is not None:
             self._mav.signing.secret_key = signing.key
             self._mav.signing.link_id = link_id

@@ -22,7 +22,6 @@ from gcs.report.figures import NAMES, figures
 from gcs.report.program import read_run, write_report
 from onboard.config.strict import ConfigError
 from onboard.core.route.choice import TrackRule
-from onboard.core.safety.policy import Action
 from onboard.core.strategy.knowledge import RuleId
 from onboard.game import palette
 from onboard.wire.bus import messages, topics
@@ -128,9 +127,9 @@ def test_the_palette_tells_colours_apart() -> None:
     assert [palette.vehicle(i, evader=False) for i in (2, 3, 10)] == [
         palette.PURSUERS[0], palette.PURSUERS[1], palette.PURSUERS[0],
     ]  # fmt: skip
-    assert {palette.action(a.name.lower()) for a in Action if a is not Action.PASS} <= set(
-        palette.ACTIONS.values()
-    )
+    actions = {action.value for action in messages.SupervisorAction} - {"ok"}
+    assert actions <= set(palette.ACTIONS)
+    assert actions <= set(theme.ACTIONS)
 
 
 @pytest.mark.parametrize("rule", [r for r in (*RuleId, *TrackRule) if r.name not in ("NONE", "CUSTOM")])
@@ -311,7 +310,8 @@ def test_words_from_the_network_cannot_become_markup(tmp_path: Path) -> None:
     evil = "</script><img src=http://x/y onerror=alert(1)>"
     event = messages.Event(2, 1, EPOCH_NS, messages.Severity.ERROR, evil, evil)
     report = messages.DecisionReport(
-        2, EPOCH_NS, 0.0, evil, evil, evil, evil, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0, 0.0
+        2, EPOCH_NS, 0.0, messages.DecisionLevel.TACTICAL, messages.DecisionModule.GEOMETRIC, evil, evil,
+        (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0, 0.0,
     )
     items = [
         *flight(3.0),

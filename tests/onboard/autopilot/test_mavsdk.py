@@ -13,7 +13,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-from onboard.autopilot.base import Envelope, Note, ReleaseMode, Setpoint, Stage, Telemetry
+from onboard.autopilot.base import Note, ReleaseMode, Setpoint, Stage, Telemetry
 from onboard.autopilot.mavsdk import LINE, RELEASE, SETPOINT, MavsdkAdapter, MavsdkEncoder
 from onboard.autopilot.mavsdk_child import Feeder
 from onboard.core.math.vectors import Vec
@@ -91,7 +91,7 @@ class Pilot:
 
     def __init__(self, vehicle: Vehicle) -> None:
         self.vehicle = vehicle
-        encoder = MavsdkEncoder(Kind.PX4_MULTICOPTER, Target(1), Envelope())
+        encoder = MavsdkEncoder(Kind.PX4_MULTICOPTER, Target(1))
         self.adapter = MavsdkAdapter(Target(1), encoder, vehicle.url)
         self.notes: list[Note] = []
 

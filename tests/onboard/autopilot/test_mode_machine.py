@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onboard.autopilot.arduplane import ArduPlaneEncoder
-from onboard.autopilot.base import Adapter, Envelope, ReleaseMode, Setpoint, Stage, Telemetry
+from onboard.autopilot.base import Adapter, ReleaseMode, Setpoint, Stage, Telemetry
 from onboard.autopilot.guided import GuidedAdapter
 from onboard.autopilot.velocity import VelocityEncoder
 from onboard.core.math.vectors import Vec
@@ -22,8 +22,8 @@ KINDS = (Kind.PX4_MULTICOPTER, Kind.ARDUCOPTER, Kind.ARDUPLANE)
 
 def adapter_of(kind: Kind) -> Adapter:
     if kind is Kind.ARDUPLANE:
-        return GuidedAdapter(Target(1), ArduPlaneEncoder(Target(1), Envelope(speed_min=12.0)))
-    return GuidedAdapter(Target(1), VelocityEncoder(kind, Target(1), Envelope()))
+        return GuidedAdapter(Target(1), ArduPlaneEncoder(Target(1), 0.785))
+    return GuidedAdapter(Target(1), VelocityEncoder(kind, Target(1)))
 
 
 happening = st.one_of(

@@ -21,9 +21,7 @@ from tests.support.paths import RECORDINGS
 
 
 def packet(message: MavMessage, sequence: int = 0, system: int = 1, component: int = 1) -> Packet:
-    sender = DialectSender(system, component)
-    for _ in range(sequence):
-        sender.pack(message)
+    sender = DialectSender(system, component, sequence=sequence)
     (found,) = Framer().feed(sender.pack(message))
     return found
 

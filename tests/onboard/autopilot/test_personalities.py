@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from onboard.autopilot import health
-from onboard.autopilot.base import Envelope, Note, Refusal, ReleaseMode, Setpoint, Stage
+from onboard.autopilot.base import Note, Refusal, ReleaseMode, Setpoint, Stage
 from onboard.autopilot.choose import AdapterOptions, adapter_for
 from onboard.autopilot.stream_rates import StreamRates
 from onboard.autopilot.telemetry_state import Observer
@@ -29,9 +29,6 @@ from tests.support.flown_autopilot import ORIGIN, FlownAutopilot
 KINDS = pytest.mark.parametrize("kind", list(Kind), ids=lambda kind: kind.value)
 HOLD = {Kind.PX4: "HOLD", Kind.ARDUCOPTER: "LOITER", Kind.ARDUPLANE: "LOITER"}
 GUIDED = {Kind.PX4: "OFFBOARD", Kind.ARDUCOPTER: "GUIDED", Kind.ARDUPLANE: "GUIDED"}
-PLANE_ENVELOPE = Envelope(
-    speed_min=12.0, speed_max=28.0, climb_max=4.0, sink_max=4.0, bank_max=radians(45), acceleration=0.0
-)
 
 
 class Flight:
@@ -66,9 +63,7 @@ class Flight:
         chosen = adapter_for(
             Heartbeat(heart.kind, 0, 0, 0, heart.mode, heart.armed, 4),
             Target(1),
-            AdapterOptions(
-                scheme, envelope=PLANE_ENVELOPE if kind == Kind.ARDUPLANE else Envelope(acceleration=0.0)
-            ),
+            AdapterOptions(scheme),
             parameters or {},
         )
         assert not isinstance(chosen, Refusal)
