@@ -16,6 +16,7 @@ from onboard.wire.bus.topics import COMMAND, ID, STATE, TOPICS, Delivery, Table,
 BY_DATAGRAM: tuple[Topic[Any], ...] = (STATE, COMMAND)  # these travel as datagrams too
 KEPT = (Delivery.CACHED, Delivery.EVENT)
 LATEST_FACTOR = 5.0  # a topic's nominal rate times this passes the listener, and no more
+ORDERS_HZ = 50.0  # orders of one station to one vehicle that pass the listener
 PAYLOAD_MAX = 65_536  # [bytes] no message of the table comes near it
 
 
@@ -76,7 +77,8 @@ def low_pass() -> list[dict[str, Any]]:
 
 
 def downsampling(roster: FieldRoster, table: Table = TOPICS) -> list[dict[str, Any]]:
-    """Zenoh's `downsampling` for the station that listens: a bound on the rate of each LATEST key.
+    """Zenoh's `downsampling` for the station that listens: a bound on the rate of each LATEST key
+    and of orders.
 
     Each connection has its own count, so nobody uses up another's share.
     """
@@ -87,7 +89,11 @@ def downsampling(roster: FieldRoster, table: Table = TOPICS) -> list[dict[str, A
         if topic.delivery is Delivery.LATEST and topic.rate_hz > 0.0
         for id in (ids if ID in topic.suffix else [None])
     ]
-    return [{"id": "rates", "flows": ["ingress"], "messages": ["put"], "rules": rules}]
+    orders = [{"key_expr": COMMAND.key(roster.game, id), "freq": ORDERS_HZ} for id in ids]
+    return [
+        {"id": "rates", "flows": ["ingress"], "messages": ["put"], "rules": rules},
+        {"id": "orders", "flows": ["ingress"], "messages": ["query"], "rules": orders},
+    ]
 
 
 def _rules(member: Member, roster: FieldRoster, table: Table) -> list[dict[str, Any]]:

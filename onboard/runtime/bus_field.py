@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import asyncio
 import secrets
+from collections import Counter
 from collections.abc import Callable
 from typing import Any
 
@@ -19,6 +20,7 @@ from onboard.runtime.links import UdpLink, open_udp
 from onboard.runtime.membership import Membership
 from onboard.runtime.patterns import matches
 from onboard.runtime.protocols import Sample, Subscription
+from onboard.runtime.rate_limit import BusLimit
 from onboard.runtime.zenoh_config import Candidate
 from onboard.wire.bus.topics import Delivery, echo_key
 
@@ -63,6 +65,7 @@ class FieldBus(ZenohBus):
         hooks = Hooks(self._send, self._deliver, self._answer, self._take_reply)
         address = None if member.listens else (member.host, member.port)
         self._path = DatagramPath(member, _draw, self._loop.time, hooks, address)
+        self._datagram_limit = BusLimit()
         self._link: UdpLink | None = None
         self._hearers: list[tuple[str, Callable[[Sample], None]]] = []
         self._serving: dict[str, Callable[[bytes], bytes]] = {}
@@ -90,7 +93,9 @@ class FieldBus(ZenohBus):
 
     def counters(self) -> dict[str, int]:
         """Those of the session, and those of the datagrams."""
-        return super().counters() | self._path.counters()
+        limited = Counter(self._datagram_limit.counters())
+        limited.update(super().counters())
+        return dict(limited) | self._path.counters()
 
     def publish(self, key: str, payload: bytes, delivery: Delivery) -> None:
         """Put a message on the session, and by datagram where it is of a topic that travels so."""
@@ -159,6 +164,8 @@ class FieldBus(ZenohBus):
             self._link.send(data, address)
 
     def _deliver(self, sample: Sample) -> None:
+        if not self._datagram_limit.admits(sample.key, len(sample.payload), self._loop.time()):
+            return
         if len(self._heard_at) >= HEARD_MAX:
             self._heard_at.clear()
         self._heard_at[sample.key] = self._loop.time()
@@ -168,7 +175,9 @@ class FieldBus(ZenohBus):
 
     def _answer(self, key: str, question: bytes) -> bytes | None:
         handler = self._serving.get(key)
-        return None if handler is None else handler(question)
+        if handler is None or not self._datagram_limit.admits(key, len(question), self._loop.time()):
+            return None
+        return handler(question)
 
     def _take_reply(self, number: int, key: str, reply: bytes) -> None:
         asked = self._asking.get(number)

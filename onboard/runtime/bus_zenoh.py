@@ -24,6 +24,7 @@ from onboard.runtime.inbox import Inbox
 from onboard.runtime.membership import membership_of
 from onboard.runtime.patterns import intersects
 from onboard.runtime.protocols import Sample, Subscription
+from onboard.runtime.rate_limit import PAYLOAD_MAX, BusLimit
 from onboard.runtime.zenoh_config import Candidate, endpoint_of, first_sentence, sessions_of
 from onboard.wire.bus.topics import TOPICS, Delivery
 
@@ -77,6 +78,7 @@ class ZenohBus:
         self._why_not = why_not  # asked, on a thread, for words when no session opens
         self._loop = asyncio.get_running_loop()
         self._inbox = Inbox(self._loop)
+        self._limit = BusLimit()
         self._declared: list[_Declared] = []
         self._publishers: dict[str, Any] = {}
         self._kept: dict[str, tuple[Delivery, deque[bytes]]] = {}  # for a session that is yet to come
@@ -110,7 +112,7 @@ class ZenohBus:
 
     def counters(self) -> dict[str, int]:
         """published, received, and what was dropped by cause."""
-        return dict(self._inbox.counts)
+        return dict(self._inbox.counts) | self._limit.counters()
 
     def publish(self, key: str, payload: bytes, delivery: Delivery) -> None:
         """Put a message; never blocks. Counts `no_bus` where nobody is connected."""
@@ -151,9 +153,15 @@ class ZenohBus:
             if sample.kind != zenoh.SampleKind.PUT:
                 return
             key = str(sample.key_expr)
-            call = partial(deliver, Sample(key, sample.payload.to_bytes()))
+            admitted = self._limit.admits(key, len(sample.payload), self._loop.time())
             place = TOPICS.find(key)
-            if place is not None and place.topic.delivery is Delivery.LATEST and not every:
+            newest = place is not None and place.topic.delivery is Delivery.LATEST
+            if not admitted and (not newest or len(sample.payload) > PAYLOAD_MAX):
+                return
+            call = partial(deliver, Sample(key, sample.payload.to_bytes()))
+            if not admitted:  # the newest of a flood counts, but not every one of them
+                inbox.latest_later((slot, key), call)
+            elif newest and not every:
                 inbox.latest((slot, key), call)
             else:
                 inbox.queue(call)
@@ -192,6 +200,10 @@ class ZenohBus:
                 query.reply(key, handler(question))
 
         def asked(query: Any) -> None:  # on a thread of Zenoh's
+            size = 0 if query.payload is None else len(query.payload)
+            if not self._limit.admits(key, size, self._loop.time()):
+                query.drop()
+                return
             self._inbox.queue(partial(answer, query))
 
         declared = self._declare(
@@ -324,7 +336,10 @@ class ZenohBus:
             self._stop.wait(RETRY_S)
 
     def _close_in_thread(self, session: Any, closed: asyncio.Event | None = None) -> None:
-        session.close()
+        try:
+            session.close()
+        except zenoh.ZError:  # over a bad network it may give up
+            self._inbox.counts["close_timeout"] += 1
         if closed is not None:
             self._inbox.queue(closed.set)
 
