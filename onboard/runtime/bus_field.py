@@ -65,6 +65,7 @@ class FieldBus(ZenohBus):
         hooks = Hooks(self._send, self._deliver, self._answer, self._take_reply)
         address = None if member.listens else (member.host, member.port)
         self._path = DatagramPath(member, _draw, self._loop.time, hooks, address)
+        self._unanswered = False  # the listener let the last session in and gave no echo
         self._datagram_limit = BusLimit()
         self._link: UdpLink | None = None
         self._hearers: list[tuple[str, Callable[[Sample], None]]] = []
@@ -74,6 +75,12 @@ class FieldBus(ZenohBus):
         self._tasks: list[asyncio.Task[None]] = []
         if self._hub:
             self._echoing = super().serve(self._echo_key, lambda question: question)
+
+    def status(self) -> str:
+        """As of the session; and where the listener lets it in but answers nothing."""
+        name = self.member.certificate
+        asked = f"; the listener answers nothing: is {name} in its roster?" if self._unanswered else ""
+        return super().status() + asked
 
     async def open_datagrams(self) -> None:
         """Open the socket and begin to beat. A port that is taken leaves the bus without datagrams."""
@@ -199,9 +206,10 @@ class FieldBus(ZenohBus):
             if self._session is None:
                 answered_at = now
             elif await self._over_session(self._echo_key, b"", ECHO_S):
-                answered_at, patience = self._loop.time(), ECHO_AGE_S
+                answered_at, patience, self._unanswered = self._loop.time(), ECHO_AGE_S, False
             elif self._loop.time() - answered_at > patience:
                 patience = min(2.0 * patience, ECHO_AGE_MAX_S)
+                self._unanswered = True
                 self.reopen()
 
 

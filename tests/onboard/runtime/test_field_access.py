@@ -21,6 +21,7 @@ from onboard.wire.bus.topics import (
     EVENTS,
     ID,
     SETUP,
+    STATE,
     TOPICS,
     Delivery,
     Party,
@@ -231,6 +232,34 @@ async def test_who_comes_late_gets_what_is_kept_through_the_rules(tmp_path: Path
     finally:
         for bus in buses[::-1]:
             await bus.close()
+
+
+@pytest.mark.real
+async def test_a_member_whose_certificate_was_revoked_is_told_so(tmp_path: Path) -> None:
+    field = Field(tmp_path / "keys").make()
+    old = tmp_path / "old" / "vehicle-3"
+    old.mkdir(parents=True)
+    for file in field.config("vehicle-3").parent.iterdir():
+        (old / file.name).write_bytes(file.read_bytes())
+        (old / file.name).chmod(0o600)
+    field.change("id = 3\n", "id = 3\nkey = 2\n")
+    field.make()
+    ground = await open_zenoh(listen=True, config_file=field.config("ground"))
+    bus = await open_zenoh(config_file=old / "zenoh.json5")
+    try:
+        heard: list[Any] = []
+        ground.subscribe(everything(GAME), heard.append)
+
+        def told() -> bool:
+            bus.publish(STATE.key(GAME, 3), b"forged", Delivery.LATEST)
+            return "is vehicle-3.1 in its roster?" in bus.status()
+
+        await until(told)
+        assert heard == []
+        assert ground.counters()["datagrams_foreign"] > 0
+    finally:
+        await bus.close()
+        await ground.close()
 
 
 def _keys(deliveries: tuple[Delivery, ...]) -> set[str]:
