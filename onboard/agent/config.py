@@ -154,7 +154,8 @@ class AgentConfig(StrictConfig, frozen=True):
     link: Links = ()  # missing = udpin://127.0.0.1:14539+id; two: the second stands by
     autopilot: AdapterChoice = AdapterChoice.AUTO
     bus: str = ""  # Zenoh endpoint; missing = tcp/127.0.0.1:7447
-    zenoh: str = ""  # Zenoh configuration file (JSON5) for TLS, access control, routers
+    zenoh: str = ""  # Zenoh configuration file (JSON5): of `gcs keys init`, or one for TLS, routers
+    open_bus: bool = False  # with field = true: fly on a bus without keys all the same
     strategy: str = ""  # missing = the setup's, or the role's default
     route: str = ""  # route file of a tracker
     take_control: bool = False  # enter GUIDED / OFFBOARD by itself at the start
