@@ -72,8 +72,11 @@ class VelocityEncoder:
         return not self._px4 or self._stream.lasted(now) >= STREAM_BEFORE
 
     def sends_in(self, stage: Stage) -> bool:
-        """Return whether targets count: in the guided mode, and before it for PX4."""
-        return stage is Stage.ACTIVE or (self._px4 and stage in (Stage.IDLE, Stage.ENTERING))
+        """Return whether targets count: in the guided mode, and for PX4 on the way into it.
+
+        Never unasked: PX4 enters OFFBOARD again by itself when targets return after its signal-loss failsafe.
+        """
+        return stage is Stage.ACTIVE or (self._px4 and stage is Stage.ENTERING)
 
     def fault(self, setpoint: Setpoint) -> str:
         """Return "not_finite" for a setpoint that is no number."""
