@@ -53,8 +53,13 @@ class Kind(Enum):
     """Which autopilot flies a vehicle."""
 
     PX4 = "px4"
+    PX4_PLANE = "px4-plane"
     ARDUCOPTER = "arducopter"
     ARDUPLANE = "arduplane"
+
+
+WINGED = frozenset((Kind.ARDUPLANE, Kind.PX4_PLANE))
+"""The kinds that fly planes."""
 
 
 class AirframeKind(Enum):

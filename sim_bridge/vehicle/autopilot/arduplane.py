@@ -6,7 +6,7 @@ Priority sideways in GUIDED: a fresh roll, then the course or heading of 43002, 
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import asin, atan, atan2, ceil, degrees, floor, hypot, isfinite, pi, radians, sin
+from math import asin, atan2, ceil, degrees, floor, isfinite, radians, sin
 
 from onboard.core.math.constants import STANDARD_GRAVITY
 from onboard.core.math.vectors import ZERO, clamp
@@ -20,6 +20,7 @@ from sim_bridge.vehicle.autopilot.command import ACCEPTED, DENIED, FAILED, Comma
 from sim_bridge.vehicle.autopilot.generations import ADDED, renamed
 from sim_bridge.vehicle.autopilot.parameters import Parameters
 from sim_bridge.vehicle.autopilot.setup import Setup
+from sim_bridge.vehicle.autopilot.winged import ALTITUDE_S, circling_course
 from sim_bridge.vehicle.motion import Demand, Lateral
 
 M = ARDUPLANE_MODES
@@ -33,8 +34,6 @@ BLOCKABLE = (
     "LOITER", "TAKEOFF", "AVOID_ADSB", "GUIDED", "THERMAL",
 )  # fmt: skip
 LAPSE_S = 3.0  # of a forced attitude
-ALTITUDE_S = 3.3  # [s] climb rate per altitude error
-CIRCLE_GAIN = 2.0  # how steeply it turns towards a circle, per radius
 COURSE_OVER_GROUND, HEADING = 0, 1  # 43002, param1
 TAKEOFF_CLIMB = 5.0  # [m/s]
 FAST = 1000.0  # [m/s² or m/s] "as fast as possible"
@@ -203,14 +202,8 @@ class ArduPlane(ArduPilot):
 
     def _circling(self) -> float:
         """Course onto and around the circle [rad]."""
-        p, c = self.motion.position, self._centre
-        north, east = p.x - c.x, p.y - c.y
         radius = self._radius or self.parameters["WP_LOITER_RAD"]
-        if hypot(north, east) < 1.0:
-            return self.motion.yaw
-        outward = atan2(east, north)
-        inward = atan(CIRCLE_GAIN * (hypot(north, east) - radius) / radius)
-        return outward + self._turn * (0.5 * pi + inward)
+        return circling_course(self.motion.position, self.motion.yaw, self._centre, radius, self._turn)
 
     def _climb(self, now_ns: int) -> float:
         """Climb rate [m/s, up]."""

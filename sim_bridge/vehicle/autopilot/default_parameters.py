@@ -71,20 +71,37 @@ ARDUPLANE = ARDUPILOT + _table(
         },
     }
 )  # fmt: skip
-PX4 = _table(
+PX4_COMMON = _table(
     {
         INT32: {
-            "MAV_SYS_ID": 1, "MAV_COMP_ID": 1, "MAV_TYPE": 2, "SYS_AUTOSTART": 4001, "COM_OBL_RC_ACT": 5,
+            "MAV_SYS_ID": 1, "MAV_COMP_ID": 1, "COM_OBL_RC_ACT": 5, "COM_RC_OVERRIDE": 1,
             "COM_RC_IN_MODE": 1, "COM_RCL_EXCEPT": 4, "NAV_RCL_ACT": 2, "NAV_DLL_ACT": 0,
-            "COM_DL_LOSS_T": 10, "COM_LOW_BAT_ACT": 0, "GF_ACTION": 2, "COM_RC_OVERRIDE": 1, "SDLOG_MODE": 0,
+            "COM_DL_LOSS_T": 10, "COM_LOW_BAT_ACT": 0, "GF_ACTION": 2, "SDLOG_MODE": 0,
             "CAL_MAG0_ID": 197388, "CAL_GYRO0_ID": 1310988, "CAL_ACC0_ID": 1310988, "EKF2_EN": 1,
         },
         REAL32: {
             "COM_FAIL_ACT_T": 5.0, "COM_RC_LOSS_T": 0.5, "GF_MAX_HOR_DIST": 0.0, "GF_MAX_VER_DIST": 0.0,
-            "COM_OF_LOSS_T": 1.0, "COM_DISARM_LAND": 2.0, "COM_DISARM_PRFLT": 10.0,
-            "MIS_TAKEOFF_ALT": 2.5, "MPC_XY_VEL_MAX": 12.0, "MPC_XY_CRUISE": 5.0, "MPC_Z_VEL_MAX_UP": 3.0,
-            "MPC_Z_VEL_MAX_DN": 1.5, "MPC_LAND_SPEED": 0.7, "RTL_RETURN_ALT": 30.0, "RTL_LAND_DELAY": 0.0,
+            "COM_OF_LOSS_T": 1.0, "COM_DISARM_LAND": 2.0, "COM_DISARM_PRFLT": 10.0, "RTL_LAND_DELAY": 0.0,
             "BAT_LOW_THR": 0.15, "BAT_CRIT_THR": 0.07, "BAT_EMERGEN_THR": 0.05,
+        },
+    }
+)  # fmt: skip
+PX4 = PX4_COMMON + _table(
+    {
+        INT32: {"MAV_TYPE": 2, "SYS_AUTOSTART": 4001},
+        REAL32: {
+            "MIS_TAKEOFF_ALT": 2.5, "MPC_XY_VEL_MAX": 12.0, "MPC_XY_CRUISE": 5.0, "MPC_Z_VEL_MAX_UP": 3.0,
+            "MPC_Z_VEL_MAX_DN": 1.5, "MPC_LAND_SPEED": 0.7, "RTL_RETURN_ALT": 30.0,
+        },
+    }
+)  # fmt: skip
+PX4_PLANE = PX4_COMMON + _table(
+    {
+        INT32: {"MAV_TYPE": 1, "SYS_AUTOSTART": 2106},
+        REAL32: {
+            "MIS_TAKEOFF_ALT": 30.0, "FW_AIRSPD_MIN": 10.0, "FW_AIRSPD_MAX": 20.0, "FW_AIRSPD_TRIM": 15.0,
+            "FW_R_LIM": 50.0, "FW_P_LIM_MAX": 30.0, "FW_P_LIM_MIN": -30.0, "FW_T_CLMB_MAX": 8.0,
+            "FW_T_SINK_MAX": 5.0, "NAV_LOITER_RAD": 80.0, "RTL_RETURN_ALT": 60.0,
         },
     }
 )  # fmt: skip

@@ -37,13 +37,14 @@ RENAMED: dict[tuple[Kind, Firmware], dict[str, Renamed]] = {
     (Kind.ARDUPLANE, Firmware.NEWER): _PLANE_NEWER,
     (Kind.ARDUPLANE, Firmware.OLDER): _PLANE_OLDER,
     (Kind.PX4, Firmware.NEWER): _PX4_NEWER,
+    (Kind.PX4_PLANE, Firmware.NEWER): _PX4_NEWER,
 }
 """By kind and generation: recorded name → that generation's."""
 
+_GONE = frozenset((dialect.MAV_CMD_GET_HOME_POSITION, dialect.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES))
 REMOVED: dict[tuple[Kind, Firmware], frozenset[int]] = {
-    (Kind.PX4, Firmware.NEWER): frozenset(
-        (dialect.MAV_CMD_GET_HOME_POSITION, dialect.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES)
-    ),
+    (Kind.PX4, Firmware.NEWER): _GONE,
+    (Kind.PX4_PLANE, Firmware.NEWER): _GONE,
 }
 """Commands that a generation answers with UNSUPPORTED."""
 

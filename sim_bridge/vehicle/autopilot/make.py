@@ -16,20 +16,27 @@ from sim_bridge.vehicle.autopilot.arducopter import ArduCopter
 from sim_bridge.vehicle.autopilot.arduplane import ArduPlane
 from sim_bridge.vehicle.autopilot.autopilot import Autopilot
 from sim_bridge.vehicle.autopilot.generations import ADDED, renamed
-from sim_bridge.vehicle.autopilot.px4 import Px4Multicopter
+from sim_bridge.vehicle.autopilot.px4_multicopter import Px4Multicopter
+from sim_bridge.vehicle.autopilot.px4_plane import Px4Plane
 from sim_bridge.vehicle.autopilot.setup import Options, Setup
 from sim_bridge.vehicle.flight.kinematic import ability_of
 from sim_bridge.vehicle.motion import Motion
 
 PERSONALITIES: Mapping[Kind, type[Autopilot]] = {
     Kind.PX4: Px4Multicopter,
+    Kind.PX4_PLANE: Px4Plane,
     Kind.ARDUCOPTER: ArduCopter,
     Kind.ARDUPLANE: ArduPlane,
 }
 OFFSET = Vec(3.0, -2.0, -0.5)  # [m; NED] per system id, of an autopilot's own origin from its home
 
 
-TABLES = {Kind.PX4: tables.PX4, Kind.ARDUCOPTER: tables.ARDUCOPTER, Kind.ARDUPLANE: tables.ARDUPLANE}
+TABLES = {
+    Kind.PX4: tables.PX4,
+    Kind.PX4_PLANE: tables.PX4_PLANE,
+    Kind.ARDUCOPTER: tables.ARDUCOPTER,
+    Kind.ARDUPLANE: tables.ARDUPLANE,
+}
 THROTTLE = {Transmitter.CENTRED: 0.5, Transmitter.LOW: 0.0, Transmitter.NONE: None}
 
 

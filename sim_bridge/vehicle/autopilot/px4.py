@@ -1,4 +1,4 @@
-"""PX4 multicopter: OFFBOARD follows velocity targets for as long as they stream.
+"""PX4 whatever it flies: modes, failsafes, targets, commands.
 
 As PX4 1.16.0 was recorded (tests/field): the intended mode outlives a failsafe, orders of a mode are
 acknowledged twice, heartbeats keep their second but after such an order, texts go to ground stations only.
@@ -6,32 +6,30 @@ acknowledged twice, heartbeats keep their second but after such an order, texts 
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Callable
 from math import cos, hypot, isfinite, nan, sin
+from typing import ClassVar, NamedTuple
 
 from onboard.core.math.constants import NS_PER_S
-from onboard.core.math.vectors import ZERO, Vec, is_finite
-from onboard.game.scenario import Firmware, Kind
+from onboard.core.math.vectors import Vec, is_finite
+from onboard.game.scenario import Firmware
 from onboard.wire.geodesy import Geodetic
 from onboard.wire.mavlink.dialect import DialectPacket, dialect
 from onboard.wire.mavlink.modes import PX4_MODES
 from sim_bridge.vehicle.autopilot import ardupilot, telemetry
-from sim_bridge.vehicle.autopilot import default_parameters as tables
+from sim_bridge.vehicle.autopilot.autopilot import Autopilot
 from sim_bridge.vehicle.autopilot.command import ACCEPTED, DENIED, FAILED, LATER, Command
 from sim_bridge.vehicle.autopilot.failsafes import Condition, Latches, stronger
 from sim_bridge.vehicle.autopilot.generations import renamed
-from sim_bridge.vehicle.autopilot.multicopter import Leg, Multicopter, Speeds
-from sim_bridge.vehicle.autopilot.parameters import Parameters
+from sim_bridge.vehicle.autopilot.parameters import Parameter, Parameters
 from sim_bridge.vehicle.autopilot.setup import Setup
-from sim_bridge.vehicle.motion import Demand
 
 M = PX4_MODES
 BY_HAND = frozenset(M[name] for name in ("MANUAL", "ALTCTL", "POSCTL", "ACRO", "STABILIZED", "RATTITUDE"))
 NOT_SIMULATED = frozenset(M[name] for name in ("READY", "MISSION", "FOLLOW", "PRECLAND"))
 POSITIONAL = frozenset(M[name] for name in ("OFFBOARD", "HOLD", "RTL", "TAKEOFF", "POSCTL"))
 LOST_POSITION_S = 5.0  # for which the estimator reckons on without satellites
-STICK_DEAD_ZONE = 0.1  # of the throttle stick's travel, on either side of the middle
-SINK_WITHOUT_STICKS = 0.8  # [m/s] in modes flown by hand where nobody does
 OFFBOARD_LOSS = {0: "POSCTL", 1: "ALTCTL", 2: "STABILIZED", 3: "RTL", 4: "LAND", 5: "HOLD", 6: "TERMINATE",
                  7: "TERMINATE"}  # fmt: skip
 """COM_OBL_RC_ACT; 6 terminates the flight and 7 disarms: the motors stop."""
@@ -39,9 +37,9 @@ LINK = {1: "HOLD", 2: "RTL", 3: "LAND", 5: "TERMINATE", 6: "TERMINATE"}  # NAV_D
 GEOFENCE = {2: "HOLD", 3: "RTL", 4: "TERMINATE", 5: "LAND"}  # GF_ACTION
 BEAT_AFTER_ORDER_NS = 40_000_000  # from the second acknowledgement of a mode's order
 STATION_HEARD_S = 10.0  # for which a link counts as a ground station's after its heartbeat
-FAR = 1e5  # [m] a take-off to a place beyond this never leaves the ground
 NO_POSITION, NO_VELOCITY, NO_ACCELERATION = 0x007, 0x038, 0x1C0
 LOCAL, BODY = 1, 8  # MAV_FRAME
+UNSUPPORTED_FRAME = 8  # MAV_RESULT_COMMAND_UNSUPPORTED_MAV_FRAME: newer than the dialect
 
 VERSIONS = {Firmware.OLDER: (1, 15, 4), Firmware.RECORDED: (1, 16, 0), Firmware.NEWER: (1, 18, 0)}
 RATES = {number: hz for number, hz in ardupilot.RATES.items() if number in telemetry.OF_PX4} | {
@@ -52,20 +50,26 @@ RATES = {number: hz for number, hz in ardupilot.RATES.items() if number in telem
 }
 
 
-class Px4Multicopter(Multicopter):
-    """PX4 1.16 on a quadrotor."""
+class Setpoint(NamedTuple):
+    """The latest target: where to be and how fast to move, as far as its mask says so."""
+
+    position: Vec | None  # [m; NED, frame of motion]
+    velocity: Vec | None  # [m/s; NED]
+
+
+class Px4(Autopilot):
+    """What PX4 does alike for every vehicle: modes, failsafes, targets, commands."""
 
     autopilot_type = dialect.MAV_AUTOPILOT_PX4
     modes = M
     default_rates = RATES
     versions = VERSIONS
+    table: ClassVar[tuple[Parameter, ...]]  # of parameters as delivered
     refused_arming = LATER
     unknown_message = DENIED
     unknown_interval = FAILED
-    starts_by_velocity = True
-    armed_text = "Armed by external command"
     _setpoint_ns = -NS_PER_S * 3600  # of the last setpoint; long ago: there was none
-    _setpoint: tuple[Leg, Vec, Vec] = (Leg.HOLD, ZERO, ZERO)
+    _setpoint = Setpoint(None, None)
     _in_failsafe = False
     _signal_lost = False
     _blind_ns = -1  # since when the estimator has no position; −1: it has
@@ -123,17 +127,23 @@ class Px4Multicopter(Multicopter):
             self._change(now_ns, mode)
         return reason
 
+    @abstractmethod
+    def own_parameters(self) -> dict[str, float]:
+        """The parameters that fit the scenario's vehicle, and its table's names."""
+
+    @abstractmethod
+    def go_to(self, now_ns: int, place: Vec) -> None:
+        """Fly to a place and stay there [m; NED, frame of motion]."""
+
+    @abstractmethod
+    def take_off_to(self, now_ns: int, place: Vec) -> None:
+        """Climb to a place [m; NED, frame of motion]."""
+
     def _new_parameters(self) -> Parameters:
-        fast = self.setup.speed_max
-        own = {
-            "MAV_SYS_ID": float(self.system),
-            "MPC_XY_VEL_MAX": max(12.0, fast),
-            "MPC_Z_VEL_MAX_UP": max(3.0, fast),
-            "MPC_Z_VEL_MAX_DN": max(1.5, fast),
-        }
         options = self.setup.options
-        key = Kind.PX4, options.firmware
-        return Parameters(tables.PX4, own | dict(options.parameters), bytewise=True, aliases=renamed(*key))
+        key = self.setup.kind, options.firmware
+        own = {"MAV_SYS_ID": float(self.system)} | self.own_parameters() | dict(options.parameters)
+        return Parameters(self.table, own, bytewise=True, aliases=renamed(*key))
 
     def _message_handlers(self) -> dict[int, Callable[[int, DialectPacket], None]]:
         return super()._message_handlers() | {
@@ -150,7 +160,6 @@ class Px4Multicopter(Multicopter):
             dialect.MAV_CMD_NAV_RETURN_TO_LAUNCH: lambda now, c: self._by_name(now, "RTL"),
             dialect.MAV_CMD_NAV_LOITER_UNLIM: lambda now, c: self._by_name(now, "HOLD"),
             dialect.MAV_CMD_DO_REPOSITION: self._do_reposition,
-            dialect.MAV_CMD_DO_CHANGE_SPEED: self._do_change_speed,
         }
 
     def watched_ground_station(self, packet: DialectPacket) -> bool:
@@ -168,24 +177,6 @@ class Px4Multicopter(Multicopter):
     @property
     def first_mode(self) -> int:
         return M["HOLD"]
-
-    @property
-    def speeds(self) -> Speeds:
-        p = self.parameters
-        return Speeds(
-            p["MPC_XY_CRUISE"],
-            min(3.0, p["MPC_Z_VEL_MAX_UP"]),
-            min(1.5, p["MPC_Z_VEL_MAX_DN"]),
-            p["MPC_LAND_SPEED"],
-        )
-
-    @property
-    def linger_s(self) -> float:
-        return max(0.0, self.parameters["RTL_LAND_DELAY"])
-
-    @property
-    def idle_disarm_s(self) -> float:
-        return max(0.0, self.parameters["COM_DISARM_PRFLT"])
 
     def set_mode_result(self, now_ns: int, command: Command) -> int:
         """Result of a DO_SET_MODE, which PX4 acknowledges as accepted first and then by its result."""
@@ -222,53 +213,10 @@ class Px4Multicopter(Multicopter):
             return "Switching to mode 'Offboard' is currently not possible"
         return ""
 
-    def enter(self, now_ns: int, mode: int) -> None:
-        if self.landed and mode != M["TAKEOFF"]:
-            self.fly(Leg.HOLD, now_ns)
-        elif mode == M["RTL"]:
-            self.fly_home(now_ns, self.parameters["RTL_RETURN_ALT"])
-        elif mode == M["LAND"]:
-            self.land_here(now_ns)
-        elif mode == M["TAKEOFF"]:
-            self._take_off_to(now_ns, self.parameters["MIS_TAKEOFF_ALT"])
-        else:
-            self.fly(Leg.HOLD, now_ns)
-
-    def taken_off(self, now_ns: int) -> None:
-        place = self.target
-        self.request_mode(now_ns, M["HOLD"])
-        self.target, self._held = place, True
-
     def why_not_armable(self, now_ns: int) -> str:
         if not self.positioned(now_ns) or not self.healthy(now_ns):
-            return "Arming denied: Resolve system health failures first"[:50]
+            return "Arming denied: Resolve system health failures first"
         return "Arming denied: low battery" if self.health.battery <= 0.0 else ""
-
-    def guide(self, now_ns: int, dt: float) -> Demand:
-        if self.is_mode("OFFBOARD"):
-            leg, target, velocity = self._setpoint
-            if leg == Leg.VELOCITY:
-                self.fly_velocity(self._clipped(velocity), now_ns)
-            elif leg == Leg.GOTO:
-                self.fly(Leg.GOTO, now_ns, target)
-                self.feed_forward = velocity
-        elif self.mode in BY_HAND and not self.landed:
-            self._by_hand(now_ns)
-        return super().guide(now_ns, dt)
-
-    def _by_hand(self, now_ns: int) -> None:
-        """POSCTL and its like: the sticks, or where nobody holds them a slow sinking."""
-        throttle = self.transmitter.throttle
-        drift = None if self.is_mode("POSCTL") or self.positioned(now_ns) else self.air.wind
-        if throttle is None:
-            self.fly_by_stick(now_ns, -SINK_WITHOUT_STICKS, drift)
-            return
-        share = self.transmitter.climb_share(STICK_DEAD_ZONE)
-        most = self.speeds.up if share > 0.0 else self.speeds.down
-        if share != 0.0 or drift is not None:
-            self.fly_by_stick(now_ns, share * most, drift)
-        elif self.leg == Leg.STICK:
-            self.fly(Leg.HOLD, now_ns)
 
     # ------------------------------------------------------------------ failsafes
 
@@ -333,7 +281,7 @@ class Px4Multicopter(Multicopter):
     def _conditions(self, now_ns: int) -> list[Condition]:
         """What latches a failsafe."""
         p, charge = self.parameters, self.health.battery
-        home, here = self.home_position, self.motion.position
+        home, here = self.game_position(*self.home), self.motion.position
         flat, high = p["GF_MAX_HOR_DIST"], p["GF_MAX_VER_DIST"]
         outside = 0.0 < flat < hypot(here.x - home.x, here.y - home.y) or 0.0 < high < self.height
         silent = self.ground_station_silence_s(now_ns) > p["COM_DL_LOSS_T"]
@@ -390,31 +338,25 @@ class Px4Multicopter(Multicopter):
     def _take_setpoint(self, now_ns: int, mask: int, position: Vec, velocity: Vec) -> None:
         with_position = not mask & NO_POSITION and is_finite(position)
         with_velocity = not mask & NO_VELOCITY and is_finite(velocity)
-        if with_position:
-            self._setpoint = (Leg.GOTO, position, velocity if with_velocity else ZERO)
-        elif with_velocity:
-            self._setpoint = (Leg.VELOCITY, ZERO, velocity)
-        else:
+        if not with_position and not with_velocity:
             self.counters["target_refused"] += 1
             return
+        self._setpoint = Setpoint(position if with_position else None, velocity if with_velocity else None)
         self._setpoint_ns = now_ns
-
-    def _clipped(self, v: Vec) -> Vec:
-        """A velocity within MPC_XY_VEL_MAX and MPC_Z_VEL_MAX_…"""
-        p = self.parameters
-        most = p["MPC_XY_VEL_MAX"]
-        flat = (v.x * v.x + v.y * v.y) ** 0.5
-        k = most / flat if flat > most else 1.0
-        return Vec(v.x * k, v.y * k, max(-p["MPC_Z_VEL_MAX_UP"], min(p["MPC_Z_VEL_MAX_DN"], v.z)))
 
     # ------------------------------------------------------------------ commands
 
     def _by_name(self, now_ns: int, name: str) -> int:
         return LATER if self.request_mode(now_ns, M[name]) else ACCEPTED
 
-    def _take_off_to(self, now_ns: int, height: float) -> None:
-        p = self.motion.position
-        self.fly(Leg.TAKEOFF, now_ns, Vec(p.x, p.y, min(p.z, self.home_position.z - height)))
+    def _place_of(self, command: Command, altitude_m: float) -> Geodetic:
+        """The place of a command; what is NaN is here, or at `altitude_m` above mean sea level."""
+        here = self.place
+        return Geodetic(
+            command.latitude_deg if isfinite(command.latitude_deg) else here.latitude_deg,
+            command.longitude_deg if isfinite(command.longitude_deg) else here.longitude_deg,
+            command.z if isfinite(command.z) else altitude_m,
+        )
 
     def _do_takeoff(self, now_ns: int, command: Command) -> int:
         """Climb to param 7, an altitude above mean sea level, at the latitude and longitude; NaN: here.
@@ -424,28 +366,14 @@ class Px4Multicopter(Multicopter):
         """
         if self.request_mode(now_ns, M["TAKEOFF"]):
             return LATER
-        here = self.place
-        place = Geodetic(
-            command.latitude_deg if isfinite(command.latitude_deg) else here.latitude_deg,
-            command.longitude_deg if isfinite(command.longitude_deg) else here.longitude_deg,
-            command.z if isfinite(command.z) else self.home.altitude_m + self.parameters["MIS_TAKEOFF_ALT"],
-        )
+        place = self._place_of(command, self.home.altitude_m + self.parameters["MIS_TAKEOFF_ALT"])
         if abs(place.latitude_deg) > 90.0 or abs(place.longitude_deg) > 180.0:
             return DENIED
-        target, p = self.game_position(*place), self.motion.position
-        if hypot(target.x - p.x, target.y - p.y) > FAR:
-            self.fly(Leg.HOLD, now_ns)
-        else:
-            self.fly(Leg.TAKEOFF, now_ns, target)
+        self.take_off_to(now_ns, self.game_position(*place))
         return ACCEPTED
 
     def _do_reposition(self, now_ns: int, command: Command) -> int:
-        here = self.place
-        place = Geodetic(
-            command.latitude_deg if isfinite(command.latitude_deg) else here.latitude_deg,
-            command.longitude_deg if isfinite(command.longitude_deg) else here.longitude_deg,
-            command.z if isfinite(command.z) else here.altitude_m,
-        )
+        place = self._place_of(command, self.place.altitude_m)
         if command.frame in ardupilot.ABOVE_HOME:
             place = place._replace(altitude_m=place.altitude_m + self.home.altitude_m)
         elif command.frame not in (-1, *ardupilot.ABSOLUTE):
@@ -457,14 +385,5 @@ class Px4Multicopter(Multicopter):
             return LATER
         if self.request_mode(now_ns, M["HOLD"]):
             return LATER
-        self.fly(Leg.GOTO, now_ns, self.game_position(*place))
+        self.go_to(now_ns, self.game_position(*place))
         return ACCEPTED
-
-    def _do_change_speed(self, now_ns: int, command: Command) -> int:
-        if not isfinite(command.p2) or command.p2 <= 0.0:
-            return DENIED
-        self.parameters.put("MPC_XY_CRUISE", command.p2)
-        return ACCEPTED
-
-
-UNSUPPORTED_FRAME = 8  # MAV_RESULT_COMMAND_UNSUPPORTED_MAV_FRAME: newer than the dialect
