@@ -161,7 +161,7 @@ class AgentConfig(StrictConfig, frozen=True):
     take_control: bool = False  # enter GUIDED / OFFBOARD by itself at the start
     may_arm: bool = False  # arm and take off for a ground start
     take_off_height: TakeOffHeight = 30.0  # [m] above home, after a ground start
-    hold_mode: str = ""  # a multicopter's mode to hold in; missing = the adapter's (LOITER, HOLD)
+    hold_mode: str = ""  # a multicopter's mode to hold in; missing = by its throttle stick
     mavsdk: str = ""  # the connection that MAVSDK opens for itself, for the adapter `mavsdk`
     dry_run: bool = False  # decide and publish, send no setpoint and no command
     control_rate_hz: ControlRate = 20.0
