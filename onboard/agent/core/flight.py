@@ -28,6 +28,7 @@ from onboard.core.safety.supervisor import (
 from onboard.core.safety.words import ACTIONS, CAUSES
 from onboard.pilot.pilot import PilotDecision, Question
 from onboard.pilot.setup import Own
+from onboard.wire.bus import messages
 from onboard.wire.bus.messages import Severity
 
 SILENT_S = 1.0  # a link silent for longer explains that the autopilot changed to hold by itself
@@ -277,6 +278,23 @@ class Flight:
         t = self._vehicle.telemetry
         bound = t.mode in HOMEWARD or t.status >= CRITICAL
         return self._orders.granted or (self._trusted and not bound)
+
+    def objection(self, command: messages.Command) -> str:
+        """Why the hands that fly now stand against a command; "" where they do not.
+
+        Who takes a vehicle out of a way home, a landing or a failsafe must have named it alone and seen its
+        mode: one word to all does not do. What this agent was ordered itself it may be ordered out of.
+        """
+        t = self._vehicle.telemetry
+        if command.kind not in (messages.CommandKind.RESUME, messages.CommandKind.START):
+            return f"a pilot flies it, in {t.mode}" if self._vehicle.stage is Stage.TAKEN else ""
+        failsafe = t.status >= CRITICAL
+        bound = failsafe or (t.mode in HOMEWARD and self._orders.order is Action.PASS)
+        if not bound or command.mode == t.mode:
+            return ""
+        why = f"{t.mode}, by a failsafe" if failsafe else t.mode
+        shown = f" (it was shown in {command.mode})" if command.mode else ""
+        return f"it is in {why}{shown}: resume this vehicle alone, by its id"
 
     @property
     def _trusted(self) -> bool:
