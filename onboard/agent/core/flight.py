@@ -10,6 +10,7 @@ from onboard.agent.core.bus_view import BusView
 from onboard.agent.core.clocks import JumpWatch
 from onboard.agent.core.command_book import Orders
 from onboard.agent.core.events import Answered, Instant, Think
+from onboard.agent.core.hold_alert import HoldAlert
 from onboard.agent.core.journal import Journal
 from onboard.agent.core.part import Part, PartState
 from onboard.agent.core.takeoff import TakeOff
@@ -73,6 +74,7 @@ class Flight:
         self._state = SupervisorState()
         self._policy = part.policy
         self._jumps = JumpWatch(config.safety.clock_jump_s)
+        self._hold = HoldAlert(journal)
         self._number = 0
         self._resumed = False  # the master alone let this process in
         self._failing = False
@@ -304,6 +306,7 @@ class Flight:
     def drive(self, now: float, setpoint: Setpoint | None) -> None:
         """Let the adapter do what is due, with the setpoint of this step or without one."""
         change = self._vehicle.step(now, setpoint)
+        self._hold.look(now, self._vehicle, self.part.policy.envelope)
         if change is Control.TAKEN:
             self._taken(now)
         elif change is not Control.SAME:
