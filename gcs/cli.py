@@ -119,6 +119,7 @@ def replay(
     if (evader or pursuer) and not decide:
         raise ConfigError("--evader, --pursuer: found without --decide, expected with it")
     if decide:
+        options.refuse(("config", "plain"), "replay --decide")
         return programs.decide_again(run, {Role.EVADER: evader, Role.PURSUER: pursuer})
     return programs.replay(run, options.settings().alerts, plain=bool(options.plain))
 
