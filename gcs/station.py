@@ -69,6 +69,7 @@ class Station:
         self._hearers: list[Hearer] = []
         self._journal = f"{ROOT}/{self.game}/{station_journal.FOLDER}/"
         self._overflow = 0
+        self._limited: dict[str, int] = {}  # what was over a bound, by kind
         self._heard: list[Subscription] = []
         self._courier = Courier(bus, self.game, self.reducer.book, self.now_ns, self._on_reply)
 
@@ -129,13 +130,22 @@ class Station:
         finally:
             self.close()
 
-    def command(self, kind: CommandKind, ids: Iterable[int]) -> str:
-        """Give a command to vehicles; its id. It is repeated until each has confirmed."""
+    def command(self, kind: CommandKind, ids: Iterable[int], *, named: bool = False) -> str:
+        """Give a command to vehicles; its id. It is repeated until each has confirmed.
+
+        `named`: a person has named the one vehicle, and confirms the mode that is shown of it.
+        """
         now_ns = self.now_ns()
-        order = Command(self._new_id(), kind, self.operator, now_ns)
-        self.note(station_journal.SENT, station_journal.Sent(order, tuple(sorted(set(ids)))))
+        whom = tuple(sorted(set(ids)))
+        mode = self._shown_mode(whom[0]) if named and len(whom) == 1 else ""
+        order = Command(self._new_id(), kind, self.operator, now_ns, mode)
+        self.note(station_journal.SENT, station_journal.Sent(order, whom))
         self._courier.wake()
         return order.command_id
+
+    def _shown_mode(self, id: int) -> str:
+        vehicles = self.reducer.fleet.vehicles(self.now_ns())
+        return next((v.mode for v in vehicles if v.id == id), "")
 
     def ids(self, role: Role | None = None) -> tuple[int, ...]:
         """All vehicles heard or expected, or those of a role."""
@@ -168,6 +178,7 @@ class Station:
         while True:
             self.reducer.tick(self.now_ns())
             self._count_overflow()
+            self._count_floods()
             await asyncio.sleep(GRID_NS / NS_PER_S)
 
     def _count_overflow(self) -> None:
@@ -182,3 +193,18 @@ class Station:
                 over=not grew,
             )
         self._overflow = overflow
+
+    def _count_floods(self) -> None:
+        """Say while somebody brings more than the bus lets through."""
+        limited = {k: n for k, n in self.bus.counters().items() if k.startswith("limited_")}
+        grew = [kind for kind, n in limited.items() if n > self._limited.get(kind, 0)]
+        if bool(grew) != ("flood" in self.reducer.remarks):
+            kinds = ", ".join(f"{kind.removeprefix('limited_')} {limited[kind]}" for kind in sorted(grew))
+            self.remark(
+                Severity.WARNING,
+                "flood",
+                f"more comes than may: {kinds} left out",
+                "find who sends it; revoke its key (docs/security.md)",
+                over=not grew,
+            )
+        self._limited = limited

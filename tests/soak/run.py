@@ -30,6 +30,7 @@ from onboard.runtime.loop import run_virtual  # noqa: E402
 from onboard.wire.bus.messages import Command, CommandKind, Phase  # noqa: E402
 from onboard.wire.bus.topics import COMMAND  # noqa: E402
 from tests.soak.faults import NAMES, OF_ALL, OF_ONE, Rng, Undo  # noqa: E402
+from tests.support.flown_autopilot import FLOWN  # noqa: E402
 from tests.support.whole_games import WholeGame, flies, game_of  # noqa: E402
 
 GAME_S = 600.0
@@ -182,7 +183,8 @@ class Soak:
                 vehicle.resumes += 1
                 self._orders += 1
                 self.totals["resumes"] += 1
-                order = Command(f"soak-{self._orders}", CommandKind.RESUME, "operator", 0)
+                shown = self.game.bridge.world.vehicles[id].autopilot.mode_name
+                order = Command(f"soak-{self._orders}", CommandKind.RESUME, "operator", 0, shown)
                 where = COMMAND.key(self.game.game, id)
                 await self.game.bus.request(where, COMMAND.encode(order), 0.5)
 
@@ -214,7 +216,7 @@ def play(
 
     async def game_on() -> None:
         rng = np.random.default_rng((seed, number))
-        kind = list(Kind)[number % len(Kind)]
+        kind = FLOWN[number % len(FLOWN)]
         chase = scenario(kind, seed)
         async with game_of(chase, seed=seed + number, battery_s=1e9, any_error=True) as game:
             soak = Soak(game, rng, totals, explains)

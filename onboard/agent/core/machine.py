@@ -53,7 +53,7 @@ from onboard.autopilot.base import ReleaseMode, Stage
 from onboard.core.math.constants import NEVER
 from onboard.core.safety.policy import Action
 from onboard.game.route_file import Route
-from onboard.wire.bus.messages import AgentStage, CommandKind, CommandReply, CommandState, Role, Severity
+from onboard.wire.bus.messages import AgentStage, Command, CommandReply, CommandState, Role, Severity
 from onboard.wire.bus.topics import ALIVE, COMMAND, DECISION, HEALTH, STATE, Topic
 from onboard.wire.mavlink.frames import Packet
 from onboard.wire.mavlink.signing import Signing
@@ -223,7 +223,7 @@ class AgentCore:
             self._end(now)
             return
         self._leave_until = now.s + LEAVE_S
-        adapter.leave(now.s, ReleaseMode.HOLD)
+        adapter.leave(now.s, ReleaseMode.DEPART)
         self._leaving.start(now.s)
         self._leaving.due(now.s)
         self._leave_on(now)
@@ -248,6 +248,9 @@ class AgentCore:
 
     def _take_bytes(self, event: LinkBytes, now: Instant) -> None:
         received = self.radio.take(event.link, event.peer, event.data, now)
+        if received.second:
+            text = "a second autopilot with this vehicle's id is on the link: it is not flown, and not heard"
+            self.journal.error("second_autopilot", text)
         if received.took_over:
             self.vehicle.other_link()
         for packet in received.packets:
@@ -296,7 +299,7 @@ class AgentCore:
             bad = CommandReply("", self.config.id, CommandState.REFUSED, "undecodable", "", now.wall_ns)
             self.out.put(Reply(event.token, COMMAND.encode_reply(bad)))
             return
-        entry, new = self.orders.give(command, self._refusal(command.kind))
+        entry, new = self.orders.give(command, self._refusal(command))
         if new:
             text = f"{command.kind.value} from {command.sender}"
             if entry.reason:
@@ -316,15 +319,13 @@ class AgentCore:
         )
         self.out.put(Reply(event.token, COMMAND.encode_reply(reply)))
 
-    def _refusal(self, kind: CommandKind) -> str:
+    def _refusal(self, command: Command) -> str:
         """Why a command cannot be obeyed; '' if it can."""
         if self.config.dry_run:
             return "dry run: this agent sends nothing"
         if self.vehicle.adapter is None:
             return self.vehicle.refusal or "no autopilot"
-        if self.vehicle.stage is Stage.TAKEN and kind not in (CommandKind.RESUME, CommandKind.START):
-            return f"a pilot flies it, in {self.vehicle.telemetry.mode}"
-        return ""
+        return self.flight.objection(command)
 
     def _review_orders(self) -> None:
         entry = self.orders.review(self.vehicle.stage)
