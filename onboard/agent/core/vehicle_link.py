@@ -31,6 +31,11 @@ from onboard.wire.mavlink.values import (
     Version,
 )
 
+DOUBTS = {  # why positions do not count, in words
+    "position_jump": "the autopilot's position jumped away from its velocity: not flown on",
+    "position_frozen": "the autopilot's position stands still against its velocity: not flown on",
+}
+DOUBT_S = 0.5  # a doubt that lasts for longer is told [s]
 RATE_WINDOW_S = 2.0  # over which rates are measured
 _SEVERITIES = {"info": Severity.INFO, "warning": Severity.WARNING, "error": Severity.ERROR}
 
@@ -97,6 +102,8 @@ class VehicleLink:
         self._heartbeat: Heartbeat | None = None
         self._asking: Requests | None = None
         self._reboots = 0
+        self._doubt = ""  # told last
+        self._undoubted_at = NEVER  # when positions counted last [s]
         self._stepped_at = NEVER
 
     @property
@@ -158,7 +165,20 @@ class VehicleLink:
             self._journal.error("reboot", "the autopilot has started again")
             if self._asking is not None:
                 self._asking.again()
+        self._tell_doubt(now)
         return self.telemetry
+
+    def _tell_doubt(self, now: float) -> None:
+        """Say that positions do not count, once that has lasted, and that they count again."""
+        doubt = self.observer.doubt
+        if not doubt:
+            self._undoubted_at = now
+            if self._doubt:
+                self._journal.info("position", "the autopilot's position fits its velocity again")
+            self._doubt = ""
+        elif doubt != self._doubt and now - self._undoubted_at > DOUBT_S:
+            self._doubt = doubt
+            self._journal.warning(doubt, DOUBTS[doubt])
 
     def step(self, now: float, setpoint: Setpoint | None) -> Control:
         """Send what the adapter wants sent, and note what it says; gives whether control changed hands."""
@@ -197,7 +217,7 @@ class VehicleLink:
 
     def counters(self) -> dict[str, int]:
         """Foreign packets by cause, and how well the autopilot's clock is known."""
-        counts = dict(self.foreign)
+        counts = {**self.foreign, **self.observer.odd}
         if self._asking is not None:
             counts["timesync_round_trip_us"] = self._asking.clock.offset().round_trip_ns // 1000
         return counts
