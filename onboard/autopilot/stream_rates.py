@@ -37,8 +37,8 @@ class Need(NamedTuple):
     least: float  # [Hz] without which it is no use
 
 
-# In the order of importance: what is cut is cut from the end. Of GPS and estimator two reports decide: at 5 Hz
-# that is sooner than half a second without a position.
+# In the order of importance: what is cut is cut from the end. Of GPS and estimator two reports decide: at
+# 5 Hz that is sooner than half a second without a position.
 _COMMON = (
     Need("HEARTBEAT", 1.0, 1.0),
     Need("GLOBAL_POSITION_INT", 20.0, 5.0),

@@ -28,9 +28,16 @@ def vehicle_lacks(now: float, vehicle: VehicleLink, policy: Policy) -> list[str]
     )
     health = read(now, t, limits)
     lacks += [*health.lacks, *health.faults]
+    if vehicle.unread:
+        lacks.append(unread_words(vehicle.unread))
     if not t.armed:
         lacks.append("an armed vehicle")
     return lacks
+
+
+def unread_words(names: tuple[str, ...]) -> str:
+    """What is missing while the autopilot's limits are not known, and what a person can do."""
+    return f"the autopilot's limits: {', '.join(names)} not read (or set [envelope] in the configuration)"
 
 
 def lacking(

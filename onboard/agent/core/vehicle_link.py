@@ -14,6 +14,7 @@ from onboard.agent.core.mavlink_radio import Radio
 from onboard.agent.core.telemetry_requests import Requests
 from onboard.autopilot.base import Adapter, Refusal, Setpoint, Stage, Telemetry
 from onboard.autopilot.choose import AdapterOptions, adapter_for
+from onboard.autopilot.flight_limits import FlightLimits, read_limits, unread
 from onboard.autopilot.telemetry_state import Observer
 from onboard.core.math.constants import NEVER, NS_PER_S
 from onboard.wire.bus.messages import Severity
@@ -120,6 +121,21 @@ class VehicleLink:
     def parameters(self) -> dict[str, float]:
         """The autopilot's parameters, as far as read."""
         return {} if self._asking is None else self._asking.parameters
+
+    @property
+    def limits(self) -> FlightLimits:
+        """What the autopilot itself lets the vehicle do, as far as it has said."""
+        return FlightLimits() if self.adapter is None else read_limits(self.adapter.kind, self.parameters)
+
+    @property
+    def unread(self) -> tuple[str, ...]:
+        """Parameters that must be read, or limits configured, before a setpoint may leave."""
+        if self.adapter is None or self.config.dry_run:  # a dry run asks for none, and sends none
+            return ()
+        e = self.config.envelope
+        said = {"speed_min": e.speed_min, "speed_max": e.speed_max, "climb_max": e.climb_max,
+                "sink_max": e.sink_max}  # fmt: skip
+        return unread(self.adapter.kind, self.limits, said)
 
     def hear(self, packet: Packet, now: float) -> bool:
         """Take one packet; True for a new position of the own vehicle."""
