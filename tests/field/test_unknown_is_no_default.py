@@ -8,7 +8,17 @@ from math import radians
 import pytest
 
 from onboard.agent.config import AgentConfig, EnvelopeConfig
-from onboard.agent.core.events import BusMessage, Instant, LinkBytes, LinkFacts, Load, Loaded, Send, Started, Tick
+from onboard.agent.core.events import (
+    BusMessage,
+    Instant,
+    LinkBytes,
+    LinkFacts,
+    Load,
+    Loaded,
+    Send,
+    Started,
+    Tick,
+)
 from onboard.agent.core.machine import AgentCore, Facts
 from onboard.autopilot.flight_limits import NAMES, FlightLimits, read_limits, unread
 from onboard.wire.bus.messages import Member, Origin, Phase, PhaseChange, Role, RulesMessage, Setup

@@ -88,8 +88,8 @@ class Flight:
         if jump != 0.0:
             self._bus.clock.restart()
             self._journal.error("clock_jump", f"the wall clock jumped by {jump:+.3f} s")
+        self.part.follow(now)  # it may fix the frame in which positions count
         telemetry = self._vehicle.look(now.s)
-        self.part.follow(now)
         state = self.part.state(now.wall_ns)
         if self.part.policy is not self._policy:
             if not _only_limits(self._policy, self.part.policy):  # another game: nothing is latched any more

@@ -45,7 +45,7 @@ from onboard.agent.core.game_player import GamePlayer
 from onboard.agent.core.journal import Journal
 from onboard.agent.core.mavlink_radio import Radio
 from onboard.agent.core.part import Part
-from onboard.agent.core.readiness import unread_words
+from onboard.agent.core.readiness import why_no_order
 from onboard.agent.core.reports import Reports, Standing
 from onboard.agent.core.route_player import RoutePlayer
 from onboard.agent.core.schedule import EARLY_S, Grid
@@ -321,13 +321,7 @@ class AgentCore:
         """Why a command cannot be obeyed; '' if it can."""
         if self.config.dry_run:
             return "dry run: this agent sends nothing"
-        if self.vehicle.adapter is None:
-            return self.vehicle.refusal or "no autopilot"
-        if self.vehicle.stage is Stage.TAKEN and kind not in (CommandKind.RESUME, CommandKind.START):
-            return f"a pilot flies it, in {self.vehicle.telemetry.mode}"
-        if self.vehicle.unread and kind in (CommandKind.RESUME, CommandKind.START):
-            return f"lacks {unread_words(self.vehicle.unread)}"
-        return ""
+        return why_no_order(self.vehicle, takes=kind in (CommandKind.RESUME, CommandKind.START))
 
     def _review_orders(self) -> None:
         entry = self.orders.review(self.vehicle.stage)
