@@ -251,6 +251,8 @@ class AgentCore:
         received = self.radio.take(event.link, event.peer, event.data, now)
         if received.took_over:
             self.vehicle.other_link()
+        if received.second:
+            self.vehicle.second_autopilot(now.s, "setpoints stay with the first")
         for packet in received.packets:
             self._hear(packet, now)
 

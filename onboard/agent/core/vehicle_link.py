@@ -20,7 +20,7 @@ from onboard.core.math.constants import NEVER, NS_PER_S
 from onboard.wire.bus.messages import Severity
 from onboard.wire.mavlink.commands import OwnHeartbeat, Target
 from onboard.wire.mavlink.frames import Packet
-from onboard.wire.mavlink.ids import AUTOPILOT
+from onboard.wire.mavlink.ids import AUTOPILOT, COMPANION
 from onboard.wire.mavlink.values import (
     CommandAck,
     GlobalPosition,
@@ -37,6 +37,8 @@ DOUBTS = {  # why positions do not count, in words
     "position_frozen": "the autopilot's position stands still against its velocity: not flown on",
 }
 DOUBT_S = 0.5  # a doubt that lasts for longer is told [s]
+SECOND_S = 10.0  # without a second autopilot, until one is news again [s]
+COMPONENTS_MAX = 8
 RATE_WINDOW_S = 2.0  # over which rates are measured
 _SEVERITIES = {"info": Severity.INFO, "warning": Severity.WARNING, "error": Severity.ERROR}
 
@@ -103,6 +105,8 @@ class VehicleLink:
         self._heartbeat: Heartbeat | None = None
         self._asking: Requests | None = None
         self._reboots = 0
+        self.components: list[int] = []  # others that beat under the vehicle's own system id
+        self._second_at = NEVER  # when a second autopilot was last heard [s]
         self._doubt = ""  # told last
         self._undoubted_at = NEVER  # when positions counted last [s]
         self._stepped_at = NEVER
@@ -146,6 +150,7 @@ class VehicleLink:
             return False
         if packet.component != AUTOPILOT:
             self.foreign["foreign_component"] += 1
+            self._hear_component(packet)
             return False
         value = self.observer.take(now, packet)
         if self._asking is not None:
@@ -168,10 +173,31 @@ class VehicleLink:
         elif isinstance(value, RadioStatus) and self._asking is not None:
             self._asking.radio(value.buffer_free)
         elif isinstance(value, Version):
-            self.version = value
+            if self.version is not None and 0 != value.uid != self.version.uid != 0:
+                self.second_autopilot(now, f"their uids are {self.version.uid:x} and {value.uid:x}")
+            else:
+                self.version = value
         elif isinstance(value, StatusText) and value.severity <= 4:
             self._journal.warning("autopilot", value.text)
         return False
+
+    def second_autopilot(self, now: float, what: str) -> None:
+        """Two autopilots speak under this vehicle's system id: tell it, again where it comes back."""
+        if now - self._second_at > SECOND_S:
+            text = f"two autopilots with system id {self.config.id}: {what}; give each an id of its own"
+            self._journal.error("second_autopilot", text)
+        self._second_at = now
+
+    def _hear_component(self, packet: Packet) -> None:
+        """Name, once, a component that beats under the vehicle's own system id."""
+        known = packet.component in (COMPANION, *self.components)
+        if packet.name == "HEARTBEAT" and not known and len(self.components) < COMPONENTS_MAX:
+            self.components.append(packet.component)
+            self._journal.warning(
+                "component",
+                f"component {packet.component} beats as system {self.config.id}: while it does, an "
+                "ArduPilot's GCS failsafe that watches this id does not notice when this agent dies",
+            )
 
     def look(self, now: float) -> Telemetry:
         """What is known of the vehicle at `now`; also notices an autopilot that started again."""
@@ -181,6 +207,8 @@ class VehicleLink:
             self._journal.error("reboot", "the autopilot has started again")
             if self._asking is not None:
                 self._asking.again()
+        if self.observer.two_clocks(now):
+            self.second_autopilot(now, "on one link, where setpoints reach both")
         self._tell_doubt(now)
         return self.telemetry
 
