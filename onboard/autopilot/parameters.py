@@ -41,6 +41,11 @@ WANTED: dict[Kind, tuple[str, ...]] = {
         "WPNAV_SPEED_UP",
         "WP_SPD_DN",
         "WPNAV_SPEED_DN",
+        "FS_OPTIONS",
+        "THR_DZ",
+        "RCMAP_THROTTLE",
+        "RC3_MIN",
+        "RC3_MAX",
     ),
     Kind.ARDUPLANE: (
         "FS_GCS_ENABL",

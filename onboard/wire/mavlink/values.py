@@ -179,6 +179,12 @@ class AdsbVehicle(NamedTuple):
     velocity_valid: bool
 
 
+class RcChannels(NamedTuple):
+    """RC_CHANNELS."""
+
+    pulses: tuple[int, ...]  # [µs] of the channels that the receiver hears, channel 1 first
+
+
 class RadioStatus(NamedTuple):
     """RADIO_STATUS of a telemetry radio."""
 
@@ -207,4 +213,5 @@ Value = (
     | Timesync
     | AdsbVehicle
     | RadioStatus
+    | RcChannels
 )

@@ -27,7 +27,7 @@ from onboard.wire.mavlink.values import CommandAck, Heartbeat, Timesync
 from tests.support.flown_autopilot import FLOWN, ORIGIN, FlownAutopilot
 
 KINDS = pytest.mark.parametrize("kind", FLOWN, ids=lambda kind: kind.value)
-HOLD = {Kind.PX4: "HOLD", Kind.ARDUCOPTER: "LOITER", Kind.ARDUPLANE: "LOITER"}
+HOLD = {Kind.PX4: "HOLD", Kind.ARDUCOPTER: "BRAKE", Kind.ARDUPLANE: "LOITER"}
 GUIDED = {Kind.PX4: "OFFBOARD", Kind.ARDUCOPTER: "GUIDED", Kind.ARDUPLANE: "GUIDED"}
 
 
