@@ -18,7 +18,7 @@ from onboard.agent.core.vehicle_link import Control, VehicleLink
 from onboard.autopilot.base import ReleaseMode, Setpoint, Stage, Telemetry
 from onboard.core.math.constants import NEVER
 from onboard.core.math.vectors import ZERO, Vec, along, sub
-from onboard.core.safety.policy import Action, Cause, Command, SupervisorInput
+from onboard.core.safety.policy import Action, Cause, Command, Policy, SupervisorInput
 from onboard.core.safety.supervisor import (
     SupervisorOutput,
     SupervisorState,
@@ -42,6 +42,11 @@ RELEASES = {
     Command.RELEASE_TO_RETURN: ReleaseMode.RETURN,
     Command.RELEASE_TO_LAND: ReleaseMode.LAND,
 }
+
+
+def _only_limits(before: Policy, after: Policy) -> bool:
+    """Whether a policy differs from another in the vehicle's own limits alone."""
+    return before.envelope != after.envelope and before._replace(envelope=after.envelope) == after
 
 
 class OpenStep(NamedTuple):
@@ -89,12 +94,14 @@ class Flight:
         if jump != 0.0:
             self._bus.clock.restart()
             self._journal.error("clock_jump", f"the wall clock jumped by {jump:+.3f} s")
+        self.part.follow(now)  # it may fix the frame in which positions count
         telemetry = self._vehicle.look(now.s)
-        self.part.follow(now)
         state = self.part.state(now.wall_ns)
         self._resumed = state.resumed
-        if self.part.policy is not self._policy:  # another game: what was latched in the last one is over
-            self._policy, self._state = self.part.policy, SupervisorState()
+        if self.part.policy is not self._policy:
+            if not _only_limits(self._policy, self.part.policy):  # another game: nothing is latched any more
+                self._state = SupervisorState()
+            self._policy = self.part.policy
         heard_at = max(telemetry.heartbeat_at, telemetry.position_at)
         if telemetry.heartbeat_at != NEVER and now.s - heard_at > SILENT_S:
             self._silent_at = now.s
@@ -130,8 +137,8 @@ class Flight:
             self._complete(step, took, f"no answer within {took:.2f} s")
 
     def _ask(self, now: Instant, t: Telemetry) -> Think | None:
-        hovers = self._vehicle.hovers is not False
-        wind = t.wind if not hovers and now.s - t.wind_at < WIND_FRESH_S else ZERO
+        plane = self._vehicle.hovers is False
+        wind = t.wind if plane and now.s - t.wind_at < WIND_FRESH_S else ZERO
         position = along(t.position, t.velocity, min(max(0.0, now.s - t.position_at), 0.5))
         self._number += 1
         step = OpenStep(self._number, now, t, wind, None)
@@ -218,12 +225,13 @@ class Flight:
         ours = adapter.stage in (Stage.ACTIVE, Stage.ENTERING)
         command = output.command
         setpoint: Setpoint | None = None
-        if command is Command.STREAM and streams:
+        known = not self._vehicle.unread  # of what its limits are; until then no setpoint leaves
+        if command is Command.STREAM and streams and known:
             if not ours and adapter.stage is not Stage.TAKEN and self.may_control:
                 adapter.enter(now)
             setpoint = Setpoint(output.air, wind)
             self.setpoint = output.ground
-        elif command is Command.HOVER:
+        elif command is Command.HOVER and known:
             setpoint = Setpoint(ZERO)
         elif command is Command.END_STREAM:
             adapter.end(now)
