@@ -257,17 +257,14 @@ class Flight:
             if self._takes_off(now, state):
                 self.drive(now, None)
                 return
-        if not ordered and adapter.stage not in (Stage.ENTERING, Stage.ACTIVE):
+        unasked = state.late and not self._orders.granted  # found guided, and not this process's yet
+        if not ordered and (unasked or adapter.stage not in (Stage.ENTERING, Stage.ACTIVE)):
             self.drive(now, None)
             return
         # A multicopter hovers; a plane flies on as it does: in its guided mode it circles by itself.
         hovers = not adapter.holds_airspeed
         seen = self._input(now, t)._replace(over=state.over, wind=ZERO if hovers else t.wind)
-        self._supervise(
-            ZERO if hovers else sub(t.velocity, t.wind),
-            seen,
-            streams=hovers and not (state.late and not self._orders.granted),
-        )
+        self._supervise(ZERO if hovers else sub(t.velocity, t.wind), seen, streams=hovers)
 
     def _takes_off(self, now: float, state: PartState) -> bool:
         """A ground start: whether the vehicle is on its way up, by this agent's doing."""
