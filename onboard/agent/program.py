@@ -83,6 +83,7 @@ async def _fly(config: AgentConfig, timing: Path | None) -> int:
             signing=signing,
             beat=notifier.alive,
             route=route,
+            apart=True,
         )
         agent = Agent(config, clock, links, bus, equipment)
         _catch_signals(agent)

@@ -49,6 +49,7 @@ from onboard.agent.core.events import (
 )
 from onboard.agent.core.machine import AgentCore, Facts
 from onboard.agent.event_file import EventFile
+from onboard.agent.strategy_child import ApartThinker
 from onboard.agent.thinker import Thinker
 from onboard.agent.timing import Timing
 from onboard.autopilot.mavsdk import Child
@@ -76,6 +77,7 @@ class Equipment(NamedTuple):
     signing: Signing | None = None
     beat: Callable[[], None] | None = None  # called with each control step: a service's watchdog
     route: Route | None = None  # of a tracker
+    apart: bool = False  # strategies of other distributions answer from child processes: on real time
 
 
 class _Port:
@@ -125,6 +127,7 @@ class Agent:
         self.bus = bus
         self.timing = Timing(1.0 / config.control_rate_hz)
         self.thinker = Thinker(clock)
+        self.apart = ApartThinker(self.thinker, self.feed, clock) if equipment.apart else None
         facts = Facts(
             equipment.nonce,
             tuple(LinkFacts(link.name, link.name.startswith("serial:")) for link in links),
@@ -153,8 +156,8 @@ class Agent:
         self._stopping = False
         self._effects: dict[type, Callable[[Any], None]] = {
             Send: lambda effect: self._ports[effect.link].send(effect.peer, effect.frame),
-            Think: lambda effect: self._put(self.thinker.answer(effect)),
-            Load: lambda effect: self._put(self.thinker.load(effect)),
+            Think: self._think,
+            Load: self._load,
             Count: self._count,
             Publish: lambda effect: self.bus.publish(effect.key, effect.payload, effect.delivery),
             Reply: lambda effect: self._replies.__setitem__(effect.token, effect.payload),
@@ -191,6 +194,8 @@ class Agent:
             if self._timer is not None:
                 self._timer.cancel()
             self._close_child()
+            if self.apart is not None:
+                self.apart.close()
             for subscription in (*self._subscriptions.values(), *self._held):
                 subscription.close()
             if self._equipment.events is not None:
@@ -302,6 +307,20 @@ class Agent:
     def _end(self) -> None:
         if self._ended is not None and not self._ended.done():
             self._ended.set_result(None)
+
+    # ------------------------------------------------------------------ strategies
+
+    def _think(self, effect: Think) -> None:
+        if self.apart is None:
+            self._put(self.thinker.answer(effect))
+        else:
+            self.apart.answer(effect)
+
+    def _load(self, effect: Load) -> None:
+        if self.apart is None:
+            self._put(self.thinker.load(effect))
+        else:
+            self.apart.load(effect)
 
     # ------------------------------------------------------------------ the adapter's child process
 
