@@ -53,6 +53,7 @@ from onboard.agent.strategy_child import ApartThinker
 from onboard.agent.thinker import Thinker
 from onboard.agent.timing import Timing
 from onboard.autopilot.mavsdk import Child
+from onboard.config.printable import printable
 from onboard.core.math.constants import NS_PER_S
 from onboard.game.route_file import Route
 from onboard.runtime.protocols import Bus, Clock, Link, Sample, Subscription
@@ -62,8 +63,8 @@ PEERS_MAX = 64  # of one link that are numbered; who was heard longest ago is fo
 
 
 def to_stderr(line: str) -> None:
-    """One line to standard error: the journal's place under systemd."""
-    print(line, file=sys.stderr, flush=True)
+    """One line to standard error, at once: it may wait for whoever reads there."""
+    print(printable(line), file=sys.stderr, flush=True)
 
 
 class Equipment(NamedTuple):
@@ -77,6 +78,7 @@ class Equipment(NamedTuple):
     signing: Signing | None = None
     beat: Callable[[], None] | None = None  # called with each control step: a service's watchdog
     route: Route | None = None  # of a tracker
+    counters: Callable[[], dict[str, int]] = dict  # of the files that are written, for health reports
     apart: bool = False  # strategies of other distributions answer from child processes: on real time
 
 
@@ -289,7 +291,7 @@ class Agent:
         for port in self._ports:
             for cause, number in port.link.counters().items():
                 links[cause] = links.get(cause, 0) + number
-        shell = self.timing.counters()
+        shell = self.timing.counters() | self._equipment.counters()
         if self._equipment.events is not None:
             shell |= self._equipment.events.counters()
         self._put(Counted(links, self.bus.counters(), shell))

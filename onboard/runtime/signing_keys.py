@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import os
 import stat
+import threading
 from pathlib import Path
 
 import msgspec
 
 from onboard.config.strict import ConfigError
+from onboard.runtime.file_writer import FileWriter
 from onboard.wire.mavlink.signing import Stamps
 
 
@@ -19,7 +21,8 @@ def read_key(path: Path) -> bytes:
     its owner may read or write it.
     """
     try:
-        with path.open("rb") as file:
+        # O_NONBLOCK: a pipe in its place must not be waited for
+        with os.fdopen(os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC), "rb") as file:
             mode = os.fstat(file.fileno()).st_mode
             content = file.read(4096)
     except OSError as error:
@@ -52,13 +55,17 @@ class _Saved(msgspec.Struct, frozen=True):
 class StampFile:
     """The stamps of one key in a file beside it: replaced in one piece, mode 0600.
 
-    A file that cannot be read or written is a ConfigError at start (`load`) and a count afterwards
-    (`failures`): flying on without a record is safer than falling silent.
+    With a `writer` its thread does that, and the latest stamps go before all that waited. A file that cannot
+    be read or written is a ConfigError at start (`load`) and a count afterwards (`failures`): flying on
+    without a record is safer than falling silent.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, writer: FileWriter | None = None) -> None:
         self.path = path
         self.failures = 0
+        self._writer = writer
+        self._latest: Stamps | None = None  # what is to be written; None = nothing waits
+        self._lock = threading.Lock()
 
     def load(self) -> Stamps:
         """What was saved last; nothing at the first start."""
@@ -76,12 +83,34 @@ class StampFile:
         return Stamps(saved.own, {(link, system, comp): stamp for link, system, comp, stamp in saved.streams})
 
     def save(self, stamps: Stamps) -> None:
-        """Replace the file."""
+        """Replace the file; with a writer, soon."""
+        with self._lock:
+            waits, self._latest = self._latest is not None, stamps
+        if self._writer is None:
+            self._write()
+        elif not waits and not self._writer.submit(self._write):
+            self.failures += 1
+
+    def _write(self) -> None:
+        with self._lock:
+            stamps, self._latest = self._latest, None
+        if stamps is None:
+            return
         saved = _Saved(stamps.own, [(*stream, stamp) for stream, stamp in stamps.streams.items()])
-        beside = self.path.with_name(self.path.name + ".new")
         try:
-            with os.fdopen(os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "wb") as file:
-                file.write(msgspec.json.encode(saved))
-            beside.replace(self.path)
+            replace_private(self.path, msgspec.json.encode(saved))
         except OSError:
             self.failures += 1
+
+
+def replace_private(path: Path, data: bytes) -> None:
+    """Put a file that only its owner may read in the place of `path`, in one piece. Raises OSError.
+
+    It is made new (O_EXCL, O_NOFOLLOW): a link that somebody left in its place is removed, never followed.
+    """
+    beside = path.with_name(path.name + ".new")
+    beside.unlink(missing_ok=True)
+    flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_CLOEXEC
+    with os.fdopen(os.open(beside, flags, 0o600), "wb") as file:
+        file.write(data)
+    beside.replace(path)
