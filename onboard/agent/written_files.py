@@ -1,4 +1,4 @@
-"""Everything that an agent writes in flight, lines, telemetry log, events and stamps: none of it is waited for.
+"""Everything that an agent writes in flight, lines, telemetry log, events, stamps: none of it is waited for.
 
 Lines to standard error have a thread of their own: a disk that hangs does not silence them.
 """
