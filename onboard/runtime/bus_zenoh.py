@@ -22,7 +22,7 @@ from zenoh import ext, handlers
 from onboard.runtime.inbox import Inbox
 from onboard.runtime.patterns import intersects
 from onboard.runtime.protocols import Sample, Subscription
-from onboard.runtime.zenoh_config import DEFAULT_ENDPOINT, Candidate, first_sentence, sessions_of
+from onboard.runtime.zenoh_config import DEFAULT_ENDPOINT, Candidate, first_sentence, of_zenoh, sessions_of
 from onboard.wire.bus.topics import TOPICS, Delivery
 
 EVENTS_KEPT = 256  # events a publisher keeps of each key
@@ -44,8 +44,16 @@ class _Declared:
         self._entity: Any = None
 
     def open(self, session: Any) -> None:
-        """Declare it now."""
-        self._entity = self._declare(session)
+        """Declare it now; where that fails, again later."""
+        if not self.active or session is not self._bus._session:
+            return
+        try:
+            self._entity = self._declare(session)
+        except BaseException as error:
+            if not of_zenoh(error):
+                raise
+            self._bus._inbox.counts["declare_failed"] += 1
+            self._bus._loop.call_later(RETRY_S, self.open, session)
 
     def close(self) -> None:
         """Undeclare it; idempotent."""
@@ -56,7 +64,9 @@ class _Declared:
         if self._entity is not None:
             try:
                 self._entity.undeclare()
-            except zenoh.ZError:  # the session went first
+            except BaseException as error:
+                if not of_zenoh(error):
+                    raise
                 self._bus._inbox.counts["error"] += 1
 
 
@@ -124,7 +134,9 @@ class ZenohBus:
             if publisher is None:
                 publisher = self._publishers[key] = _publisher(session, key, delivery)
             publisher.put(payload)
-        except zenoh.ZError:
+        except BaseException as error:
+            if not of_zenoh(error):
+                raise
             self._inbox.counts["error"] += 1
 
     def subscribe(
@@ -290,7 +302,9 @@ class ZenohBus:
             for how, config in self._sessions:
                 try:
                     session = zenoh.open(config)
-                except zenoh.ZError as error:
+                except BaseException as error:  # nothing else is there to open it
+                    if not of_zenoh(error):
+                        raise
                     self._inbox.queue(partial(self._failed, first_sentence(error)))
                 else:
                     self._inbox.queue(partial(self._opened, session, how))
@@ -298,7 +312,11 @@ class ZenohBus:
             self._stop.wait(RETRY_S)
 
     def _close_in_thread(self, session: Any, closed: asyncio.Event | None = None) -> None:
-        session.close()
+        try:
+            session.close()
+        except BaseException as error:
+            if not of_zenoh(error):
+                raise
         if closed is not None:
             self._inbox.queue(closed.set)
 

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import zenoh
 
+from onboard.config.printable import words_of
 from onboard.config.strict import ConfigError
 
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
@@ -43,9 +44,15 @@ def sessions_of(endpoint: str | None, listen: bool, config_file: Path | None) ->
     return sessions
 
 
-def first_sentence(error: Exception) -> str:
+def of_zenoh(error: BaseException) -> bool:
+    """Whether an exception that a call of Zenoh raised is its own: an error, or the panic of its Rust code,
+    which is no `Exception`: for example where the process has no descriptor left."""
+    return isinstance(error, Exception) or type(error).__name__ == "PanicException"
+
+
+def first_sentence(error: BaseException) -> str:
     """An error of Zenoh's for people: without the line of its source, which follows ` at /`."""
-    return str(error).split(" at /")[0].strip()
+    return words_of(error).split(" at /")[0].strip()
 
 
 def _config(file: Path | None, settings: dict[str, object]) -> zenoh.Config:
