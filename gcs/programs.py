@@ -22,6 +22,7 @@ from gcs.settings import Settings
 from onboard.config.strict import ConfigError
 from onboard.core.math.constants import NS_PER_S
 from onboard.game.scenario import Scenario
+from onboard.runtime.bus_security import Lock
 from onboard.runtime.clock import RealClock
 from onboard.wire.bus.messages import CommandKind, Role
 
@@ -177,6 +178,10 @@ async def play(settings: Settings, scenario: Scenario, *, plain: bool, auto_star
     _demand_terminal(plain)
     listen, record = settings.bus.listen, settings.recording.enabled
     async with on_air(settings, listen=listen, record=record) as session:
+        if scenario.flight.field_profile and session.lock.lock is Lock.OPEN and not settings.bus.open:
+            raise ConfigError(
+                f"bus: found {session.lock.words}, expected keys, or open = true, for a game in the field"
+            )
         master = FieldMaster(session.station, scenario, auto_start=auto_start)
         session.extra = master.status
         async with asyncio.TaskGroup() as tasks:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import stat
 import threading
 from pathlib import Path
 
@@ -11,6 +9,7 @@ import msgspec
 
 from onboard.config.strict import ConfigError
 from onboard.runtime.file_writer import FileWriter
+from onboard.runtime.secret_files import read_secret, write_secret
 from onboard.wire.mavlink.signing import Stamps
 
 
@@ -20,20 +19,7 @@ def read_key(path: Path) -> bytes:
     Raises ConfigError where the file is missing, not a file, of the wrong length, or where anybody but
     its owner may read or write it.
     """
-    try:
-        # O_NONBLOCK: a pipe in its place must not be waited for
-        with os.fdopen(os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC), "rb") as file:
-            mode = os.fstat(file.fileno()).st_mode
-            content = file.read(4096)
-    except OSError as error:
-        raise ConfigError(f"{path}: signing key: {(error.strerror or str(error)).lower()}") from None
-    if not stat.S_ISREG(mode):
-        raise ConfigError(f"{path}: signing key: found no regular file, expected one")
-    if mode & 0o077:
-        raise ConfigError(
-            f"{path}: signing key: found mode {stat.S_IMODE(mode):04o}, expected 0600 or 0400: "
-            f"others may read it; run chmod 600 {path} and consider a new key"
-        )
+    content = read_secret(path, "signing key")
     if len(content) == 32:
         return content
     try:
@@ -98,19 +84,6 @@ class StampFile:
             return
         saved = _Saved(stamps.own, [(*stream, stamp) for stream, stamp in stamps.streams.items()])
         try:
-            replace_private(self.path, msgspec.json.encode(saved))
-        except OSError:
+            write_secret(self.path, msgspec.json.encode(saved), durable=False)
+        except ConfigError:
             self.failures += 1
-
-
-def replace_private(path: Path, data: bytes) -> None:
-    """Put a file that only its owner may read in the place of `path`, in one piece. Raises OSError.
-
-    It is made new (O_EXCL, O_NOFOLLOW): a link that somebody left in its place is removed, never followed.
-    """
-    beside = path.with_name(path.name + ".new")
-    beside.unlink(missing_ok=True)
-    flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_CLOEXEC
-    with os.fdopen(os.open(beside, flags, 0o600), "wb") as file:
-        file.write(data)
-    beside.replace(path)

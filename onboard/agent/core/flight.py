@@ -34,6 +34,8 @@ from onboard.wire.bus.messages import Severity
 SILENT_S = 1.0  # a link silent for longer explains that the autopilot changed to hold by itself
 REGAIN_S = 6.0  # … for so long afterwards
 WIND_FRESH_S = 10.0
+CRITICAL = 5  # MAV_STATE of a vehicle in a failsafe, and of worse
+HOMEWARD = frozenset(("RTL", "SMART_RTL", "AUTO_RTL", "LAND", "AUTOLAND", "PRECLAND", "QRTL", "QLAND"))
 RELEASES = {
     Command.RELEASE_TO_HOLD: ReleaseMode.HOLD,
     Command.RELEASE_TO_RETURN: ReleaseMode.RETURN,
@@ -72,6 +74,7 @@ class Flight:
         self._policy = part.policy
         self._jumps = JumpWatch(config.safety.clock_jump_s)
         self._number = 0
+        self._resumed = False  # the master alone let this process in
         self._failing = False
         self._alive_at = NEVER  # the strategy's last sign of life [s]
         self._silent_at = NEVER  # when the link was last found silent [s]
@@ -87,6 +90,7 @@ class Flight:
         telemetry = self._vehicle.look(now.s)
         self.part.follow(now)
         state = self.part.state(now.wall_ns)
+        self._resumed = state.resumed
         if self.part.policy is not self._policy:  # another game: what was latched in the last one is over
             self._policy, self._state = self.part.policy, SupervisorState()
         heard_at = max(telemetry.heartbeat_at, telemetry.position_at)
@@ -169,6 +173,7 @@ class Flight:
             return
         telemetry = self._vehicle.look(now)
         if self._orders.order is Action.PASS:
+            self.part.let_in()
             self.resumed()
             adapter.enter(now)
             self.drive(now, None)
@@ -250,7 +255,11 @@ class Flight:
         # A multicopter hovers; a plane flies on as it does: in its guided mode it circles by itself.
         hovers = not adapter.holds_airspeed
         seen = self._input(now, t)._replace(over=state.over, wind=ZERO if hovers else t.wind)
-        self._supervise(ZERO if hovers else sub(t.velocity, t.wind), seen, streams=hovers)
+        self._supervise(
+            ZERO if hovers else sub(t.velocity, t.wind),
+            seen,
+            streams=hovers and not (state.late and not self._orders.granted),
+        )
 
     def _takes_off(self, now: float, state: PartState) -> bool:
         """A ground start: whether the vehicle is on its way up, by this agent's doing."""
@@ -263,8 +272,19 @@ class Flight:
 
     @property
     def may_control(self) -> bool:
-        """Whether this agent may enter the guided mode by itself."""
-        return self.config.take_control or self._orders.granted
+        """Whether this agent may enter the guided mode, by a person's word since its start or by itself.
+
+        By itself it ends neither a way home nor a failsafe, and where it was started while the game runs it
+        enters nothing: then it flies a vehicle that it finds in the guided mode.
+        """
+        t = self._vehicle.telemetry
+        bound = t.mode in HOMEWARD or t.status >= CRITICAL
+        return self._orders.granted or (self._trusted and not bound)
+
+    @property
+    def _trusted(self) -> bool:
+        """Whether the configuration lets this process take control of what it began with."""
+        return self.config.take_control and not self._resumed
 
     def drive(self, now: float, setpoint: Setpoint | None) -> None:
         """Let the adapter do what is due, with the setpoint of this step or without one."""
@@ -282,7 +302,7 @@ class Flight:
     def _taken(self, now: float) -> None:
         t, adapter = self._vehicle.telemetry, self._vehicle.adapter
         fell_back = t.mode == "HOLD" and now - self._silent_at < REGAIN_S
-        if fell_back and self.may_control and adapter is not None:
+        if fell_back and (self._orders.granted or self._trusted) and adapter is not None:
             self._journal.warning("regain", f"{t.mode} while the link was silent: asking again")
             adapter.enter(now)
         else:

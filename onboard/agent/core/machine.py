@@ -223,7 +223,7 @@ class AgentCore:
             self._end(now)
             return
         self._leave_until = now.s + LEAVE_S
-        adapter.leave(now.s, ReleaseMode.HOLD)
+        adapter.leave(now.s, ReleaseMode.DEPART)
         self._leaving.start(now.s)
         self._leaving.due(now.s)
         self._leave_on(now)
