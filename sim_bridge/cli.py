@@ -11,6 +11,7 @@ for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 
 import typer  # noqa: E402  (threads are set before anything imports NumPy)
 
+from onboard.config.printable import printable  # noqa: E402
 from onboard.config.strict import ConfigError  # noqa: E402
 from onboard.runtime.program import run  # noqa: E402
 
@@ -123,7 +124,7 @@ def serve(
     options = Options(
         game=game, bus=bus, listen=listen, zenoh=zenoh, referee=referee, once=once, seed=seed, ports=ports
     )
-    run_server(scenario_file(scenario), options, lambda line: print(line, flush=True))
+    run_server(scenario_file(scenario), options, lambda line: print(printable(line), flush=True))
 
 
 @app.command(epilog="Examples: sim-bridge fly demo | sim-bridge fly --fast --seed 3 my.toml --runs /tmp/runs")
@@ -140,7 +141,7 @@ def fly(
     from sim_bridge.programs import fly as room
 
     options = room.Options(fast, seed, runs, bus, report, quiet)
-    flown = room.fly(room.scenario_file(scenario), options, lambda line: print(line, flush=True))
+    flown = room.fly(room.scenario_file(scenario), options, lambda line: print(printable(line), flush=True))
     print(room.story(flown))
     if flown.summary.verdict not in ("captured", "arrived", "escaped"):
         raise typer.Exit(1)

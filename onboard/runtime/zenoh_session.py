@@ -22,7 +22,7 @@ from onboard.runtime.inbox import Inbox
 from onboard.runtime.patterns import intersects
 from onboard.runtime.protocols import Sample, Subscription
 from onboard.runtime.rate_limit import PAYLOAD_MAX, BusLimit
-from onboard.runtime.zenoh_config import Candidate, first_sentence
+from onboard.runtime.zenoh_config import Candidate, first_sentence, of_zenoh
 from onboard.wire.bus.topics import TOPICS, Delivery
 
 EVENTS_KEPT = 256  # events a publisher keeps of each key
@@ -43,8 +43,16 @@ class _Declared:
         self._entity: Any = None
 
     def open(self, session: Any) -> None:
-        """Declare it now."""
-        self._entity = self._declare(session)
+        """Declare it now; where that fails, again later."""
+        if not self.active or session is not self._bus._session:
+            return
+        try:
+            self._entity = self._declare(session)
+        except BaseException as error:
+            if not of_zenoh(error):
+                raise
+            self._bus._inbox.counts["declare_failed"] += 1
+            self._bus._loop.call_later(RETRY_S, self.open, session)
 
     def forget(self) -> None:
         """Its session is gone."""
@@ -59,7 +67,9 @@ class _Declared:
         if self._entity is not None:
             try:
                 self._entity.undeclare()
-            except zenoh.ZError:  # the session went first
+            except BaseException as error:
+                if not of_zenoh(error):
+                    raise
                 self._bus._inbox.counts["error"] += 1
 
 
@@ -131,7 +141,9 @@ class ZenohBus:
             if publisher is None:
                 publisher = self._publishers[key] = _publisher(session, key, delivery)
             publisher.put(payload)
-        except zenoh.ZError:
+        except BaseException as error:
+            if not of_zenoh(error):
+                raise
             self._inbox.counts["error"] += 1
 
     def subscribe(
@@ -323,7 +335,9 @@ class ZenohBus:
             for how, config in self._sessions:
                 try:
                     session = zenoh.open(config)
-                except zenoh.ZError as error:
+                except BaseException as error:  # nothing else is there to open it
+                    if not of_zenoh(error):
+                        raise
                     trouble = self._why_not() or first_sentence(error)
                     self._inbox.queue(partial(self._failed, trouble))
                 else:
@@ -334,7 +348,9 @@ class ZenohBus:
     def _close_in_thread(self, session: Any, closed: asyncio.Event | None = None) -> None:
         try:
             session.close()
-        except zenoh.ZError:  # over a bad network it may give up
+        except BaseException as error:  # over a bad network it may give up
+            if not of_zenoh(error):
+                raise
             self._inbox.counts["close_timeout"] += 1
         if closed is not None:
             self._inbox.queue(closed.set)

@@ -16,6 +16,7 @@ from onboard.agent.core.part import Part, PartState
 from onboard.agent.core.takeoff import TakeOff
 from onboard.agent.core.vehicle_link import Control, VehicleLink
 from onboard.autopilot.base import ReleaseMode, Setpoint, Stage, Telemetry
+from onboard.config.printable import named
 from onboard.core.math.constants import NEVER
 from onboard.core.math.vectors import ZERO, Vec, along, sub
 from onboard.core.safety.policy import Action, Cause, Command, Policy, SupervisorInput
@@ -121,11 +122,13 @@ class Flight:
             return False
         self.open = None
         error = answer.error
+        if answer.decision is None and not error:
+            error = "no decision"
         if answer.decision is not None and step.question is not None:
             try:
                 self.decision = self.part.conclude(step.question, answer.decision)
             except Exception as trouble:  # a strategy of another distribution may answer anything
-                error = f"{type(trouble).__name__}: {trouble}"
+                error = named(trouble)
         self._complete(step, answer.took_s, error)
         return True
 
@@ -145,7 +148,7 @@ class Flight:
         try:
             asked = self.part.ask(now, Own(position, t.velocity, wind))
         except Exception as trouble:  # an error of thinking must not end the flight: the supervisor acts
-            self._complete(step, 0.0, f"{type(trouble).__name__}: {trouble}")
+            self._complete(step, 0.0, named(trouble))
             return None
         if isinstance(asked, PilotDecision):
             self.decision = asked
