@@ -27,7 +27,6 @@ class Traits(NamedTuple):
     guided_mode: str  # the mode in which setpoints count, in the autopilot's words
     release: dict[ReleaseMode, str]  # the modes to leave into, in the autopilot's words
     holds_airspeed: bool = False  # a constant speed means airspeed
-    stops_in_silence: bool = True  # the autopilot stops by itself when setpoints end
 
 
 class SetpointEncoder(Protocol):
@@ -92,10 +91,8 @@ class GuidedAdapter:
         self._machine.leave(mode)
 
     def end(self, now: float) -> None:
-        """End the stream: by silence where the autopilot then stops by itself, else by leaving to hold."""
+        """End the stream: the next setpoint begins a new one."""
         self._encoder.restart()
-        if not self._encoder.traits.stops_in_silence and self.stage is Stage.ACTIVE:
-            self._machine.leave(ReleaseMode.HOLD)
 
     def arm(self, now: float) -> bool:
         """Ask for arming, if made with `may_arm`."""
