@@ -65,10 +65,10 @@ def planar(
     for name in names:
         pursuer_strategy(name)
     pictures = figures is not None or animate is not None
+    if pictures:
+        from sim_bridge.plane_game import figures as drawing
     if animate is not None:
-        from sim_bridge.plane_game.figures import check_film
-
-        check_film(animate)
+        drawing.check_film(animate)
     if figures is not None:
         _folder(figures)
     results: list[room.Result] = []
@@ -82,13 +82,9 @@ def planar(
 
                 print(msgspec.json.encode(results[-1]).decode())
             if figures is not None:
-                from sim_bridge.plane_game.figures import draw_game
-
-                draw_game(played, figures)
+                drawing.draw_game(played, figures)
             if animate is not None and first:
-                from sim_bridge.plane_game.figures import animate as film
-
-                film(played, animate)
+                drawing.animate(played, animate)
     agree, total = room.differs(results)
     if not json:
         print(room.table(results))

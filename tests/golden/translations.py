@@ -22,49 +22,8 @@ class Translation(NamedTuple):
     was: str = r"\g<0>"  # the topic's recorded name, as in re.sub
 
 
-def schema_1(message: Any) -> Any:
-    """A bus message under the schema number 1."""
-    match message:
-        case [2, body]:
-            return [1, body]
-    return message
-
-
-def flat_setup(message: Any) -> Any:
-    """A setup with its rules and its vehicles' limits side by side, as schema 1 had them."""
-    match message:
-        case [schema, [*head, roster, rules, fence, track_sigma, seed, field_profile]]:
-            R, rho, lambda_, beta, epsilon_min, horizon, separation, planar = rules
-            members = []
-            for id, role, speed, start, limits, strategy in roster:
-                speed_min, _speed_max, pitch_min, pitch_max, _yaw_min, _yaw_max, turn_rate = limits
-                members.append(
-                    [id, role, speed, start, speed_min, pitch_min, pitch_max, turn_rate, strategy]
-                )
-            return [
-                schema,
-                [*head, members, R, rho, lambda_, beta, epsilon_min, horizon, planar, fence, separation,
-                 track_sigma, seed, field_profile],
-            ]  # fmt: skip
-    return message
-
-
 # Topics as in `bus` (without the game's name), in `viewers`, and "summary" for a game's summary.json.
-def without_autopilot_as_word(message: Any) -> Any:
-    """A health message in which an autopilot that was not found is an empty word, and not null."""
-    match message:
-        case [schema, [*body]] if len(body) > AUTOPILOT_AT and body[AUTOPILOT_AT] is None:
-            return [schema, [*body[:AUTOPILOT_AT], "", *body[AUTOPILOT_AT + 1 :]]]
-    return message
-
-
-AUTOPILOT_AT = 5  # place of the autopilot's kind in a health message as recorded
-
-TRANSLATIONS: tuple[Translation, ...] = (
-    Translation(r"game/setup", flat_setup, "rules and limits are the core's types, nested"),
-    Translation(r"vehicles/[0-9]+/health", without_autopilot_as_word, "the kind of autopilot became an enum"),
-    Translation(r".*", schema_1, "the setup's new shape raised the schema of all messages"),
-)
+TRANSLATIONS: tuple[Translation, ...] = ()
 
 
 def without_version(message: Any) -> Any:

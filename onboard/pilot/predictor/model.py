@@ -124,20 +124,10 @@ def fit(
             act, weights, data, settings.finishing, settings.epsilon, settings.decay
         )
     return Model(
-        points,
-        coefficients,
-        kinds,
-        chosen,
-        np.array([one.shrink for one in verdict]),
-        np.array([one.believed for one in verdict]),
-        weights,
-        net.lags,
-        net.axes,
-        net.middle,
-        net.scale,
-        net.spread,
-        np.array([one.sigma for one in verdict]),
-    )
+        points, coefficients, kinds, chosen, np.array([one.shrink for one in verdict]),
+        np.array([one.believed for one in verdict]), weights, net.lags, net.axes, net.middle, net.scale,
+        net.spread, np.array([one.sigma for one in verdict]),
+    )  # fmt: skip
 
 
 def refresh(positions: Array, velocities: Array, model: Model, settings: ModelSettings) -> Model:

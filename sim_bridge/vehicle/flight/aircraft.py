@@ -239,6 +239,12 @@ def build(spec: Spec, name: str) -> Aircraft:
         speed_min=spec.limits.speed_min,
         speed_max=spec.limits.speed_max,
     )
+    _demand_stable(model, name)
+    return Aircraft(spec, pitch, yaw, model)
+
+
+def _demand_stable(model: PlaneModel, name: str) -> None:
+    """Raise ConfigError unless every mode of both closed loops decays."""
     for key, axis, law in (
         ("pitch_loop", model.pitch, model.pitch_law),
         ("yaw_loop", model.yaw, model.yaw_law),
@@ -249,7 +255,6 @@ def build(spec: Spec, name: str) -> Aircraft:
                 f"{name}: {key}: unstable: found a closed-loop mode that grows by {largest:.4f} a sample, "
                 "expected every mode to decay"
             )
-    return Aircraft(spec, pitch, yaw, model)
 
 
 def within(model: PlaneModel, limits: VehicleLimits) -> PlaneModel:
