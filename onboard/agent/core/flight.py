@@ -92,6 +92,7 @@ class Flight:
         state = self.part.state(now.wall_ns)
         if self.part.policy is not self._policy:  # another game: what was latched in the last one is over
             self._policy, self._state = self.part.policy, in_another_game(self._state)
+            telemetry = self._vehicle.look(now.s)  # its game frame is another, too
         heard_at = max(telemetry.heartbeat_at, telemetry.position_at)
         if telemetry.heartbeat_at != NEVER and now.s - heard_at > SILENT_S:
             self._silent_at = now.s
@@ -253,7 +254,8 @@ class Flight:
             leaving = adapter.stage is Stage.LEAVING and command is not Command.RELEASE_TO_HOLD
             if ours or leaving or self._orders.order is not Action.PASS or self.take_off.climbing:
                 adapter.leave(now, RELEASES[command])
-        self.drive(now, output if streams else None)
+        flown = streams and (command is Command.STREAM or ours)
+        self.drive(now, output if flown else None)
 
     # ------------------------------------------------------------------ before and after the part
 
