@@ -214,7 +214,7 @@ class FakeMaster:
     def __init__(self, name: str = "laptop-A", nonce: int = 5, offset_s: float = 0.0) -> None:
         self.name, self.nonce, self.offset_ns = name, nonce, round(offset_s * 1e9)
         self.on = True
-        self.number = 0
+        self.number = self.phases = 0
         self.tracks = True
         self._due: list[tuple[topics.Topic[Any], Any]] = []
         self._at = self._track_at = 0.0
@@ -229,7 +229,7 @@ class FakeMaster:
         )
         base = Setup(
             game=GAME, scenario=name, scenario_hash=name, master=self.name, origin=ORIGIN, roster=roster,
-            rules=RulesMessage(2.0, 4.0), fence=Fence(SQUARE, 10.0, 120.0),
+            rules=RulesMessage(2.0, 4.0), fence=Fence(SQUARE, 10.0, 120.0), nonce=self.nonce,
         )  # fmt: skip
         self._due.append((topics.SETUP, msgspec.structs.replace(base, **changes)))
         self._due.append((topics.EVADER_BRIEF, EvaderBrief(None, EPOCH_NS)))
@@ -262,11 +262,13 @@ class FakeMaster:
 
     def lease(self, wall_ns: int) -> Master:
         """Its next word."""
-        return Master(self.name, wall_ns, 2.0, self.nonce)
+        self.number += 1
+        return Master(self.name, wall_ns, 2.0, self.nonce, self.number, self.takes_over)
 
     def change(self, which: Phase, t0: int, wall_ns: int, resume: tuple[int, ...] = ()) -> PhaseChange:
         """Its next phase."""
-        return PhaseChange(which, t0, wall_ns, resume)
+        self.phases += 1
+        return PhaseChange(which, t0, wall_ns, resume, "", self.name, self.nonce, self.phases)
 
 
 def playing(kind: Kind = Kind.ARDUCOPTER, **config: Any) -> LoneAgent:

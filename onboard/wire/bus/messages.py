@@ -150,6 +150,7 @@ class Setup(Message, frozen=True):
     track_sigma: float = 0.0  # stated position error of the tracks, one sigma an axis [m]
     seed: int = 0
     field_profile: bool = False  # altitude layers, capture judged horizontally
+    nonce: int = 0  # of the master's process, as in `Master`
 
     @property
     def flat(self) -> bool:
@@ -165,6 +166,9 @@ class PhaseChange(Message, frozen=True):
     stamp_ns: int
     resume: tuple[int, ...] = ()  # ids of restarted agents that may act again
     reason: str = ""
+    master: str = ""  # who says so
+    nonce: int = 0  # of the master's process, as in `Master`
+    number: int = 0  # counts the master's phases: the greater one is the later one, whatever clocks say
 
 
 class Outcome(Message, frozen=True):
@@ -185,6 +189,8 @@ class Master(Message, frozen=True):
     stamp_ns: int
     lease_s: float = 2.0
     nonce: int = 0  # tells two masters of one name apart
+    number: int = 0  # counts up with each word: what an order quotes
+    takes_over: str = ""  # name of the master whose running game a person took over
 
 
 class EvaderBrief(Message, frozen=True):
