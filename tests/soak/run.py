@@ -30,7 +30,7 @@ from onboard.runtime.loop import run_virtual  # noqa: E402
 from onboard.wire.bus.messages import Command, CommandKind, Phase  # noqa: E402
 from onboard.wire.bus.topics import COMMAND  # noqa: E402
 from tests.soak.faults import NAMES, OF_ALL, OF_ONE, Rng, Undo  # noqa: E402
-from tests.support.whole_games import WholeGame, flies, game_of  # noqa: E402
+from tests.support.whole_games import WholeGame, flies, game_of, quoting  # noqa: E402
 
 GAME_S = 600.0
 LOOK_S = 0.1
@@ -183,6 +183,7 @@ class Soak:
                 self._orders += 1
                 self.totals["resumes"] += 1
                 order = Command(f"soak-{self._orders}", CommandKind.RESUME, "operator", 0)
+                order = quoting(self.game, id, order)
                 where = COMMAND.key(self.game.game, id)
                 await self.game.bus.request(where, COMMAND.encode(order), 0.5)
 

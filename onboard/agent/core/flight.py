@@ -69,7 +69,7 @@ class Flight:
         self.take_off = TakeOff(config.take_off_height)
         self.open: OpenStep | None = None
         self.ending = False  # the process ends: the vehicle is left in the autopilot's mode to hold
-        self._vehicle, self._bus, self._orders, self._journal = vehicle, bus, orders, journal
+        self.vehicle, self.bus, self._orders, self._journal = vehicle, bus, orders, journal
         self._state = SupervisorState()
         self._policy = part.policy
         self._jumps = JumpWatch(config.safety.clock_jump_s)
@@ -85,14 +85,14 @@ class Flight:
         """Begin a control step. Where a strategy is to be asked, `answered` completes it."""
         jump = self._jumps.look(now)
         if jump != 0.0:
-            self._bus.clock.restart()
+            self.bus.clock.restart()
             self._journal.error("clock_jump", f"the wall clock jumped by {jump:+.3f} s")
-        telemetry = self._vehicle.look(now.s)
+        telemetry = self.vehicle.look(now.s)
         self.part.follow(now)
         state = self.part.state(now.wall_ns)
         if self.part.policy is not self._policy:  # another game: what was latched in the last one is over
             self._policy, self._state = self.part.policy, in_another_game(self._state)
-            telemetry = self._vehicle.look(now.s)  # its game frame is another, too
+            telemetry = self.vehicle.look(now.s)  # its game frame is another, too
         heard_at = max(telemetry.heartbeat_at, telemetry.position_at)
         if telemetry.heartbeat_at != NEVER and now.s - heard_at > SILENT_S:
             self._silent_at = now.s
@@ -128,7 +128,7 @@ class Flight:
             self._complete(step, took, f"no answer within {took:.2f} s")
 
     def _ask(self, now: Instant, t: Telemetry) -> Think | None:
-        hovers = self._vehicle.hovers is not False
+        hovers = self.vehicle.hovers is not False
         wind = t.wind if not hovers and now.s - t.wind_at < WIND_FRESH_S else ZERO
         position = along(t.position, t.velocity, min(max(0.0, now.s - t.position_at), 0.5))
         self._number += 1
@@ -166,10 +166,10 @@ class Flight:
 
     def obey(self, now: float) -> None:
         """Follow at once what the ground has ordered, or what it gives back."""
-        adapter = self._vehicle.adapter
+        adapter = self.vehicle.adapter
         if adapter is None:
             return
-        telemetry = self._vehicle.look(now)
+        telemetry = self.vehicle.look(now)
         if self._orders.order is Action.PASS:
             self._given_at = now
             self.resumed()
@@ -182,7 +182,7 @@ class Flight:
     def leave(self, now: float) -> None:
         """The process ends: leave the vehicle in a mode that the autopilot holds alone, or on its way home."""
         self.ending, self.open = True, None
-        self._judge(ZERO, self._input(now, self._vehicle.look(now)))
+        self._judge(ZERO, self._input(now, self.vehicle.look(now)))
 
     def _input(self, now: float, t: Telemetry) -> SupervisorInput:
         """What the supervisor looks at, but for what belongs to a decision."""
@@ -191,15 +191,15 @@ class Flight:
             id=self.config.id,
             position=t.position,
             velocity=t.velocity,
-            mates=self._bus.mates_at(now),
+            mates=self.bus.mates_at(now),
             telemetry_age=now - t.position_at if t.placed else inf,
             heartbeat_age=now - t.heartbeat_at,
-            ground_age=now - self._bus.master_at,
+            ground_age=now - self.bus.master_at,
             clock_jump_age=now - self._jumps.jumped_at,
             battery=t.battery,
             ekf_ok=t.ekf_ok or t.ekf_at == NEVER,
             gps_fix=t.gps_fix if t.gps_at != NEVER else 3,
-            pilot=self._vehicle.stage is Stage.TAKEN and not self._given(now),
+            pilot=self.vehicle.stage is Stage.TAKEN and not self._given(now),
             order=max(self._orders.order, Action.HOLD) if self.ending else self._orders.order,
         )
 
@@ -213,7 +213,7 @@ class Flight:
 
     def _thresholds(self) -> Policy:
         """The part's, for the kind of vehicle that was found."""
-        policy, hovers = self.part.policy, self._vehicle.hovers is not False
+        policy, hovers = self.part.policy, self.vehicle.hovers is not False
         if policy.envelope.hovers == hovers:
             return policy
         return policy._replace(envelope=policy.envelope._replace(hovers=hovers))
@@ -234,7 +234,7 @@ class Flight:
 
     def _carry_out(self, now: float, output: SupervisorOutput, *, streams: bool, enters: bool) -> None:
         """From the supervisor's verdict to what the adapter is asked for."""
-        adapter = self._vehicle.adapter
+        adapter = self.vehicle.adapter
         if adapter is None:
             return
         ours = adapter.stage in (Stage.ACTIVE, Stage.ENTERING)
@@ -261,7 +261,7 @@ class Flight:
 
     def _stand_by(self, now: float, t: Telemetry, state: PartState) -> None:
         """Take control when the part is about to begin; what is or becomes ours is supervised in each step."""
-        adapter = self._vehicle.adapter
+        adapter = self.vehicle.adapter
         if adapter is None:
             return
         held = self._orders.order is not Action.PASS
@@ -279,7 +279,7 @@ class Flight:
         output = self._judge(still, seen, streams=hovers and not climbs, enters=wanted)
         if not (held or ours):  # what was not ours has latched nothing
             self._state = self._state._replace(floor=before.floor, floor_cause=before.floor_cause)
-        if climbs and output.command is Command.STREAM and self.take_off.step(now, self._vehicle):
+        if climbs and output.command is Command.STREAM and self.take_off.step(now, self.vehicle):
             self.drive(now)
 
     def _wanted(self, now: float, adapter: Adapter, state: PartState) -> bool:
@@ -296,11 +296,11 @@ class Flight:
     @property
     def may_control(self) -> bool:
         """Whether this agent may enter the guided mode by itself."""
-        return self.config.take_control or self._orders.granted
+        return (self.config.take_control or self._orders.granted) and not self._orders.blocked
 
     def drive(self, now: float, verdict: SupervisorOutput | None = None) -> None:
         """Let the adapter do what is due, with the supervisor's verdict on this step or without a setpoint."""
-        change = self._vehicle.step(now, verdict)
+        change = self.vehicle.step(now, verdict)
         if change is Control.TAKEN:
             self._taken(now)
         elif change is not Control.SAME:
@@ -312,7 +312,7 @@ class Flight:
         self._state = SupervisorState() if not self.playing else handed_back(self._state)
 
     def _taken(self, now: float) -> None:
-        t = self._vehicle.telemetry
+        t = self.vehicle.telemetry
         fell_back = t.mode == "HOLD" and now - self._silent_at < REGAIN_S
         if fell_back and self.may_control:
             self._journal.warning("regain", f"{t.mode} while the link was silent: asking again")

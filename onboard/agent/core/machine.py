@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 from onboard.agent.config import AgentConfig, KnockOff
 from onboard.agent.core.bus_view import BusView
 from onboard.agent.core.command_book import Orders
+from onboard.agent.core.command_desk import CommandDesk
 from onboard.agent.core.ending import Ending
 from onboard.agent.core.events import (
     Announce,
@@ -34,7 +35,6 @@ from onboard.agent.core.events import (
     Loaded,
     Outbox,
     Publish,
-    Reply,
     Request,
     Serve,
     Started,
@@ -54,7 +54,7 @@ from onboard.autopilot.base import Stage
 from onboard.core.math.constants import NEVER
 from onboard.core.safety.policy import Action
 from onboard.game.route_file import Route
-from onboard.wire.bus.messages import AgentStage, CommandKind, CommandReply, CommandState, Role
+from onboard.wire.bus.messages import AgentStage, Role
 from onboard.wire.bus.topics import ALIVE, COMMAND, DECISION, HEALTH, STATE, Topic
 from onboard.wire.mavlink.frames import Packet
 from onboard.wire.mavlink.signing import Signing
@@ -99,6 +99,7 @@ class AgentCore:
             part = self.game = GamePlayer(config, self.vehicle, self.bus, self.out, self.journal)
         self.part = part
         self.flight = Flight(config, self.vehicle, self.bus, self.orders, self.journal, part)
+        self.desk = CommandDesk(config, facts.nonce, self.orders, self.flight, self.out, self.journal)
         self.ending = Ending(self.vehicle, self.flight, self.journal, mute=config.dry_run)
         self.reports = Reports(config, facts.nonce, facts.version, self.vehicle, self.bus, self.flight)
         self.stage = AgentStage.WAITING
@@ -116,7 +117,7 @@ class AgentCore:
             Started: self._start,
             LinkBytes: self._take_bytes,
             BusMessage: self._take_message,
-            Request: self._answer_request,
+            Request: lambda event, now: self.desk.answer(event.token, event.payload, now),
             BusState: self._bus_changed,
             ChildSaid: lambda event, now: self.vehicle.child_said(event.line),
             ChildExited: lambda event, now: self.vehicle.child_exited(),
@@ -268,49 +269,6 @@ class AgentCore:
         if self.game is not None:
             self.game.loaded(event.strategy, event.error)
 
-    def _answer_request(self, event: Request, now: Instant) -> None:
-        """Answer a request on `vehicles/<id>/command`; repeating one changes nothing."""
-        command = COMMAND.decode(event.payload, self.bus.drops)
-        if command is None:
-            bad = CommandReply("", self.config.id, CommandState.REFUSED, "undecodable", "", now.wall_ns)
-            self.out.put(Reply(event.token, COMMAND.encode_reply(bad)))
-            return
-        entry, new = self.orders.give(command, self._refusal(command.kind))
-        if new:
-            text = f"{command.kind.value} from {command.sender}"
-            if entry.reason:
-                self.journal.warning("command_refused", f"{text}: {entry.reason}")
-            else:
-                self.journal.info("command", text)
-                self.flight.obey(now.s)
-        self._review_orders()
-        reply = CommandReply(
-            command_id=command.command_id,
-            id=self.config.id,
-            state=entry.state,
-            reason=entry.reason,
-            obeyed=self.orders.obeyed,
-            stamp_ns=now.wall_ns,
-            mode=self.vehicle.telemetry.mode,
-        )
-        self.out.put(Reply(event.token, COMMAND.encode_reply(reply)))
-
-    def _refusal(self, kind: CommandKind) -> str:
-        """Why a command cannot be obeyed; '' if it can."""
-        if self.config.dry_run:
-            return "dry run: this agent sends nothing"
-        if self.vehicle.adapter is None:
-            return self.vehicle.refusal or "no autopilot"
-        if self.vehicle.stage is Stage.TAKEN and kind not in (CommandKind.RESUME, CommandKind.START):
-            return f"a pilot flies it, in {self.vehicle.telemetry.mode}"
-        return ""
-
-    def _review_orders(self) -> None:
-        entry = self.orders.review(self.vehicle.stage)
-        if entry is not None:
-            text = f"{entry.command.kind.value} from {entry.command.sender}"
-            self.journal.info(f"command_{entry.state.value}", text)
-
     # ------------------------------------------------------------------ the control step
 
     def _step(self, now: Instant) -> None:
@@ -334,7 +292,7 @@ class AgentCore:
         self.steps += 1
         self.radio.flush(now)
         self.out.put(Beat())
-        self._review_orders()
+        self.desk.review()
         self._stepped_wall = begun
 
     # ------------------------------------------------------------------ what it says
@@ -357,7 +315,9 @@ class AgentCore:
         """Health, and what is looked at twice a second; with the last report, the end."""
         if not self.ending.complete:
             self._judge(now)
-        health = self.reports.health(Standing(self.stage, self.lacks, self.counters(event)), now)
+        number = self.desk.speak(now.s)
+        standing = Standing(self.stage, self.lacks, self.counters(event), number, self.orders.stopped_by)
+        health = self.reports.health(standing, now)
         self._messages.append((HEALTH, HEALTH.encode(health)))
         if self.ending.complete:
             self.out.put(End())
@@ -369,6 +329,8 @@ class AgentCore:
             lacks = (*lacks, f"its height of {self.flight.take_off.height:g} m")
         if self.flight.latched:
             lacks = (*lacks, f"a person's resume after: {self.flight.latched}")
+        if self.orders.blocked:
+            lacks = (*lacks, f"a person's resume after: {self.orders.blocked}")
         self.lacks = (*lacks, "the master's resume") if state.late else lacks
         stage = self._stage(over=state.over)
         if stage != self.stage:

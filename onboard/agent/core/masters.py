@@ -29,6 +29,28 @@ class Hearing(Enum):
     OVERFLOW = "is one of too many beside"
 
 
+class Words:
+    """Numbered words of one sender, and when each was first heard (or said) by the agent's own clock."""
+
+    def __init__(self) -> None:
+        self._at: OrderedDict[tuple[int, int], float] = OrderedDict()
+
+    def add(self, nonce: int, number: int, now: float) -> None:
+        """A word was heard, or said, at `now` [s, monotonic]; heard again it is not newer."""
+        self._at.setdefault((nonce, number), now)
+        while len(self._at) > WORDS_KEPT:
+            self._at.popitem(last=False)
+
+    @property
+    def last(self) -> tuple[int, int] | None:
+        """Nonce and number of the newest word; None where there is none."""
+        return next(reversed(self._at), None)
+
+    def fresh(self, nonce: int, number: int, now: float) -> bool:
+        """Whether that word is at most `QUOTED_S` old."""
+        return now - self._at.get((nonce, number), NEVER) <= QUOTED_S
+
+
 class Masters:
     """Leases of masters, in the order in which they began. Instants are the agent's own [s, monotonic]."""
 
@@ -36,7 +58,7 @@ class Masters:
         self.leader: Who | None = None
         self.game_runs = False  # the leader's last phase is a running game
         self._leases: OrderedDict[Who, float] = OrderedDict()  # until when
-        self._words: OrderedDict[tuple[int, int], float] = OrderedDict()  # (nonce, number) → when heard
+        self._words = Words()
 
     @property
     def name(self) -> str:
@@ -46,6 +68,11 @@ class Masters:
     def holds(self, now: float) -> bool:
         """Whether the leader's lease still runs."""
         return self.leader is not None and self._leases.get(self.leader, NEVER) >= now
+
+    @property
+    def last(self) -> tuple[int, int] | None:
+        """Nonce and number of the leader's newest word; None where nobody leads."""
+        return self._words.last
 
     def hear(self, master: Master, now: float) -> Hearing:
         """Take a master's word at `now`."""
@@ -63,13 +90,11 @@ class Masters:
                 self._leases[who] = now + lease
                 return Hearing.SECOND_MASTER
             self.leader, self.game_runs = who, False
-            self._words.clear()
+            self._words = Words()
         self._leases[who] = now + lease
-        self._words.setdefault((master.nonce, master.number), now)
-        while len(self._words) > WORDS_KEPT:
-            self._words.popitem(last=False)
+        self._words.add(master.nonce, master.number, now)
         return Hearing.LEADS
 
     def quoted(self, nonce: int, number: int, now: float) -> bool:
         """Whether that is a word of the leader which this agent heard at most `QUOTED_S` ago."""
-        return now - self._words.get((nonce, number), NEVER) <= QUOTED_S
+        return self._words.fresh(nonce, number, now)

@@ -100,6 +100,7 @@ class VehicleLink:
         self.heard_systems: dict[int, float] = {}
         self.position_rate, self.setpoint_rate = Rate(), Rate()
         self.sent_at = NEVER  # of the last setpoint [s]
+        self.flown = False  # the vehicle was under this process's control once
         self.version: Version | None = None  # of the autopilot, once it has said so
         self.to = Target(config.id)
         self._journal = journal
@@ -185,6 +186,7 @@ class VehicleLink:
         setpoint = None if verdict is None else _let_through(verdict)
         step = adapter.step(now, self.telemetry, setpoint)
         self._stepped_at = now
+        self.flown = self.flown or adapter.stage is Stage.ACTIVE
         for message in step.messages:
             self.radio.send(message)
         if setpoint is not None and adapter.stage is Stage.ACTIVE:

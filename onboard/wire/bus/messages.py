@@ -265,6 +265,8 @@ class Health(Message, frozen=True):
     telemetry_age_s: float = 0.0
     heartbeat_age_s: float = 0.0
     nonce: int = 0
+    number: int = 0  # counts up in each process: what an order quotes where there is no master
+    stopped_by: str = ""  # id of the last order obeyed that stops; '' = none by this process
 
 
 class Severity(Enum):
@@ -300,13 +302,23 @@ class CommandKind(Enum):
     ABORT = "abort"
 
 
+class Quote(Message, frozen=True):
+    """What the sender of an order had heard when it was given: the order's age and place, without any clock."""
+
+    nonce: int = 0  # of the master's process (of the agent's, where there is no master)
+    number: int = 0  # of its newest word: `Master.number`, or `Health.number`
+    agent: int = 0  # `Health.nonce` of the agent's process that the order is for
+    after: str = ""  # `Health.stopped_by`
+
+
 class Command(Message, frozen=True):
-    """Request on `vehicles/<id>/command`: idempotent by `command_id`."""
+    """Request on `vehicles/<id>/command`: once by id, sender and kind; docs/commands.md says the rest."""
 
     command_id: str
     kind: CommandKind
     sender: str
-    stamp_ns: int
+    stamp_ns: int  # for people: no age is taken from it
+    quote: Quote = Quote()
 
 
 class CommandState(Enum):
