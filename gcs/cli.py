@@ -27,6 +27,8 @@ app = typer.Typer(
 )
 game_app = typer.Typer(help="Games with the ground station as their master.", no_args_is_help=True)
 app.add_typer(game_app, name="game")
+keys_app = typer.Typer(help="Keys of a field: who may do what on the bus.", no_args_is_help=True)
+app.add_typer(keys_app, name="keys")
 
 RunArgument = Annotated[Path, typer.Argument(help="Run folder, or a recording in it.")]
 
@@ -117,6 +119,7 @@ def replay(
     if (evader or pursuer) and not decide:
         raise ConfigError("--evader, --pursuer: found without --decide, expected with it")
     if decide:
+        options.refuse(("config", "plain"), "replay --decide")
         return programs.decide_again(run, {Role.EVADER: evader, Role.PURSUER: pursuer})
     return programs.replay(run, options.settings().alerts, plain=bool(options.plain))
 
@@ -138,13 +141,43 @@ def game_run(
     start: Annotated[
         bool, typer.Option("--start/--wait", help="Start when all are ready, or wait for `start all`.")
     ] = True,
+    take_over: Annotated[
+        str, typer.Option("--take-over", metavar="NAME", help="Lead on the running game of a silent master.")
+    ] = "",
 ) -> int:
     """Stage, start, referee and end a game without the bridge; exit 0 when it has ended with a verdict."""
     from gcs import programs
     from onboard.game.scenario import load
 
     found, played = options.settings(), load(scenario)
-    return _play(programs.play(found, played, plain=bool(options.plain), auto_start=start))
+    return _play(programs.play(found, played, plain=bool(options.plain), auto_start=start, takes_over=take_over))
+
+
+@keys_app.command("init")
+def keys_init(
+    roster: Annotated[Path, typer.Argument(help="Roster of the field: see configs/field/roster.toml.")],
+    folder: Annotated[Path | None, typer.Option("--folder", help="Where to [beside it, NAME-keys].")] = None,
+) -> int:
+    """Make certificates, access rules and MAVLink keys; again after a change of the roster (revocation)."""
+    from gcs.keys import program
+
+    return program.init(roster, folder)
+
+
+@keys_app.command("show")
+def keys_show(folder: Annotated[Path, typer.Argument(help="Folder of `gcs keys init`.")]) -> int:
+    """List who has which certificate, and until when; exit 1 when one has ended."""
+    from gcs.keys import program
+
+    return program.show(folder)
+
+
+@keys_app.command("sheet")
+def keys_sheet(folder: Annotated[Path, typer.Argument(help="Folder of `gcs keys init`.")]) -> int:
+    """Print what to copy where, what to write into each configuration, and who may do what."""
+    from gcs.keys import program
+
+    return program.sheet(folder)
 
 
 def main() -> None:

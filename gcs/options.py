@@ -40,6 +40,12 @@ class Options(NamedTuple):
         )
         return settings.check(found, "options")
 
+    def refuse(self, names: tuple[str, ...], where: str) -> None:
+        """Raise ConfigError if one of these options was given, which `where` does not use."""
+        for name in names:
+            if getattr(self, name) is not None:
+                raise ConfigError(f"--{name}: found with {where}, which does not use it")
+
 
 DECLARED: dict[str, Any] = {
     "config": Annotated[Path | None, typer.Option("--config", help="Settings file: see configs/gcs.toml.")],

@@ -22,6 +22,7 @@ from gcs.settings import Settings
 from onboard.config.strict import ConfigError
 from onboard.core.math.constants import NS_PER_S
 from onboard.game.scenario import Scenario
+from onboard.runtime.bus_security import Lock
 from onboard.runtime.clock import RealClock
 from onboard.wire.bus.messages import CommandKind, Role
 
@@ -172,14 +173,20 @@ async def _asked(order: Order, ids: tuple[int, ...]) -> bool:
     return answer.strip().lower() == "yes"
 
 
-async def play(settings: Settings, scenario: Scenario, *, plain: bool, auto_start: bool) -> int:
+async def play(
+    settings: Settings, scenario: Scenario, *, plain: bool, auto_start: bool, takes_over: str = ""
+) -> int:
     """Play a game with the ground station as its master; exit code 0 when it ended with a verdict."""
     from gcs.master import FieldMaster
 
     _demand_terminal(plain)
     listen, record = settings.bus.listen, settings.recording.enabled
     async with on_air(settings, listen=listen, record=record) as session:
-        master = FieldMaster(session.station, scenario, auto_start=auto_start)
+        if scenario.flight.field_profile and session.lock.lock is Lock.OPEN and not settings.bus.open:
+            raise ConfigError(
+                f"bus: found {session.lock.words}, expected keys, or open = true, for a game in the field"
+            )
+        master = FieldMaster(session.station, scenario, auto_start=auto_start, takes_over=takes_over)
         session.extra = master.status
         async with asyncio.TaskGroup() as tasks:
             task = tasks.create_task(master.run(), name="master")

@@ -13,6 +13,8 @@ from gcs.console.source import Key
 from gcs.picture.values import Picture
 from gcs.settings import Settings
 from gcs.station import Station, StationSetup
+from onboard.core.math.constants import NS_PER_S
+from onboard.runtime.bus_security import BusSecurity, Lock, security_of
 from onboard.runtime.bus_zenoh import ZenohBus, open_zenoh
 from onboard.runtime.clock import RealClock
 from onboard.wire.bus.messages import CommandKind, Severity
@@ -35,8 +37,11 @@ class Session:
     title = "live"
     keys: tuple[Key, ...] = ()
 
-    def __init__(self, bus: ZenohBus, station: Station, recorder: StationRecorder | None) -> None:
+    def __init__(
+        self, bus: ZenohBus, station: Station, recorder: StationRecorder | None, lock: BusSecurity
+    ) -> None:
         self.bus = bus
+        self.lock = lock
         self.station = station
         self.recorder = recorder
         self.extra: Callable[[], str] = str  # the master's line, where there is one
@@ -46,8 +51,8 @@ class Session:
         return self.station.picture()
 
     def status(self) -> str:
-        """Bus and recording in a line."""
-        parts = [self.extra(), self.bus.status()]
+        """Bus, its lock and recording in a line."""
+        parts = [self.extra(), self.bus.status(), self.lock.short]
         if self.recorder is not None:
             status = self.recorder.status()
             parts.append(f"recording {status.size / 1e6:.1f} MB" if not status.trouble else "NOT RECORDING")
@@ -77,6 +82,7 @@ async def on_air(settings: Settings, *, listen: bool, record: bool) -> AsyncIter
     clock = RealClock()
     zenoh = Path(settings.bus.zenoh) if settings.bus.zenoh else None
     async with AsyncExitStack() as stack:
+        lock = security_of(settings.bus.endpoint or None, zenoh, clock.wall_ns() / NS_PER_S)
         bus = await open_zenoh(settings.bus.endpoint or None, listen=listen, config_file=zenoh)
         stack.push_async_callback(bus.close)
         who = StationSetup(settings.game, settings.signature, version(), settings.alerts)
@@ -94,13 +100,16 @@ async def on_air(settings: Settings, *, listen: bool, record: bool) -> AsyncIter
             station.remark(Severity.INFO, "recording", f"recording into {folder}")
         if bus.how == "joined":
             station.remark(Severity.INFO, "bus", bus.status())
+        if lock.lock is Lock.OPEN:
+            advice = "gcs keys init makes keys (docs/security.md)"
+            station.remark(Severity.WARNING, "open_bus", "the bus is open to whoever reaches it", advice)
         station.open()
         tasks = await stack.enter_async_context(asyncio.TaskGroup())
         running = [tasks.create_task(station.run(), name="station")]
         if recorder is not None:
             running.append(tasks.create_task(recorder.run(), name="recorder"))
         try:
-            yield Session(bus, station, recorder)
+            yield Session(bus, station, recorder, lock)
         finally:
             for task in running:
                 task.cancel()

@@ -17,7 +17,8 @@ class BusSettings(StrictConfig, frozen=True):
 
     endpoint: str = ""  # Zenoh endpoint; "" = tcp/127.0.0.1:7447
     listen: bool = True  # be the one the others connect to; where the port is taken, join
-    zenoh: str = ""  # Zenoh configuration file (JSON5): TLS, access control, a router elsewhere
+    zenoh: str = ""  # Zenoh configuration (JSON5): of `gcs keys init`, or one for TLS, a router elsewhere
+    open: bool = False  # lead a game in the field on a bus without keys all the same
 
 
 class RecordingSettings(StrictConfig, frozen=True):

@@ -69,6 +69,7 @@ class Station:
         self._hearers: list[Hearer] = []
         self._journal = f"{ROOT}/{self.game}/{station_journal.FOLDER}/"
         self._overflow = 0
+        self._limited: dict[str, int] = {}  # what was over a bound, by kind
         self._heard: list[Subscription] = []
         self._courier = Courier(bus, self.game, self.reducer.book, self.now_ns, self._on_reply)
 
@@ -168,6 +169,7 @@ class Station:
         while True:
             self.reducer.tick(self.now_ns())
             self._count_overflow()
+            self._count_floods()
             await asyncio.sleep(GRID_NS / NS_PER_S)
 
     def _count_overflow(self) -> None:
@@ -182,3 +184,18 @@ class Station:
                 over=not grew,
             )
         self._overflow = overflow
+
+    def _count_floods(self) -> None:
+        """Say while somebody brings more than the bus lets through."""
+        limited = {k: n for k, n in self.bus.counters().items() if k.startswith("limited_")}
+        grew = [kind for kind, n in limited.items() if n > self._limited.get(kind, 0)]
+        if bool(grew) != ("flood" in self.reducer.remarks):
+            kinds = ", ".join(f"{kind.removeprefix('limited_')} {limited[kind]}" for kind in sorted(grew))
+            self.remark(
+                Severity.WARNING,
+                "flood",
+                f"more comes than may: {kinds} left out",
+                "find who sends it; revoke its key (docs/security.md)",
+                over=not grew,
+            )
+        self._limited = limited

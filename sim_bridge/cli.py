@@ -36,7 +36,7 @@ def _root() -> None:
 
 @app.command(
     epilog="Examples: sim-bridge planar | sim-bridge planar my.toml --strategy pure-pursuit --figures out"
-    " | sim-bridge planar my.toml --json",
+    " | sim-bridge planar my.toml --json | sim-bridge planar --horizon 200",
 )
 def planar(
     scenarios: Annotated[
@@ -48,6 +48,9 @@ def planar(
         typer.Option(help="Pursuers' strategy; may be repeated. Default: 'paper' and 'earlier' [37]."),
     ] = None,
     dt: Annotated[float | None, typer.Option(help="Time step [s], in place of the scenario's.")] = None,
+    horizon: Annotated[
+        float | None, typer.Option(help="When a game ends [s], in place of the scenario's.")
+    ] = None,
     json: Annotated[bool, typer.Option("--json", help="One JSON object a game, nothing else.")] = False,
     figures: Annotated[
         Path | None, typer.Option(help="Folder for pictures of the initial and final stage (PNG and SVG).")
@@ -60,7 +63,11 @@ def planar(
 
     if dt is not None and not 0.0 < dt <= 1.0:
         raise ConfigError(f"--dt: found {dt}, expected a time step in (0, 1] s")
+    if horizon is not None and not 0.0 < horizon <= 1e5:
+        raise ConfigError(f"--horizon: found {horizon}, expected a time in (0, 100000] s")
     games = room.load_plane(scenarios or room.table1())
+    if horizon is not None:
+        games = [room.within_horizon(game, horizon) for game in games]
     names = strategy or [room.THIS_PAPER, room.EARLIER]
     for name in names:
         pursuer_strategy(name)
@@ -89,7 +96,7 @@ def planar(
     if not json:
         print(room.table(results))
         if total:
-            print(f"\n{agree} of {total} verdicts as in the paper")
+            print(f"\n{room.verdict_line(agree, total, games, not scenarios)}")
         if figures is not None:
             print(f"{2 * len(results)} pictures in {figures}")
         if animate is not None:

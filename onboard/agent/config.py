@@ -21,6 +21,7 @@ from onboard.config.bounds import (
     Speed,
     SystemId,
 )
+from onboard.config.derive import Key, struct_from
 from onboard.config.names import GameName
 from onboard.config.strict import StrictConfig, demand
 from onboard.core.safety.policy import Action, Policy
@@ -108,33 +109,37 @@ class FenceConfig(StrictConfig, frozen=True):
                f"less than height_max = {self.height_max:g} m")  # fmt: skip
 
 
-_DEFAULT = Policy()
+POLICY_KEYS = {
+    "fence": Key(FenceConfig, None),
+    "fence_margin": Key(Distance),
+    "height_margin": Key(Distance),
+    "fence_far": Key(Distance),
+    "reaction": Key(Duration, seconds=True),
+    "separation": Key(Distance, None),  # the setup's where it is not given
+    "mate_age": Key(Duration, seconds=True),
+    "telemetry_age": Key(Duration, seconds=True),
+    "heartbeat_age": Key(Duration, seconds=True),
+    "heartbeat_alone": Key(Duration, seconds=True),
+    "strategy_age": Key(StrategyAge, seconds=True),
+    "track_sigma": Key(Distance),
+    "track_action": Key(Reaction, Reaction.HOLD),
+    "ground_age": Key(Duration, seconds=True),
+    "ground_action": Key(Reaction, Reaction.NOTHING),
+    "clock_jump": Key(Duration, seconds=True),
+    "clock_hold": Key(Duration, seconds=True),
+    "battery": Key(PartialShare),
+    "gps_fix": Key(GpsFix),
+    "settle": Key(Duration, seconds=True),
+    "abort": Key(KnockOff, KnockOff.HOLD),
+}
+"""How `[safety]` writes the supervisor's Policy, with the fence and the meaning of an abort beside it."""
+
+POLICY_ALONE = ("envelope", "fences", "mate_forget", "layered", "layer", "layer_band", "track_latched")
+"""Fields of the Policy that `[safety]` does not hold."""
 
 
-class SafetyConfig(StrictConfig, frozen=True):
+class SafetyConfig(struct_from(Policy, StrictConfig, POLICY_KEYS, POLICY_ALONE)):  # type: ignore[misc]
     """Thresholds of the supervisor (docs/safety.md)."""
-
-    fence: FenceConfig | None = None
-    fence_margin: Distance = _DEFAULT.fence_margin  # [m]
-    height_margin: Distance = _DEFAULT.height_margin  # [m]
-    fence_far: Distance = _DEFAULT.fence_far  # [m]
-    reaction_s: Duration = _DEFAULT.reaction
-    separation: Distance | None = None  # [m]; missing = the setup's
-    mate_age_s: Duration = _DEFAULT.mate_age
-    telemetry_age_s: Duration = _DEFAULT.telemetry_age
-    heartbeat_age_s: Duration = _DEFAULT.heartbeat_age
-    heartbeat_alone_s: Duration = _DEFAULT.heartbeat_alone  # while other telemetry comes
-    strategy_age_s: StrategyAge = _DEFAULT.strategy_age
-    track_sigma: Distance = _DEFAULT.track_sigma  # [m]
-    track_action: Reaction = Reaction.HOLD
-    ground_age_s: Duration = _DEFAULT.ground_age
-    ground_action: Reaction = Reaction.NOTHING
-    clock_jump_s: Duration = _DEFAULT.clock_jump
-    clock_hold_s: Duration = _DEFAULT.clock_hold
-    battery: PartialShare = _DEFAULT.battery  # share left; 0 = off
-    gps_fix: GpsFix = _DEFAULT.gps_fix  # 0 = off
-    settle_s: Duration = _DEFAULT.settle
-    abort: KnockOff = KnockOff.HOLD
 
 
 class SigningConfig(StrictConfig, frozen=True):
@@ -154,13 +159,14 @@ class AgentConfig(StrictConfig, frozen=True):
     link: Links = ()  # missing = udpin://127.0.0.1:14539+id; two: the second stands by
     autopilot: AdapterChoice = AdapterChoice.AUTO
     bus: str = ""  # Zenoh endpoint; missing = tcp/127.0.0.1:7447
-    zenoh: str = ""  # Zenoh configuration file (JSON5) for TLS, access control, routers
+    zenoh: str = ""  # Zenoh configuration file (JSON5): of `gcs keys init`, or one for TLS, routers
+    open_bus: bool = False  # with field = true: fly on a bus without keys all the same
     strategy: str = ""  # missing = the setup's, or the role's default
     route: str = ""  # route file of a tracker
     take_control: bool = False  # enter GUIDED / OFFBOARD by itself at the start
     may_arm: bool = False  # arm and take off for a ground start
     take_off_height: TakeOffHeight = 30.0  # [m] above home, after a ground start
-    hold_mode: str = ""  # a multicopter's mode to hold in; missing = the adapter's (LOITER, HOLD)
+    hold_mode: str = ""  # a multicopter's mode to hold in; missing = by its throttle stick
     mavsdk: str = ""  # the connection that MAVSDK opens for itself, for the adapter `mavsdk`
     dry_run: bool = False  # decide and publish, send no setpoint and no command
     control_rate_hz: ControlRate = 20.0

@@ -7,7 +7,10 @@ from pathlib import Path
 
 from onboard.agent.config import AgentConfig
 from onboard.config.strict import ConfigError
-from onboard.runtime.bus_zenoh import open_zenoh
+from onboard.core.math.constants import NS_PER_S
+from onboard.runtime.bus_security import BusSecurity, Lock, security_of
+from onboard.runtime.bus_zenoh import ZenohBus, open_zenoh
+from onboard.runtime.clock import RealClock
 from onboard.runtime.links import open_link
 from onboard.runtime.protocols import Bus, Link
 from onboard.runtime.signing_keys import StampFile, read_key
@@ -38,10 +41,29 @@ async def open_links(config: AgentConfig) -> list[Link]:
     return links
 
 
-async def open_bus(config: AgentConfig) -> Bus:
-    """Open the bus, there or not. Raises ConfigError."""
-    file = Path(config.zenoh) if config.zenoh else None
-    return await open_zenoh(config.bus or None, config_file=file)
+async def open_bus(config: AgentConfig) -> ZenohBus:
+    """Open the bus, there or not. Raises ConfigError, also for an open bus in the field."""
+    refuse_open_bus(config, security(config))
+    return await open_zenoh(config.bus or None, config_file=_zenoh_file(config))
+
+
+def security(config: AgentConfig) -> BusSecurity:
+    """The lock of the bus that the configuration names. Raises ConfigError."""
+    now_s = RealClock().wall_ns() / NS_PER_S
+    return security_of(config.bus or None, _zenoh_file(config), now_s)
+
+
+def refuse_open_bus(config: AgentConfig, found: BusSecurity) -> None:
+    """Raise ConfigError where a flight in the field would be open to whoever reaches the network."""
+    if config.field and found.lock is Lock.OPEN and not config.open_bus:
+        raise ConfigError(
+            f"zenoh: found a bus that is {found.words}, expected keys, or open_bus = true, "
+            "because field = true (docs/security.md)"
+        )
+
+
+def _zenoh_file(config: AgentConfig) -> Path | None:
+    return Path(config.zenoh) if config.zenoh else None
 
 
 async def close_bus(bus: Bus) -> bool:

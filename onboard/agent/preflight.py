@@ -20,11 +20,13 @@ from onboard.agent.core.events import Instant, LinkFacts, Outbox, Send, Subscrib
 from onboard.agent.core.journal import Journal
 from onboard.agent.core.mavlink_radio import Radio
 from onboard.agent.core.vehicle_link import VehicleLink
-from onboard.agent.opening import close_bus, open_bus, open_links, signing_of
+from onboard.agent.opening import close_bus, open_bus, open_links, security, signing_of
 from onboard.autopilot.base import Telemetry
 from onboard.autopilot.parameters import findings
 from onboard.config.strict import ConfigError
 from onboard.core.math.constants import NEVER, NS_PER_S
+from onboard.runtime.bus_security import BusSecurity, Lock
+from onboard.runtime.bus_zenoh import ZenohBus
 from onboard.runtime.clock import RealClock
 from onboard.runtime.protocols import Bus, Clock, Link, Sample
 from onboard.runtime.zenoh_config import DEFAULT_ENDPOINT
@@ -74,6 +76,8 @@ class Sight(NamedTuple):
     bad_frames: dict[str, int] | None = None
     bus_trouble: str = ""
     bus: str = ""
+    lock: BusSecurity | None = None  # what keeps strangers off the bus
+    bus_status: str = ""  # the bus's own words
     connected: bool = False
     master: bool = False
     offset_s: float = 0.0
@@ -164,9 +168,11 @@ def _autopilot(config: AgentConfig, seen: Sight) -> list[Row]:
 def _bus(config: AgentConfig, seen: Sight) -> list[Row]:
     if seen.bus_trouble:
         return [Row("bus", Mark.FAIL, seen.bus_trouble, "correct the endpoint or the Zenoh configuration")]
+    lock = [_lock(config, seen.lock)] if seen.lock is not None else []
     if not seen.connected:
-        return [Row("bus", Mark.FAIL, f"nobody at {seen.bus}", "start gcs or sim-bridge, or give --bus")]
-    rows = [Row("bus", Mark.PASS, seen.bus)]
+        found = f"nobody at {seen.bus}" + (f": {seen.bus_status}" if seen.bus_status else "")
+        return [Row("bus", Mark.FAIL, found, "start gcs or sim-bridge, or give --bus"), *lock]
+    rows = [Row("bus", Mark.PASS, seen.bus), *lock]
     if not seen.master:
         rows.append(Row("clock", Mark.WARN, f"no master in game '{config.game}' to compare with",
                         "start the master"))  # fmt: skip
@@ -175,6 +181,16 @@ def _bus(config: AgentConfig, seen: Sight) -> list[Row]:
     mark = Mark.PASS if offset <= 0.05 else (Mark.WARN if offset <= 0.2 else Mark.FAIL)
     rows.append(Row("clock", mark, f"{seen.offset_s * 1e3:+.0f} ms against the master", "run a time service"))
     return rows
+
+
+def _lock(config: AgentConfig, found: BusSecurity) -> Row:
+    if found.lock is Lock.OPEN:
+        mark = Mark.WARN if config.field else Mark.PASS  # without open_bus it would not have opened
+        return Row("bus lock", mark, found.words, "gcs keys init, and zenoh = its zenoh.json5")
+    member = found.member
+    if member is not None and found.words.endswith("EXPIRED"):
+        return Row("bus lock", Mark.FAIL, found.words, "gcs keys init, and copy this member's folder again")
+    return Row("bus lock", Mark.PASS, found.words)
 
 
 def table(rows: list[Row]) -> list[str]:
@@ -216,8 +232,9 @@ async def look(config: AgentConfig, seconds: float) -> Sight:
         seen = seen._replace(signed=signing is not None)
     except ConfigError as error:
         seen = seen._replace(key_trouble=str(error))
-    bus: Bus | None = None
+    bus: ZenohBus | None = None
     try:
+        seen = seen._replace(lock=security(config))
         bus = await open_bus(config)
     except ConfigError as error:
         seen = seen._replace(bus_trouble=str(error))
@@ -232,6 +249,8 @@ async def look(config: AgentConfig, seconds: float) -> Sight:
         finally:
             for link in links:
                 link.close()
+        if bus is not None:
+            seen = seen._replace(bus_status=bus.status())
     finally:
         if bus is not None:
             await close_bus(bus)

@@ -55,6 +55,7 @@ from onboard.autopilot.mavsdk import Child
 from onboard.core.math.constants import NS_PER_S
 from onboard.game.route_file import Route
 from onboard.runtime.protocols import Bus, Clock, Link, Sample, Subscription
+from onboard.runtime.rate_limit import FROM_AUTOPILOT, FROM_OTHERS, RateLimit
 from onboard.wire.mavlink.signing import Signing
 
 PEERS_MAX = 64  # of one link that are numbered; who was heard longest ago is forgotten
@@ -85,6 +86,7 @@ class _Port:
         self.link = link
         self.numbers: OrderedDict[Hashable, int] = OrderedDict()
         self.peers: dict[int, Hashable] = {}
+        self.told: Hashable = None  # to whom was sent last: the autopilot
         self._next = 0
 
     def number(self, peer: Hashable) -> int:
@@ -106,7 +108,8 @@ class _Port:
         if peer == ANY_PEER:
             self.link.send(frame, None)
         elif peer in self.peers:
-            self.link.send(frame, self.peers[peer])
+            self.told = self.peers[peer]
+            self.link.send(frame, self.told)
 
 
 class Agent:
@@ -137,6 +140,7 @@ class Agent:
         if equipment.events is not None:
             equipment.events.begin(config, facts)
         self._ports = [_Port(link) for link in links]
+        self._link_limit = RateLimit()
         self._child: Child | None = None
         self._child_rest = b""
         self._subscriptions: dict[str, Subscription] = {}
@@ -259,8 +263,14 @@ class Agent:
     # ------------------------------------------------------------------ links, bus, requests
 
     def _arrived(self, index: int, data: bytes, peer: Hashable) -> None:
-        self._arrived_ns = self.clock.monotonic_ns()
-        self.feed(LinkBytes(index, self._ports[index].number(peer), data))
+        now_ns = self.clock.monotonic_ns()
+        port = self._ports[index]
+        known = peer == port.told
+        sender, rate = (peer, FROM_AUTOPILOT) if known else ("others", FROM_OTHERS)
+        if not self._link_limit.admits((index, sender), "link", rate, now_ns / NS_PER_S):
+            return
+        self._arrived_ns = now_ns
+        self.feed(LinkBytes(index, port.number(peer), data))
         self._arrived_ns = 0
 
     def _subscribe(self, effect: Subscribe) -> None:
@@ -284,6 +294,8 @@ class Agent:
         for port in self._ports:
             for cause, number in port.link.counters().items():
                 links[cause] = links.get(cause, 0) + number
+        for kind, number in self._link_limit.limited.items():
+            links[f"limited_{kind}"] = number
         shell = self.timing.counters()
         if self._equipment.events is not None:
             shell |= self._equipment.events.counters()

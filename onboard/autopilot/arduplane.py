@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from math import atan, atan2, tan
 
-from onboard.autopilot.base import Note, ReleaseMode, Setpoint, Stage, Telemetry
+from onboard.autopilot.base import Note, Setpoint, Stage, Telemetry
 from onboard.autopilot.guided import LARGEST, Traits
 from onboard.core.math.angles import wrap
 from onboard.core.math.constants import NEVER, STANDARD_GRAVITY
@@ -37,11 +37,6 @@ NAMES: dict[int, str] = {
     CommandId.CHANGE_SPEED: "airspeed",
     CommandId.CHANGE_ALTITUDE: "altitude",
     CommandId.CHANGE_HEADING: "course",
-}
-RELEASE = {
-    ReleaseMode.HOLD: "LOITER",
-    ReleaseMode.RETURN: "RTL",
-    ReleaseMode.LAND: "RTL",  # how it lands is its mission's business
 }
 
 
@@ -93,7 +88,7 @@ class ArduPlaneEncoder:
 
     def __init__(self, to: Target, bank_max: float, *, plain: bool = False) -> None:
         name = "arduplane-plain" if plain else "arduplane"
-        self.traits = Traits(name, Kind.ARDUPLANE, "GUIDED", RELEASE, holds_airspeed=True)
+        self.traits = Traits(name, Kind.ARDUPLANE, "GUIDED", holds_airspeed=True)
         self._bank_max = bank_max  # [rad]
         self._plain = plain
         self._to = to

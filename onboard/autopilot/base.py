@@ -32,6 +32,7 @@ class Telemetry(NamedTuple):
     mode: str = ""  # the autopilot's own word
     armed: bool = False
     heartbeat_at: float = NEVER
+    status: int = 0  # MAV_STATE: 3 standby, 4 active, 5 critical (a failsafe), 6 emergency; 0 unknown
     time_boot_s: float = 0.0  # the autopilot's clock at its newest stamped message
     latitude_deg: float = 0.0
     longitude_deg: float = 0.0
@@ -61,6 +62,8 @@ class Telemetry(NamedTuple):
     gps_at: float = NEVER
     ekf_ok: bool = False
     ekf_at: float = NEVER
+    channels: tuple[int, ...] = ()  # [µs] of the pilot's transmitter, channel 1 first; 0: not heard
+    channels_at: float = NEVER
     landed_state: int = 0  # 0 unknown, 1 on ground, 2 in air, 3 taking off, 4 landing
     landed_at: float = NEVER
     reboots: int = 0  # how often the autopilot's clock started again
@@ -91,6 +94,7 @@ class ReleaseMode(Enum):
     HOLD = "hold"
     RETURN = "return"
     LAND = "land"
+    DEPART = "depart"  # hold or come home, with nobody on board who could think again
 
 
 class Note(NamedTuple):

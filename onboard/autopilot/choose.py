@@ -62,18 +62,20 @@ def adapter_for(
     if options.scheme == "mavsdk":
         encoder = MavsdkEncoder(kind, to)
         return MavsdkAdapter(
-            to, encoder, options.mavsdk_url, may_arm=options.may_arm, launch=options.launch
-        )
+            to, encoder, options.mavsdk_url, may_arm=options.may_arm, launch=options.launch,
+            parameters=parameters,
+        )  # fmt: skip
     if kind is not Kind.ARDUPLANE:
         velocity = VelocityEncoder(kind, to, options.hold_mode)
-        return GuidedAdapter(to, velocity, may_arm=options.may_arm)
+        return GuidedAdapter(to, velocity, may_arm=options.may_arm, parameters=parameters)
     plain = options.scheme == "arduplane-plain"
     finding = gcs_failsafe(kind, parameters, to.system) if plain else None
     if finding is not None:
         return Refusal(
             f"the course command of arduplane-plain never lapses, and {finding.text}: {finding.remedy}"
         )
-    return GuidedAdapter(to, ArduPlaneEncoder(to, options.bank_max, plain=plain), may_arm=options.may_arm)
+    rolls = ArduPlaneEncoder(to, options.bank_max, plain=plain)
+    return GuidedAdapter(to, rolls, may_arm=options.may_arm, parameters=parameters)
 
 
 def _refusal(heartbeat: Heartbeat, options: AdapterOptions) -> str:

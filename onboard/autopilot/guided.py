@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import NamedTuple, Protocol
 
 from onboard.autopilot.base import Note, ReleaseMode, Setpoint, Stage, Step, Telemetry
 from onboard.autopilot.mode_machine import ModeMachine, ModeStep
+from onboard.autopilot.release_modes import Release, chain
 from onboard.wire.mavlink import commands
 from onboard.wire.mavlink.commands import Outgoing, Target
 from onboard.wire.mavlink.ids import MessageId
@@ -25,7 +28,7 @@ class Traits(NamedTuple):
     name: str  # in configuration: velocity | arduplane | arduplane-plain | mavsdk
     kind: Kind  # the autopilot it is made for
     guided_mode: str  # the mode in which setpoints count, in the autopilot's words
-    release: dict[ReleaseMode, str]  # the modes to leave into, in the autopilot's words
+    hold_mode: str = ""  # the mode to hold in that is configured; "": as `release_modes` says
     holds_airspeed: bool = False  # a constant speed means airspeed
 
 
@@ -65,7 +68,15 @@ class SetpointEncoder(Protocol):
 class GuidedAdapter:
     """See `base.Adapter`."""
 
-    def __init__(self, to: Target, encoder: SetpointEncoder, *, may_arm: bool = False) -> None:
+    def __init__(
+        self,
+        to: Target,
+        encoder: SetpointEncoder,
+        *,
+        may_arm: bool = False,
+        parameters: Mapping[str, float] = MappingProxyType({}),
+    ) -> None:
+        """`parameters` are the autopilot's as far as read: what is read later is seen when it counts."""
         traits = encoder.traits
         self.name = traits.name
         self.kind = traits.kind
@@ -73,7 +84,9 @@ class GuidedAdapter:
         self.holds_airspeed = traits.holds_airspeed
         self._to = to
         self._encoder = encoder
-        self._machine = ModeMachine(to.system, traits.guided_mode, traits.release, may_arm=may_arm)
+        self._machine = ModeMachine(to.system, traits.guided_mode, may_arm=may_arm)
+        self._release = Release(traits.kind, parameters, to.system, traits.hold_mode)
+        self._telemetry = Telemetry()  # of the last step
         self._notes: list[Note] = []
         self._fault = ""  # of the newest setpoint
 
@@ -88,7 +101,7 @@ class GuidedAdapter:
 
     def leave(self, now: float, mode: ReleaseMode) -> None:
         """End the setpoints; ask for a mode that the autopilot holds alone."""
-        self._machine.leave(mode)
+        self._machine.leave(mode, chain(mode, now, self._telemetry, self._release))
 
     def end(self, now: float) -> None:
         """End the stream: the next setpoint begins a new one."""
@@ -108,6 +121,7 @@ class GuidedAdapter:
 
     def step(self, now: float, telemetry: Telemetry, setpoint: Setpoint | None) -> Step:
         """Return mode commands that are due, and the setpoint's messages where setpoints count."""
+        self._telemetry = telemetry
         asked = self._machine.step(now, telemetry, ready=self._encoder.ready(now))
         messages = [*self._mode_messages(asked), *self._arming(asked)]
         notes = [*asked.notes, *self._notes]

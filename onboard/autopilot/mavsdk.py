@@ -11,13 +11,14 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from importlib.util import find_spec
 from math import degrees
 from struct import Struct
+from types import MappingProxyType
 from typing import Protocol
 
-from onboard.autopilot.base import Note, ReleaseMode, Setpoint, Stage, Step, Telemetry
+from onboard.autopilot.base import Note, Setpoint, Stage, Step, Telemetry
 from onboard.autopilot.guided import GuidedAdapter
 from onboard.autopilot.velocity import VelocityEncoder
 from onboard.core.math.constants import NEVER
@@ -26,7 +27,8 @@ from onboard.wire.mavlink.modes import Kind
 
 LINE = Struct("<cd4d")  # what, when [s, monotonic], north, east, down [m/s], yaw [deg]
 SETPOINT, ENTER, HOLD, RETURN, LAND, RELEASE = b"S", b"E", b"H", b"R", b"L", b"X"
-ORDERS = {ReleaseMode.HOLD: HOLD, ReleaseMode.RETURN: RETURN, ReleaseMode.LAND: LAND}
+ORDERS = {"HOLD": HOLD, "LOITER": HOLD, "RTL": RETURN, "LAND": LAND}
+"""What MAVSDK can be told, by the autopilot's word for the mode that follows."""
 SILENCE = 0.2  # [s] without a setpoint after which the child stops offboard and exits
 RELAUNCH = 1.0  # [s] at least between two starts of the child
 
@@ -126,8 +128,9 @@ class MavsdkAdapter(GuidedAdapter):
         *,
         may_arm: bool = False,
         launch: Callable[..., Courier] = Child,
+        parameters: Mapping[str, float] = MappingProxyType({}),
     ) -> None:
-        super().__init__(to, encoder, may_arm=may_arm)
+        super().__init__(to, encoder, may_arm=may_arm, parameters=parameters)
         self._launch = launch
         self._targets = encoder
         self._url, self._system = url, to.system
@@ -153,9 +156,12 @@ class MavsdkAdapter(GuidedAdapter):
     def step(self, now: float, telemetry: Telemetry, setpoint: Setpoint | None) -> Step:
         """Pass orders and setpoints on to the child; return the messages for arming alone."""
         notes = self._ended()  # before the mode is judged: it was the child that changed it
+        self._telemetry = telemetry
         asked = self._machine.step(now, telemetry)
         notes += asked.notes
-        messages = tuple(self._arming(asked))
+        leaving = bool(asked.mode) and self.stage is Stage.LEAVING
+        beyond = leaving and asked.mode not in ORDERS  # BRAKE: MAVSDK has no word for it
+        messages = (*self._arming(asked), *(self._mode_messages(asked) if beyond else ()))
         courier = self._present(now)
         if courier is None:
             return Step(messages, tuple(notes))
@@ -163,8 +169,10 @@ class MavsdkAdapter(GuidedAdapter):
         if self.stage is Stage.TAKEN:  # it must not ask for hold: that would take the vehicle from the pilot
             courier.send(LINE.pack(RELEASE, now, 0.0, 0.0, 0.0, 0.0))
             self.close()
+        elif beyond:
+            courier.send(LINE.pack(RELEASE, now, 0.0, 0.0, 0.0, 0.0))
         elif asked.mode:
-            order = ENTER if self.stage is Stage.ENTERING else ORDERS[self._machine.leaving_by]
+            order = ORDERS[asked.mode] if leaving else ENTER
             courier.send(LINE.pack(order, now, 0.0, 0.0, 0.0, 0.0))
         sound = self._sound(setpoint, notes)
         if sound is not None:

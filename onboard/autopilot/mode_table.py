@@ -24,6 +24,7 @@ class ModeEvent(Enum):
     GUIDED_AGAIN = "guided mode, twice in a row"
     GUIDED = "guided mode"
     RELEASED = "mode asked for on leaving"
+    ECHO = "a request of ours, obeyed late"
     UNCHANGED = "mode as before"  # the one in which the asking began
     OTHER = "any other mode"
     ENTER = "enter"
@@ -46,6 +47,7 @@ class ModeAction(Enum):
     TELL_HANDED_BACK = auto()  # note: another hand chose the guided mode
     TELL_RELEASED = auto()  # note: the mode to leave into is confirmed
     TELL_TAKE_OVER = auto()  # note: somebody else changed the mode
+    TELL_ECHO = auto()  # note: an older request of ours was obeyed late
     TELL_REBOOT = auto()  # note: control ended because the autopilot started again
 
 
@@ -65,6 +67,8 @@ _BACK = Transition(S.ACTIVE, (A.TELL_HANDED_BACK,))
 _LEFT = Transition(S.LEFT, (A.TELL_RELEASED,))
 _TAKEN = Transition(S.TAKEN, (A.TELL_TAKE_OVER, A.STOP_ARMING))
 _REBOOT = Transition(S.IDLE, (A.FORGET, A.TELL_REBOOT))
+_AGAIN = Transition(S.ENTERING, (A.TELL_ECHO, A.ASK_GUIDED))
+_LEAVE_AGAIN = Transition(S.LEAVING, (A.TELL_ECHO, A.ASK_RELEASE))
 _GIVE_UP = Transition(S.IDLE, (A.FORGET, A.STOP_ARMING))
 
 TABLE: dict[tuple[Stage, ModeEvent], Transition] = {
@@ -82,6 +86,7 @@ TABLE: dict[tuple[Stage, ModeEvent], Transition] = {
     (S.ACTIVE, E.RELEASED): _TAKEN,
     (S.ACTIVE, E.UNCHANGED): _TAKEN,
     (S.ACTIVE, E.OTHER): _TAKEN,
+    (S.ACTIVE, E.ECHO): _AGAIN,
     (S.ACTIVE, E.LEAVE): _LEAVE,
     (S.ACTIVE, E.LEAVE_AGAIN): _LEAVE,
     (S.ACTIVE, E.REBOOT): _REBOOT,
@@ -92,6 +97,7 @@ TABLE: dict[tuple[Stage, ModeEvent], Transition] = {
     (S.LEAVING, E.ENTER): _ENTER,
     (S.LEAVING, E.LEAVE): _LEAVE,
     (S.LEFT, E.GUIDED_AGAIN): _BACK,
+    (S.LEFT, E.ECHO): _LEAVE_AGAIN,
     (S.LEFT, E.ENTER): _ENTER,
     (S.LEFT, E.LEAVE): _LEAVE,
     (S.TAKEN, E.GUIDED_AGAIN): _BACK,

@@ -30,7 +30,17 @@ WANTED: dict[Kind, tuple[str, ...]] = {
         "MPC_Z_VEL_MAX_UP",
         "MPC_Z_VEL_MAX_DN",
     ),
-    Kind.ARDUCOPTER: ("FS_GCS_ENABLE", "SYSID_MYGCS", "FENCE_ENABLE", "GUID_TIMEOUT"),
+    Kind.ARDUCOPTER: (
+        "FS_GCS_ENABLE",
+        "SYSID_MYGCS",
+        "FENCE_ENABLE",
+        "GUID_TIMEOUT",
+        "FS_OPTIONS",
+        "THR_DZ",
+        "RCMAP_THROTTLE",
+        "RC3_MIN",
+        "RC3_MAX",
+    ),
     Kind.ARDUPLANE: (
         "FS_GCS_ENABL",
         "SYSID_MYGCS",

@@ -26,6 +26,7 @@ from onboard.wire.mavlink.values import (
     GpsFix,
     Heartbeat,
     Home,
+    RcChannels,
     SysStatus,
     Value,
     Wind,
@@ -47,6 +48,7 @@ BLANK: dict[type, Value] = {
     GpsFix: GpsFix(0, -1, UNKNOWN, UNKNOWN),
     EkfStatus: EkfStatus(0, False, 0.0),
     ExtendedState: ExtendedState(0, 0),
+    RcChannels: RcChannels(()),
 }
 V = TypeVar("V")
 
@@ -111,6 +113,7 @@ class Observer:
         gps_at, gps = self._of(GpsFix)
         ekf_at, ekf = self._of(EkfStatus)
         landed_at, landed = self._of(ExtendedState)
+        sticks_at, sticks = self._of(RcChannels)
         where = (place.latitude_deg, place.longitude_deg, place.altitude_m)
         placed = self.frame is not None and place_at != NEVER
         return Telemetry(
@@ -118,6 +121,7 @@ class Observer:
             mode=heart.mode,
             armed=heart.armed,
             heartbeat_at=heart_at,
+            status=heart.status,
             time_boot_s=self._boot_s,
             latitude_deg=place.latitude_deg,
             longitude_deg=place.longitude_deg,
@@ -147,6 +151,8 @@ class Observer:
             gps_at=gps_at,
             ekf_ok=ekf.ok,
             ekf_at=ekf_at,
+            channels=sticks.pulses,
+            channels_at=sticks_at,
             landed_state=landed.landed_state,
             landed_at=landed_at,
             reboots=self._reboots,

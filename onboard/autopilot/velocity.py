@@ -6,15 +6,15 @@ seconds after the stream ends (GUID_TIMEOUT). Both are in the autopilot's local 
 east and down: a velocity needs no origin.
 
 After TAKEN or LEFT a pilot hands an ArduCopter back by choosing GUIDED. PX4 lets nobody into OFFBOARD without
-a stream of targets, and none is sent then: there `enter` (an operator's resume) takes it back. ArduCopter's
-LOITER needs a pilot's throttle stick in the middle: without a transmitter hold by "BRAKE".
+a stream of targets, and none is sent then: there `enter` (an operator's resume) takes it back. Into which
+modes they are left says `release_modes`.
 """
 
 from __future__ import annotations
 
 from math import atan2
 
-from onboard.autopilot.base import Note, ReleaseMode, Setpoint, Stage, Telemetry
+from onboard.autopilot.base import Note, Setpoint, Stage, Telemetry
 from onboard.autopilot.guided import LARGEST, Traits
 from onboard.core.math.constants import NEVER
 from onboard.core.math.vectors import Vec, add, norm
@@ -27,18 +27,6 @@ GAP = 0.4  # [s] without a target after which the stream begins again
 TURNING = 0.5  # [m/s; ground] below this the vehicle keeps looking where it looks
 
 GUIDED = {Kind.PX4_MULTICOPTER: "OFFBOARD", Kind.ARDUCOPTER: "GUIDED"}
-RELEASE = {
-    Kind.PX4_MULTICOPTER: {
-        ReleaseMode.HOLD: "HOLD",
-        ReleaseMode.RETURN: "RTL",
-        ReleaseMode.LAND: "LAND",
-    },
-    Kind.ARDUCOPTER: {
-        ReleaseMode.HOLD: "LOITER",
-        ReleaseMode.RETURN: "RTL",
-        ReleaseMode.LAND: "LAND",
-    },
-}
 
 
 def yaw_along(velocity: Vec, present: float) -> float:
@@ -73,8 +61,7 @@ class VelocityEncoder:
     """Velocity targets for a PX4 multicopter or an ArduCopter; see `guided.SetpointEncoder`."""
 
     def __init__(self, kind: Kind, to: Target, hold_mode: str = "") -> None:
-        release = {**RELEASE[kind], **({ReleaseMode.HOLD: hold_mode} if hold_mode else {})}
-        self.traits = Traits("velocity", kind, GUIDED[kind], release)
+        self.traits = Traits("velocity", kind, GUIDED[kind], hold_mode)
         self._to = to
         self._px4 = kind is Kind.PX4_MULTICOPTER
         self._looks = self._px4  # targets say where the vehicle looks
@@ -85,8 +72,11 @@ class VelocityEncoder:
         return not self._px4 or self._stream.lasted(now) >= STREAM_BEFORE
 
     def sends_in(self, stage: Stage) -> bool:
-        """Return whether targets count: in the guided mode, and before it for PX4."""
-        return stage is Stage.ACTIVE or (self._px4 and stage in (Stage.IDLE, Stage.ENTERING))
+        """Return whether targets count: in the guided mode, and for PX4 on the way into it.
+
+        Never unasked: PX4 enters OFFBOARD again by itself when targets return after its signal-loss failsafe.
+        """
+        return stage is Stage.ACTIVE or (self._px4 and stage is Stage.ENTERING)
 
     def fault(self, setpoint: Setpoint) -> str:
         """Return "not_finite" for a setpoint that is no number."""

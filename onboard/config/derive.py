@@ -22,6 +22,7 @@ class Key(NamedTuple):
     kind: Any = None  # type with its range (`onboard.config.bounds`); None = the core's
     default: Any = CORE  # None: may be left out, and then follows from other keys
     degrees: bool = False  # written in degrees, with `_deg` behind its name
+    seconds: bool = False  # a time in seconds, with `_s` behind its name
     name: str = ""  # in the file, where that is no name in Python
 
 
@@ -58,7 +59,7 @@ def struct_from(
 
 def written(field: str, key: Key) -> str:
     """The name of a core's field in a file's struct."""
-    return f"{field}_deg" if key.degrees else field
+    return f"{field}_deg" if key.degrees else f"{field}_s" if key.seconds else field
 
 
 def core_from(

@@ -19,6 +19,7 @@ from onboard.core.game.rules import Target
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import ZERO, Vec, along, sub
 from onboard.game.phases import TRANSITIONS, PhaseEvent
+from onboard.wire.autopilot_kind import GUIDED_MODE
 from onboard.wire.bus.codec import M
 from onboard.wire.bus.messages import (
     AgentStage,
@@ -38,6 +39,7 @@ from onboard.wire.bus.topics import EVADER_BRIEF, MASTER, OUTCOME, PHASE, SETUP,
 
 LEASE_S = 2.0  # a master silent for longer is no master any more
 LEASE_EVERY_NS = NS_PER_S // 2
+CONTROL_NS = 10 * NS_PER_S  # a process started later than this after the last one flew needs a person's word
 LISTEN_NS = 12 * NS_PER_S // 10  # a master that holds the lease speaks twice in this time
 HEALTH_NS = 3 * NS_PER_S  # an agent silent for longer is not there: six heartbeats lost in a row
 SUPERSEDED_NS = 15 * NS_PER_S // 10  # an agent's earlier process counts as gone after this silence
@@ -80,6 +82,7 @@ class _Agent:
         self.health: Health | None = None  # its last heartbeat
         self.heard_ns = 0  # arrival of that heartbeat [ns, monotonic]
         self.acting_nonce = 0  # of the process that plays
+        self.in_control_ns = -CONTROL_NS  # when it last flew the vehicle [ns, monotonic]
         self.nonces: dict[int, int] = {}  # nonce of a process → last heard [ns, monotonic]
         self.silent = False  # as last told to the people
 
@@ -148,6 +151,8 @@ class GameMaster:
                 del agent.nonces[nonce]
         agent.nonces[health.nonce] = now_ns
         agent.health, agent.heard_ns = health, now_ns
+        if health.stage is AgentStage.ACTING:
+            agent.in_control_ns = now_ns
         if len(agent.nonces) > 1 and health.nonce == agent.acting_nonce:
             self._say_once(
                 ("double", health.id, max(agent.nonces)), f"two agents speak as vehicle {health.id}: stop one"
@@ -275,13 +280,25 @@ class GameMaster:
             if health.nonce == agent.acting_nonce:
                 if id in resume and health.stage is AgentStage.ACTING:
                     resume.discard(id)
-            elif len(agent.nonces) == 1:
-                agent.acting_nonce = health.nonce
-                resume.add(id)
-                self._say(f"agent {id} was started again and may act again")
+            elif len(agent.nonces) == 1 and health.stage is AgentStage.ACTING:
+                agent.acting_nonce = health.nonce  # by a person's word
+            elif len(agent.nonces) == 1 and health.autopilot is not None:
+                if self._never_left(agent, health, now_ns):
+                    agent.acting_nonce = health.nonce
+                    resume.add(id)
+                    self._say(f"agent {id} was started again and may act again")
+                else:
+                    text = f"agent {id} was started again in {health.mode}: a person's resume is needed"
+                    self._say_once(("restarted", id, health.nonce), text)
         if resume != set(self._resume):
             self._resume = tuple(sorted(resume))
             self._publish_phase(wall_ns, "resume" if self._resume else "")
+
+    @staticmethod
+    def _never_left(agent: _Agent, health: Health, now_ns: int) -> bool:
+        """Whether a restarted agent finds its vehicle as the last process left it: guided."""
+        guided = health.autopilot is not None and GUIDED_MODE.get(health.autopilot) == health.mode
+        return guided and now_ns - agent.in_control_ns <= CONTROL_NS
 
     def _judge(self, wall_ns: int, now_ns: int, here: dict[int, Vec]) -> None:
         assert self.score is not None

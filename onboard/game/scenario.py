@@ -7,6 +7,7 @@ holds what only `serve` and `fly` need.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from enum import Enum
 from hashlib import sha256
 from pathlib import Path
@@ -52,8 +53,13 @@ class Kind(Enum):
     """Which autopilot flies a vehicle."""
 
     PX4 = "px4"
+    PX4_PLANE = "px4-plane"
     ARDUCOPTER = "arducopter"
     ARDUPLANE = "arduplane"
+
+
+WINGED = frozenset((Kind.ARDUPLANE, Kind.PX4_PLANE))
+"""The kinds that fly planes."""
 
 
 class AirframeKind(Enum):
@@ -63,6 +69,22 @@ class AirframeKind(Enum):
     NOSE = "nose"
     SLIP = "slip"
     COORDINATED = "coordinated"
+
+
+class Transmitter(Enum):
+    """The pilot's transmitter of simulated vehicles, and where its throttle stick stands."""
+
+    CENTRED = "centred"
+    LOW = "low"  # as software in the loop without one: channels are healthy, throttle at 1000
+    NONE = "none"  # no channel was ever heard
+
+
+class Firmware(Enum):
+    """Which generation of parameter names and commands a simulated autopilot has."""
+
+    OLDER = "older"  # ArduPilot 4.4
+    RECORDED = "recorded"  # ArduPilot 4.5.6, PX4 1.16
+    NEWER = "newer"  # ArduPilot 4.7, PX4 1.18
 
 
 TimeStep = Annotated[float, msgspec.Meta(gt=0.0, le=1.0, description="a time step in (0, 1] s")]
@@ -177,6 +199,24 @@ class WindSpec(StrictConfig, frozen=True):
     recorded: str = ""  # CSV file in place of the model
 
 
+class SimulatedSpec(StrictConfig, frozen=True):
+    """What stands around every simulated autopilot, and how it is set up."""
+
+    transmitter: Transmitter = Transmitter.CENTRED
+    answer_delay_s: Duration = 0.0  # least time from a command to its execution and answer
+    answer_delay_max_s: Duration = 0.0  # most; each command draws its own, so that answers may cross
+    batteries: Annotated[int, msgspec.Meta(ge=1, le=2, description="1 or 2 batteries")] = 1
+    firmware: Firmware = Firmware.RECORDED
+    gimbal: bool = False  # whether component 154 sends heartbeats with the vehicle's own system id
+    other_station_hz: NotNegative = 0.0  # a second ground station asks for all streams at this rate; 0: none
+    parameters: Mapping[str, float] = msgspec.field(default_factory=dict)  # of the autopilots that have them
+
+    def __post_init__(self) -> None:
+        most = self.answer_delay_max_s
+        demand(most == 0.0 or most >= self.answer_delay_s, "answer_delay_max_s", most,
+               f"0 or at least answer_delay_s = {self.answer_delay_s:g} s")  # fmt: skip
+
+
 Polygon = Annotated[
     tuple[tuple[Coordinate, Coordinate], ...], msgspec.Meta(min_length=3, description="three or more corners")
 ]
@@ -211,6 +251,7 @@ class Flight(StrictConfig, frozen=True):
     control_rate_hz: ControlRate = 20.0
     prediction: Predicting = Predicting.NETWORK  # what carries tracks forward in the agents
     field_profile: bool = False
+    simulated: SimulatedSpec = SimulatedSpec()
 
 
 class Expect(StrictConfig, frozen=True):
@@ -221,9 +262,7 @@ class Expect(StrictConfig, frozen=True):
     reaches: bool | None = None  # None: no target
 
 
-Pursuers = Annotated[
-    tuple[VehicleSpec, ...], msgspec.Meta(min_length=1, description="at least one pursuer")
-]
+Pursuers = Annotated[tuple[VehicleSpec, ...], msgspec.Meta(min_length=1, description="at least one pursuer")]
 
 
 class Scenario(StrictConfig, frozen=True):

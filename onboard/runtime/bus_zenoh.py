@@ -19,10 +19,13 @@ from typing import Any
 import zenoh
 from zenoh import ext, handlers
 
+from onboard.runtime import bus_security
 from onboard.runtime.inbox import Inbox
+from onboard.runtime.membership import membership_of
 from onboard.runtime.patterns import intersects
 from onboard.runtime.protocols import Sample, Subscription
-from onboard.runtime.zenoh_config import DEFAULT_ENDPOINT, Candidate, first_sentence, sessions_of
+from onboard.runtime.rate_limit import PAYLOAD_MAX, BusLimit
+from onboard.runtime.zenoh_config import Candidate, endpoint_of, first_sentence, sessions_of
 from onboard.wire.bus.topics import TOPICS, Delivery
 
 EVENTS_KEPT = 256  # events a publisher keeps of each key
@@ -47,6 +50,10 @@ class _Declared:
         """Declare it now."""
         self._entity = self._declare(session)
 
+    def forget(self) -> None:
+        """Its session is gone."""
+        self._entity = None
+
     def close(self) -> None:
         """Undeclare it; idempotent."""
         if not self.active:
@@ -63,14 +70,18 @@ class _Declared:
 class ZenohBus:
     """A Zenoh session that may come later, go and return. Made by `open_zenoh`, on an event loop."""
 
-    def __init__(self, sessions: list[Candidate], endpoint: str) -> None:
+    def __init__(
+        self, sessions: list[Candidate], endpoint: str, why_not: Callable[[], str] = lambda: ""
+    ) -> None:
         self._sessions = sessions  # what to try, in order, each time
         self._endpoint = endpoint
+        self._why_not = why_not  # asked, on a thread, for words when no session opens
         self._loop = asyncio.get_running_loop()
         self._inbox = Inbox(self._loop)
+        self._limit = BusLimit()
         self._declared: list[_Declared] = []
         self._publishers: dict[str, Any] = {}
-        self._waiting: dict[str, tuple[Delivery, deque[bytes]]] = {}  # kept until there is a session
+        self._kept: dict[str, tuple[Delivery, deque[bytes]]] = {}  # for a session that is yet to come
         self._session: Any = None
         self._how = ""
         self._trouble = ""
@@ -101,7 +112,7 @@ class ZenohBus:
 
     def counters(self) -> dict[str, int]:
         """published, received, and what was dropped by cause."""
-        return dict(self._inbox.counts)
+        return dict(self._inbox.counts) | self._limit.counters()
 
     def publish(self, key: str, payload: bytes, delivery: Delivery) -> None:
         """Put a message; never blocks. Counts `no_bus` where nobody is connected."""
@@ -109,11 +120,11 @@ class ZenohBus:
         if self._stop.is_set():
             counts["closed"] += 1
             return
+        if delivery in _KEPT:
+            length = EVENTS_KEPT if delivery is Delivery.EVENT else 1
+            self._kept.setdefault(key, (delivery, deque(maxlen=length)))[1].append(payload)
         if session is None:
             counts["no_bus"] += 1
-            if delivery in _KEPT:
-                length = EVENTS_KEPT if delivery is Delivery.EVENT else 1
-                self._waiting.setdefault(key, (delivery, deque(maxlen=length)))[1].append(payload)
             return
         counts["published" if self.connected() else "no_bus"] += 1
         self._put(session, key, payload, delivery)
@@ -142,9 +153,15 @@ class ZenohBus:
             if sample.kind != zenoh.SampleKind.PUT:
                 return
             key = str(sample.key_expr)
-            call = partial(deliver, Sample(key, sample.payload.to_bytes()))
+            admitted = self._limit.admits(key, len(sample.payload), self._loop.time())
             place = TOPICS.find(key)
-            if place is not None and place.topic.delivery is Delivery.LATEST and not every:
+            newest = place is not None and place.topic.delivery is Delivery.LATEST
+            if not admitted and (not newest or len(sample.payload) > PAYLOAD_MAX):
+                return
+            call = partial(deliver, Sample(key, sample.payload.to_bytes()))
+            if not admitted:  # the newest of a flood counts, but not every one of them
+                inbox.latest_later((slot, key), call)
+            elif newest and not every:
                 inbox.latest((slot, key), call)
             else:
                 inbox.queue(call)
@@ -183,6 +200,10 @@ class ZenohBus:
                 query.reply(key, handler(question))
 
         def asked(query: Any) -> None:  # on a thread of Zenoh's
+            size = 0 if query.payload is None else len(query.payload)
+            if not self._limit.admits(key, size, self._loop.time()):
+                query.drop()
+                return
             self._inbox.queue(partial(answer, query))
 
         declared = self._declare(
@@ -249,6 +270,22 @@ class ZenohBus:
         )
         return declared
 
+    def reopen(self) -> None:
+        """Give up the session, which no longer works, and open another: all that was declared comes back.
+
+        Values and events that were kept are put again; who has had them knows them by their numbers.
+        """
+        session, self._session = self._session, None
+        if session is None or self._stop.is_set():
+            return
+        self._inbox.counts["reopened"] += 1
+        self._how, self._trouble = "", "opening again"
+        self._publishers.clear()
+        for declared in self._declared:
+            declared.forget()
+        threading.Thread(target=self._close_in_thread, args=(session,), daemon=True).start()
+        threading.Thread(target=self._open_in_thread, name="zenoh-open", daemon=True).start()
+
     async def close(self) -> None:
         """Close the session, within `CLOSE_S`; what was declared ends with it."""
         if self._stop.is_set():
@@ -291,14 +328,18 @@ class ZenohBus:
                 try:
                     session = zenoh.open(config)
                 except zenoh.ZError as error:
-                    self._inbox.queue(partial(self._failed, first_sentence(error)))
+                    trouble = self._why_not() or first_sentence(error)
+                    self._inbox.queue(partial(self._failed, trouble))
                 else:
                     self._inbox.queue(partial(self._opened, session, how))
                     return
             self._stop.wait(RETRY_S)
 
     def _close_in_thread(self, session: Any, closed: asyncio.Event | None = None) -> None:
-        session.close()
+        try:
+            session.close()
+        except zenoh.ZError:  # over a bad network it may give up
+            self._inbox.counts["close_timeout"] += 1
         if closed is not None:
             self._inbox.queue(closed.set)
 
@@ -315,10 +356,9 @@ class ZenohBus:
         self._session, self._how = session, how
         for declared in self._declared:
             declared.open(session)
-        for key, (delivery, payloads) in self._waiting.items():
+        for key, (delivery, payloads) in self._kept.items():
             for payload in payloads:
                 self._put(session, key, payload, delivery)
-        self._waiting.clear()
         self._attempted.set()
 
 
@@ -345,7 +385,15 @@ async def open_zenoh(
     configuration (JSON5) for TLS, access control, a router elsewhere; without an `endpoint` its own
     endpoints and mode stay. Raises ConfigError for a file or an endpoint that cannot be.
     """
-    where = endpoint or str(config_file or DEFAULT_ENDPOINT)
-    bus = ZenohBus(sessions_of(endpoint, listen, config_file), where)
+    sessions = sessions_of(endpoint, listen, config_file)
+    member = membership_of(config_file)
+    where = endpoint_of(endpoint, config_file)
+    if member is None or config_file is None or endpoint is not None:
+        bus = ZenohBus(sessions, where)
+    else:
+        from onboard.runtime.bus_field import FieldBus  # it is a ZenohBus, and more
+
+        bus = FieldBus(sessions, where, partial(bus_security.why_not, member, config_file), member, listen)
+        await bus.open_datagrams()
     await bus.first_attempt(FIRST_ATTEMPT_S)
     return bus

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import os
-import stat
 from pathlib import Path
 
 import msgspec
 
 from onboard.config.strict import ConfigError
+from onboard.runtime.secret_files import read_secret, write_secret
 from onboard.wire.mavlink.signing import Stamps
 
 
@@ -18,19 +17,7 @@ def read_key(path: Path) -> bytes:
     Raises ConfigError where the file is missing, not a file, of the wrong length, or where anybody but
     its owner may read or write it.
     """
-    try:
-        with path.open("rb") as file:
-            mode = os.fstat(file.fileno()).st_mode
-            content = file.read(4096)
-    except OSError as error:
-        raise ConfigError(f"{path}: signing key: {(error.strerror or str(error)).lower()}") from None
-    if not stat.S_ISREG(mode):
-        raise ConfigError(f"{path}: signing key: found no regular file, expected one")
-    if mode & 0o077:
-        raise ConfigError(
-            f"{path}: signing key: found mode {stat.S_IMODE(mode):04o}, expected 0600 or 0400: "
-            f"others may read it; run chmod 600 {path} and consider a new key"
-        )
+    content = read_secret(path, "signing key")
     if len(content) == 32:
         return content
     try:
@@ -78,10 +65,7 @@ class StampFile:
     def save(self, stamps: Stamps) -> None:
         """Replace the file."""
         saved = _Saved(stamps.own, [(*stream, stamp) for stream, stamp in stamps.streams.items()])
-        beside = self.path.with_name(self.path.name + ".new")
         try:
-            with os.fdopen(os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "wb") as file:
-                file.write(msgspec.json.encode(saved))
-            beside.replace(self.path)
-        except OSError:
+            write_secret(self.path, msgspec.json.encode(saved), durable=False)
+        except ConfigError:
             self.failures += 1

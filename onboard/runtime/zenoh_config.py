@@ -9,6 +9,8 @@ from typing import NamedTuple
 import zenoh
 
 from onboard.config.strict import ConfigError
+from onboard.runtime.membership import Membership, membership_of
+from onboard.runtime.secret_files import read_secret
 
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
 LEASE_MS = 2000  # a silent partner is given up after this
@@ -31,6 +33,9 @@ class Candidate(NamedTuple):
 
 def sessions_of(endpoint: str | None, listen: bool, config_file: Path | None) -> list[Candidate]:
     """The sessions to try, in order, for the arguments of `open_zenoh`. Raises ConfigError."""
+    member = membership_of(config_file)
+    if member is not None and endpoint is None:
+        return _sessions_of_member(member, listen, config_file)
     if config_file is not None and endpoint is None:
         return [Candidate("client", _config(config_file, ALWAYS))]
     where = endpoint or DEFAULT_ENDPOINT
@@ -43,6 +48,32 @@ def sessions_of(endpoint: str | None, listen: bool, config_file: Path | None) ->
     return sessions
 
 
+def endpoint_of(endpoint: str | None, config_file: Path | None) -> str:
+    """Where the bus is, for people, and for who asks it why it does not open. Raises ConfigError."""
+    if endpoint is not None:
+        return endpoint
+    member = membership_of(config_file)
+    if member is not None:
+        return member.endpoint
+    return DEFAULT_ENDPOINT if config_file is None else str(config_file)
+
+
+def _sessions_of_member(member: Membership, listen: bool, config_file: Path | None) -> list[Candidate]:
+    """As the keys have it: the listener listens; another program of its own computer joins it."""
+    if not member.listens:
+        return [Candidate("client", _config(config_file, ALWAYS))]
+    client = {
+        "mode": "client",
+        "connect/endpoints": [f"tls/127.0.0.1:{member.port}"],
+        "listen/endpoints": [],
+        "access_control": {"enabled": False},
+    }
+    sessions = [Candidate("joined" if listen else "client", _config(config_file, ALWAYS | client))]
+    if listen:
+        sessions.insert(0, Candidate("listening", _config(config_file, ALWAYS)))
+    return sessions
+
+
 def first_sentence(error: Exception) -> str:
     """An error of Zenoh's for people: without the line of its source, which follows ` at /`."""
     return str(error).split(" at /")[0].strip()
@@ -51,6 +82,8 @@ def first_sentence(error: Exception) -> str:
 def _config(file: Path | None, settings: dict[str, object]) -> zenoh.Config:
     """The file's configuration (None: Zenoh's own) with `settings` over it."""
     try:
+        if file is not None and membership_of(file) is not None:
+            read_secret(file, "bus keys")  # nobody else may
         config = zenoh.Config.from_file(str(file)) if file else zenoh.Config()
     except zenoh.ZError as error:
         raise ConfigError(f"{file}: {first_sentence(error)}") from None

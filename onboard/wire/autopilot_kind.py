@@ -15,3 +15,12 @@ class Kind(Enum):
     ARDUPLANE = "ArduPlane"
     ARDUPLANE_VTOL = "ArduPlane VTOL"
     UNKNOWN = "unknown"
+
+
+GUIDED_MODE = {
+    Kind.PX4_MULTICOPTER: "OFFBOARD",
+    Kind.PX4_PLANE: "OFFBOARD",
+    Kind.ARDUCOPTER: "GUIDED",
+    Kind.ARDUPLANE: "GUIDED",
+}
+"""The mode in which a companion's setpoints count, in the autopilot's words."""

@@ -40,6 +40,11 @@ class CommandRetry:
         return self.tries > 1 and self._refused is None and not self._accepted
 
     @property
+    def answered(self) -> bool:
+        """Whether anything was answered."""
+        return self._accepted or self._refused is not None
+
+    @property
     def impatient(self) -> bool:
         """Whether the newest try was the last one at the quick pace."""
         return self.tries == self._policy.patience

@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 from onboard.core.math.vectors import NORTH, Vec, norm, pitch_of, unit, yaw_of
 from onboard.game.scenario import WindSpec
-from sim_bridge.vehicle.flight.plane import Command, PlaneModel, PlaneState, Steer, step_plane
-from sim_bridge.vehicle.wind.dryden import GustNoise, GustState, first_gust, gust_of, step_gust
+from sim_bridge.vehicle.flight.plane import Command, PlaneModel, PlaneState, Steer, nose_yaw, step_plane
+from sim_bridge.vehicle.wind.dryden import GustAxes, GustNoise, GustState, first_gust, gust_of, step_gust
 from sim_bridge.vehicle.wind.field import wind_vector
 from sim_bridge.vehicle.wind.shear import ROUGHNESS, mean_wind
 
@@ -24,7 +24,7 @@ class Climate(NamedTuple):
     reference: Vec  # mean at 20 ft [m/s; NED]
     shear: bool
     sigma: float  # rms of the gusts, an axis [m/s]
-    axis_x: float  # level unit vector along which gusts are longitudinal
+    axis_x: float  # level unit vector along the mean wind
     axis_y: float
 
 
@@ -47,9 +47,12 @@ def wind_at(climate: Climate, position: Vec) -> Vec:
     return mean_wind(climate.reference, -position.z, climate.shear, ROUGHNESS)
 
 
-def gust_at(climate: Climate, flown: Flown) -> Vec:
+def gust_at(climate: Climate, flown: Flown, model: PlaneModel) -> Vec:
     """The gust that the aircraft meets now [m/s; NED]."""
-    return gust_of(flown.gusts, climate.sigma, climate.axis_x, climate.axis_y)
+    plane = flown.plane
+    yaw = nose_yaw(plane, model)
+    axes = GustAxes(climate.axis_x, climate.axis_y, yaw, plane.pitch.angle, -plane.position.z)
+    return gust_of(flown.gusts, climate.sigma, axes)
 
 
 def launched(plane: PlaneState, noise: GustNoise) -> Flown:
@@ -74,4 +77,4 @@ def blown(flown: Flown, dt: float, noise: GustNoise) -> Flown:
 def fly(flown: Flown, model: PlaneModel, command: Command, climate: Climate) -> Flown:
     """One sample of the aircraft."""
     wind = wind_at(climate, flown.plane.position)
-    return Flown(step_plane(flown.plane, model, command, wind, gust_at(climate, flown)), flown.gusts)
+    return Flown(step_plane(flown.plane, model, command, wind, gust_at(climate, flown, model)), flown.gusts)

@@ -111,7 +111,7 @@ def fly_route(
             best = far
             when = time
         if k % CONTROL_EVERY == 0:
-            air = add(wind_at(climate, state.position), gust_at(climate, flown))
+            air = add(wind_at(climate, state.position), gust_at(climate, flown, model))
             before = memory
             step = follow(route, setting, memory, Fix(time, state.position, state.velocity, air))
             memory = step.memory

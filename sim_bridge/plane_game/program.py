@@ -27,6 +27,10 @@ from sim_bridge.plane_game.setup import conditions_of, game_of
 
 EARLIER = "earlier"
 THIS_PAPER = "paper"
+TABLE1_HORIZONS = (
+    55.7,
+    120.4,
+)  # [s] within which all 30 verdicts of Table 1 come out, at its steps of 0.05 s
 
 
 class Frame(NamedTuple):
@@ -146,6 +150,24 @@ def load_plane(paths: Iterable[Path]) -> list[Scenario]:
     return scenarios
 
 
+def within_horizon(scenario: Scenario, horizon: float) -> Scenario:
+    """The same scenario with another horizon [s]."""
+    return msgspec.structs.replace(
+        scenario, parameters=msgspec.structs.replace(scenario.parameters, horizon=horizon)
+    )
+
+
+def verdict_line(agree: int, total: int, scenarios: Iterable[Scenario], whole_table: bool) -> str:
+    """How many verdicts agree, and within which horizon: an evader that is still flying then has escaped."""
+    horizons = sorted({scenario.parameters.horizon for scenario in scenarios})
+    listed = ", ".join(f"{horizon:g}" for horizon in horizons)
+    line = f"{agree} of {total} verdicts as in the paper, within a horizon of {listed} s"
+    if whole_table:
+        low, high = TABLE1_HORIZONS
+        line += f" (30 of 30 hold from {low:g} to {high:g} s only: --horizon)"
+    return line
+
+
 def differs(results: Iterable[Result]) -> tuple[int, int]:
     """How many verdicts agree with the paper's, and how many there are.
 
@@ -170,14 +192,16 @@ def table(results: list[Result]) -> str:
     rows = [("scenario", "escapes", "paper", "reaches", "paper", "how it went, by the pursuers' strategy")]
     for name, games in by_name.items():
         first = next((g for g in games if g.strategy == THIS_PAPER), games[0])
-        rows.append((
-            name,
-            "/".join(_word(g.escapes) for g in games),
-            "/".join(_word(g.expected_escapes) for g in games),
-            _word(first.reaches),
-            _word(first.expected_reaches),
-            ";  ".join(_story(g) for g in games),
-        ))
+        rows.append(
+            (
+                name,
+                "/".join(_word(g.escapes) for g in games),
+                "/".join(_word(g.expected_escapes) for g in games),
+                _word(first.reaches),
+                _word(first.expected_reaches),
+                ";  ".join(_story(g) for g in games),
+            )
+        )
     widths = [max(len(row[i]) for row in rows) for i in range(6)]
     lines = [
         "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows

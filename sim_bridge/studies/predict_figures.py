@@ -6,12 +6,16 @@ from pathlib import Path
 
 import numpy as np
 
+from onboard.game import palette
 from onboard.pilot.predictor.activation import SParabola
 from sim_bridge.studies.comparison import FLYING, LAST, PAPER, STEADY, Drawn
 from sim_bridge.studies.paper_example import FIGURE4_TRAINED, Figure4
 from sim_bridge.studies.pictures import pyplot, save_both
 
-COLOURS = {LAST: "#888888", STEADY: "#1f77b4", FLYING: "#d62728", PAPER: "#9467bd"}
+_BLUE, _GREEN, _PINK = (colour.light for colour in palette.PURSUERS[:3])  # told apart by most people
+_FAINT, _GRID = palette.FAINT.light, palette.GRID.light
+_TRACK = palette.EVADER.light  # what is predicted is the evader's way
+COLOURS = {LAST: _FAINT, STEADY: _BLUE, FLYING: _GREEN, PAPER: _PINK}
 
 
 def draw_activation(folder: Path) -> list[Path]:
@@ -21,12 +25,12 @@ def draw_activation(folder: Path) -> list[Path]:
     s = np.linspace(-3.0, 3.0, 1201)
     for axis, p, name in zip(axes, (0.25, 0.05), ("1/4", "1/20"), strict=True):
         f = SParabola(p, 0.0)
-        axis.plot(s, f.value(s), color="#1f77b4", label="s-parabola (25)")
-        axis.plot(s, f.upper(s), color="#2ca02c", linestyle="--", label="upper branch alone")
-        axis.plot(s, SParabola(p, -0.5).value(s), color="#ff7f0e", linestyle=":", label="β = −0.5")
+        axis.plot(s, f.value(s), color=_BLUE, label="s-parabola (25)")
+        axis.plot(s, f.upper(s), color=_GREEN, linestyle="--", label="upper branch alone")
+        axis.plot(s, SParabola(p, -0.5).value(s), color=_PINK, linestyle=":", label="β = −0.5")
         axis.set(title=f"p = {name}", xlabel="s")
-        axis.axhline(0.0, color="#cccccc", linewidth=0.8)
-        axis.axvline(0.0, color="#cccccc", linewidth=0.8)
+        axis.axhline(0.0, color=_GRID, linewidth=0.8)
+        axis.axvline(0.0, color=_GRID, linewidth=0.8)
     axes[0].set_ylabel("f(s)")
     axes[0].legend()
     return save_both(figure, folder, "s-parabola")
@@ -37,9 +41,9 @@ def draw_example(example: Figure4, folder: Path) -> list[Path]:
     plt = pyplot()
     figure, axis = plt.subplots(figsize=(8, 6), layout="constrained")
     cut = FIGURE4_TRAINED
-    axis.plot(*example.truth.T, color="#2ca02c", label="trajectory")
-    axis.plot(*example.predicted[:cut].T, color="#1f77b4", linestyle="-.", label="prediction, training set")
-    axis.plot(*example.predicted[cut:].T, color="#d62728", linestyle="--", label="prediction, test set")
+    axis.plot(*example.truth.T, color=_TRACK, label="trajectory")
+    axis.plot(*example.predicted[:cut].T, color=_BLUE, linestyle="-.", label="prediction, training set")
+    axis.plot(*example.predicted[cut:].T, color=_GREEN, linestyle="--", label="prediction, test set")
     x, y = example.results
     axis.set(
         title=f"mean test error: x {x.error_test:.2f} m, y {y.error_test:.2f} m",
@@ -56,7 +60,7 @@ def draw_comparison(drawn: Drawn, folder: Path) -> list[Path]:
     plt = pyplot()
     figure, (left, right) = plt.subplots(1, 2, figsize=(13, 6), layout="constrained")
     truth = drawn.recording.truth
-    left.plot(truth[:, 1], truth[:, 0], color="#2ca02c", label="track")
+    left.plot(truth[:, 1], truth[:, 0], color=_TRACK, label="track")
     for name, path in drawn.paths.items():
         if name != LAST:
             label = f"{name}, 1 s ahead"

@@ -51,7 +51,7 @@ class Bridge:
         seed = scenario.seed if options.seed is None else options.seed
         self.scenario = scenario
         self.world = World(
-            scenario, clock, links, wind_of(scenario, seed, options.folder), options.battery_s
+            scenario, clock, links, wind_of(scenario, seed, options.folder), options.battery_s, seed
         )
         self.sensor = Sensor(scenario.flight.sensor, scenario.ids, generator(seed, "sensor"))
         self.master = (

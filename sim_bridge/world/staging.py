@@ -46,7 +46,7 @@ def wind_of(scenario: Scenario, seed: int, folder: Path | None = None) -> Wind:
     numbers = {id: number for number, id in enumerate(scenario.ids)}
 
     def air(id: int, motion: Motion, t: float) -> Air:
-        return field.air(numbers[id], motion.position, motion.airspeed, t)
+        return field.air(numbers[id], motion, t)
 
     return air
 

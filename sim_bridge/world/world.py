@@ -8,14 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
 
+from onboard.config.strict import ConfigError
 from onboard.core.math.constants import NS_PER_S
-from onboard.game.scenario import Scenario, VehicleSpec
+from onboard.game.scenario import Kind, Scenario, VehicleSpec
 from onboard.runtime.protocols import Clock, Link
 from sim_bridge.vehicle.autopilot.autopilot import Autopilot
-from sim_bridge.vehicle.autopilot.make import autopilot_for
-from sim_bridge.vehicle.autopilot.setup import Options
+from sim_bridge.vehicle.autopilot.make import autopilot_for, options_of, parameter_names
 from sim_bridge.vehicle.motion import CALM, Airframe, Motion
-from sim_bridge.world.staging import Wind, airframe_of, calm, frame_of, kind_of, starts
+from sim_bridge.world.staging import Wind, airframe_of, calm, frame_of, generator, kind_of, starts
 
 RATE_HZ = 100.0
 BEHIND_MAX = 50  # physics steps made up for in one call; beyond them time is lost, and counted
@@ -38,8 +38,9 @@ class SimVehicle:
 class World:
     """All vehicles of a scenario. `links` are those on which each vehicle's autopilot speaks, by vehicle id.
 
-    `wind` gives each vehicle its air; `battery_s` is a battery's time from full to empty in flight [s].
-    Raises ConfigError for an aircraft that its autopilot cannot fly.
+    `wind` gives each vehicle its air; `battery_s` is a battery's time from full to empty in flight [s];
+    `seed` draws the delays of answers (None: the scenario's). Raises ConfigError for an aircraft that its
+    autopilot cannot fly, and for parameters that no autopilot of the scenario has.
     """
 
     def __init__(
@@ -49,6 +50,7 @@ class World:
         links: Mapping[int, Sequence[Link]],
         wind: Wind = calm,
         battery_s: float = 1200.0,
+        seed: int | None = None,
     ) -> None:
         self.step_ns = round(NS_PER_S / RATE_HZ)
         self.lost_steps = 0
@@ -59,18 +61,37 @@ class World:
         self._done = 0  # physics steps
         self.vehicles: dict[int, SimVehicle] = {}
         frame, motions = frame_of(scenario), starts(scenario, wind)
-        options = Options(
-            airborne=not scenario.flight.ground_start, epoch_ns=self._epoch_ns, battery_s=battery_s
-        )
+        seed = scenario.seed if seed is None else seed
+        asked = self._asked_parameters(scenario)
         for id, spec in zip(scenario.ids, scenario.vehicles, strict=True):
             start = motions[id]
             air = wind(id, start, 0.0)
-            autopilot = autopilot_for(spec, kind_of(scenario, spec), id, frame, start, options)
+            kind = kind_of(scenario, spec)
+            options = options_of(scenario, generator(seed, f"answers-{id}"), asked[kind])._replace(
+                epoch_ns=self._epoch_ns, battery_s=battery_s
+            )
+            autopilot = autopilot_for(spec, kind, id, frame, start, options)
             airframe = airframe_of(scenario, spec, start, air)
             self.vehicles[id] = vehicle = SimVehicle(id, spec, autopilot, airframe, links.get(id, ()))
             vehicle.air = air
             for number, link in enumerate(vehicle.links):
                 self._listen(vehicle, link, number)
+
+    def _asked_parameters(self, scenario: Scenario) -> dict[Kind, dict[str, float]]:
+        """The scenario's parameters, for each kind those that it has. Raises ConfigError for other names."""
+        spec = scenario.flight.simulated
+        kinds = {kind_of(scenario, vehicle) for vehicle in scenario.vehicles}
+        names = {kind: parameter_names(kind, spec.firmware) for kind in kinds}
+        for name, value in spec.parameters.items():
+            if not any(name in known for known in names.values()):
+                raise ConfigError(
+                    f"{scenario.name}: flight.simulated.parameters.{name}: found {value:g}, expected a "
+                    f"parameter of {', '.join(sorted(kind.value for kind in kinds))}"
+                )
+        return {
+            kind: {name: value for name, value in spec.parameters.items() if name in known}
+            for kind, known in names.items()
+        }
 
     @property
     def motions(self) -> dict[int, Motion]:

@@ -186,8 +186,17 @@ def play(
                 gust_u = sigma * row[24]
                 gust_v = sigma * (sqrt(3.0) * row[25] + (1.0 - sqrt(3.0)) * row[26])
                 gust_w = sigma * (sqrt(3.0) * row[27] + (1.0 - sqrt(3.0)) * row[28])
-                g_n = gust_u * wind[3] - gust_v * wind[4]
-                g_e = gust_u * wind[4] + gust_v * wind[3]
+                share = _clip((height - 304.8) / 304.8, 0.0, 1.0)
+                c, s = cos(row[17]), sin(row[17])
+                nose, level = sin(row[11]), cos(row[11])
+                forward = gust_u * level + gust_w * nose
+                g_n = (1.0 - share) * (gust_u * wind[3] - gust_v * wind[4]) + share * (
+                    forward * c - gust_v * s
+                )
+                g_e = (1.0 - share) * (gust_u * wind[4] + gust_v * wind[3]) + share * (
+                    forward * s + gust_v * c
+                )
+                gust_w = (1.0 - share) * gust_w + share * (gust_w * level - gust_u * nose)
                 shear = log(_clip(height, 0.9144, 304.8) / 0.6096) / log(10.0)
                 psi = row[17]
                 c, s = cos(psi), sin(psi)

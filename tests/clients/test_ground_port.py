@@ -12,11 +12,12 @@ from onboard.game.scenario import Kind
 from onboard.runtime.links import open_udp
 from onboard.wire.mavlink.dialect import DialectSender, dialect
 from onboard.wire.mavlink.frames import Framer
+from tests.support.flown_autopilot import FLOWN
 from tests.support.real_time import until
 from tests.support.udp_fleet import HOST, fleet
 
 pytestmark = [pytest.mark.real, pytest.mark.timeout(60)]
-KINDS = pytest.mark.parametrize("kind", list(Kind), ids=lambda kind: kind.value)
+KINDS = pytest.mark.parametrize("kind", FLOWN, ids=lambda kind: kind.value)
 NEEDED = {
     "HEARTBEAT",
     "SYS_STATUS",

@@ -16,12 +16,13 @@ import pytest
 
 from onboard.game.scenario import Kind
 from onboard.wire.mavlink.tlog import read_tlog
+from tests.support.flown_autopilot import FLOWN
 from tests.support.paths import ROOT
 from tests.support.real_time import patience, until
 from tests.support.udp_fleet import HOST, fleet, free_port
 
 PROGRAM = ROOT / ".venv-mavproxy" / "bin" / "mavproxy.py"
-KINDS = pytest.mark.parametrize("kind", list(Kind), ids=lambda kind: kind.value)
+KINDS = pytest.mark.parametrize("kind", FLOWN, ids=lambda kind: kind.value)
 PLAYED_S = 30.0  # the longest of these stories on a quiet machine
 pytestmark = [
     pytest.mark.real,

@@ -13,6 +13,7 @@ import pytest
 from onboard.core.math.vectors import Vec, norm, sub
 from onboard.game.scenario import Kind
 from tests.support import real_time
+from tests.support.flown_autopilot import FLOWN
 from tests.support.udp_fleet import Fleet, fleet, free_port
 
 mavsdk = pytest.importorskip("mavsdk.asyncio", reason="MAVSDK is not installed (extra `mavsdk`)")
@@ -23,7 +24,7 @@ from mavsdk.asyncio.plugins.offboard import OffboardAsync, VelocityNedYaw  # noq
 from mavsdk.asyncio.plugins.telemetry import TelemetryAsync  # noqa: E402
 
 pytestmark = [pytest.mark.real, pytest.mark.timeout(120)]
-KINDS = pytest.mark.parametrize("kind", list(Kind), ids=lambda kind: kind.value)
+KINDS = pytest.mark.parametrize("kind", FLOWN, ids=lambda kind: kind.value)
 MULTICOPTERS = pytest.mark.parametrize("kind", [Kind.PX4, Kind.ARDUCOPTER], ids=lambda kind: kind.value)
 PLAYED_S = 25.0  # the longest of these stories on a quiet machine
 

@@ -10,6 +10,7 @@ import pytest
 from gcs.settings import Settings
 from onboard.agent.config import load as load_agent
 from onboard.config import strict as config
+from onboard.game.field_roster import load as load_roster
 from onboard.game.scenario import load as load_scenario
 from onboard.runtime.resources import configs
 
@@ -40,3 +41,13 @@ def test_the_field_scenario_keeps_altitude_layers_and_a_fence() -> None:
 
 def test_every_shipped_configuration_is_a_file_of_this_kind() -> None:
     assert {p.suffix for p in Path(FIELD).iterdir()} == {".toml"}
+
+
+def test_the_roster_of_the_field_names_who_the_other_files_configure() -> None:
+    roster = load_roster(FIELD / "roster.toml")
+    agents = [load_agent(FIELD / f"vehicle-{number}.toml", {}) for number in (1, 2)]
+    assert {(v.id, v.role, f"{v.name}/zenoh.json5") for v in roster.vehicles} == {
+        (agent.id, agent.role, agent.zenoh) for agent in agents
+    }
+    assert {station.name for station in roster.stations} == {"ground", "second-laptop"}
+    assert {roster.game} == {agent.game for agent in agents}

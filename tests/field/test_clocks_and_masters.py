@@ -21,7 +21,8 @@ def led_by(agent: LoneAgent, master: FakeMaster, setup: str) -> None:
     agent.master = master
     agent.run(1.0)
     master.setup(setup)
-    for phase, in_s, wait_s in ((Phase.STAGING, 0.0, 2.0), (Phase.READY, 2.0, 2.1), (Phase.RUNNING, 0.0, 2.0)):
+    start = ((Phase.STAGING, 0.0, 2.0), (Phase.READY, 2.0, 2.1), (Phase.RUNNING, 0.0, 2.0))
+    for phase, in_s, wait_s in start:
         master.phase(phase, in_s)
         agent.run(wait_s)
 
@@ -68,7 +69,10 @@ def test_a_phase_of_somebody_or_of_nobody_changes_nothing_while_the_lease_holds(
 
 def test_an_earlier_phase_of_ones_own_master_is_dropped_whatever_its_stamp_says() -> None:
     agent = playing()
-    agent.hear(replace(agent.core.bus.phase, phase=Phase.ENDED, number=1, stamp_ns=agent.wall_ns * 2), topics.PHASE)  # type: ignore[type-var]
+    mine = agent.core.bus.phase
+    assert mine is not None
+    late = agent.wall_ns + HOUR_NS
+    agent.hear(replace(mine, phase=Phase.ENDED, number=1, stamp_ns=late), topics.PHASE)
     agent.run(0.5)
     assert agent.core.bus.drops["old_phase"] == 1
     assert agent.rate(0.4) > 15.0

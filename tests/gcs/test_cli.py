@@ -307,6 +307,15 @@ def test_a_shared_option_holds_before_and_after_the_subcommand(received, subcomm
     assert done.stderr == f"gcs: --{name}: found before {subcommand}, which does not use it\n"
 
 
+@pytest.mark.parametrize("typed", [("--plain",), ("--config", "none.toml")])
+def test_a_replay_that_decides_again_shows_nothing_and_takes_no_option_for_it(tmp_path, typed):
+    said = f"gcs: {typed[0]}: found with replay --decide, which does not use it\n"
+    again = ("replay", str(tmp_path), "--decide")
+    for arguments in ((*typed, *again), (*again, *typed)):
+        done = gcs(*arguments)
+        assert (done.returncode, done.stdout, done.stderr) == (2, "", said)
+
+
 def test_an_option_after_the_subcommand_outranks_the_same_one_before_it(received):
     given = received("--bus", "tcp/10.0.0.1:1", "--game", "early", "status", "--bus", "tcp/10.0.0.2:2")
     assert (given.bus, given.game) == ("tcp/10.0.0.2:2", "early")

@@ -10,6 +10,7 @@ from onboard.game.scenario import ImpairmentSpec, Kind, SensorSpec
 from onboard.wire.bus.messages import OutcomeResult, Phase
 from onboard.wire.bus.topics import EVADER_BRIEF, OUTCOME, TOPICS, Party
 from onboard.wire.mavlink.tlog import read_tlog
+from tests.support.flown_autopilot import FLOWN
 from tests.support.small_scenarios import EVADER, GUIDED, HOLD, MATE, PURSUER, duel
 from tests.support.virtual_time import virtual
 from tests.support.whole_games import STORY, HeardOfGame, WholeGame, game_of, mode, phases, place, speed
@@ -17,7 +18,7 @@ from tests.support.whole_games import STORY, HeardOfGame, WholeGame, game_of, mo
 pytestmark = pytest.mark.game
 
 
-@pytest.mark.parametrize("kind", list(Kind), ids=lambda kind: kind.value)
+@pytest.mark.parametrize("kind", FLOWN, ids=lambda kind: kind.value)
 @virtual
 async def test_a_game_stages_starts_plays_and_ends_with_a_capture(kind: Kind) -> None:
     async with game_of(duel(kind)) as game:

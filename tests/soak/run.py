@@ -30,6 +30,7 @@ from onboard.runtime.loop import run_virtual  # noqa: E402
 from onboard.wire.bus.messages import Command, CommandKind, Phase  # noqa: E402
 from onboard.wire.bus.topics import COMMAND  # noqa: E402
 from tests.soak.faults import NAMES, OF_ALL, OF_ONE, Rng, Undo  # noqa: E402
+from tests.support.flown_autopilot import FLOWN  # noqa: E402
 from tests.support.whole_games import WholeGame, flies, game_of, quoting  # noqa: E402
 
 GAME_S = 600.0
@@ -215,7 +216,7 @@ def play(
 
     async def game_on() -> None:
         rng = np.random.default_rng((seed, number))
-        kind = list(Kind)[number % len(Kind)]
+        kind = FLOWN[number % len(FLOWN)]
         chase = scenario(kind, seed)
         async with game_of(chase, seed=seed + number, battery_s=1e9, any_error=True) as game:
             soak = Soak(game, rng, totals, explains)

@@ -8,7 +8,7 @@ from typing import Any
 
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import ZERO, Vec, distance
-from onboard.game.scenario import Kind, VehicleSpec
+from onboard.game.scenario import WINGED, Kind, VehicleSpec
 from onboard.wire.geodesy import Frame
 from onboard.wire.mavlink.dialect import DialectSender, dialect, dialect_packet
 from onboard.wire.mavlink.frames import Framer
@@ -31,6 +31,8 @@ PLANE = VehicleSpec(
     pitch_max_deg=25.0,
 )
 COMPANION = 191
+FLOWN = (Kind.PX4, Kind.ARDUCOPTER, Kind.ARDUPLANE)  # by agents; PX4 planes have no adapter yet
+PX4 = (Kind.PX4, Kind.PX4_PLANE)
 LAST = 20  # texts and answers in the text of a failure
 
 
@@ -54,7 +56,7 @@ class FlownAutopilot:
         self.air = Air(wind, ZERO)
         self.tick_ns = round(tick_s * NS_PER_S)
         self.now_ns = 0
-        spec = spec or (PLANE if kind == Kind.ARDUPLANE else MULTICOPTER)
+        spec = spec or (PLANE if kind in WINGED else MULTICOPTER)
         position = spec.start() if airborne else spec.start()._replace(z=0.0)
         start = start_motion(position, radians(spec.heading_deg or 0.0), kind, spec.speed, self.air, airborne)
         self.airframe = kinematic(spec, kind, start, self.air)
@@ -175,13 +177,14 @@ class FlownAutopilot:
         before = len(self.heard)
         self.send(message)
         acks = [m for _, m in self.heard[before:] if m.get_type() == "COMMAND_ACK"]
-        assert [m.command for m in acks] == [number]
-        return int(acks[0].result)
+        twice = 2 if self.kind in PX4 and number == 176 else 1  # PX4: accepted first, then the result
+        assert [m.command for m in acks] == [number] * twice
+        return int(acks[-1].result)
 
     def mode_to(self, name: str) -> int:
         """DO_SET_MODE; the result."""
         number = self.autopilot.modes[name]
-        if self.kind == Kind.PX4:
+        if self.kind in PX4:
             return self.command(176, 1, number >> 16 & 255, number >> 24)
         return self.command(176, 1, number)
 
@@ -190,7 +193,7 @@ class FlownAutopilot:
     ) -> Any:
         """SET_POSITION_TARGET_LOCAL_NED."""
         if mask is None:
-            mask = 0x9C7 if self.kind == Kind.PX4 else 0x0DC7
+            mask = 0x9C7 if self.kind in PX4 else 0x0DC7
         target = self.system if system is None else system
         return dialect.MAVLink_set_position_target_local_ned_message(
             0, target, 1, frame, mask, 0, 0, 0, v.x, v.y, v.z, 0, 0, 0, 0, 0

@@ -129,7 +129,6 @@ NOT_OURS = {
     "POSITION_TARGET_GLOBAL_INT": "internals of the navigation",
     "POWER_STATUS": "hardware",
     "RAW_IMU": "raw sensors",
-    "RC_CHANNELS": "no radio control",
     "SCALED_IMU2": "raw sensors",
     "SCALED_IMU3": "raw sensors",
     "SCALED_PRESSURE": "raw sensors",
@@ -145,6 +144,7 @@ NOT_THEIRS = {
     "EXTENDED_SYS_STATE": "sent by default: MAVSDK waits for it",
     "GPS_RAW_INT": "sent by default",
     "MISSION_CURRENT": "sent by default",
+    "RC_CHANNELS": "sent by default",
     "SYSTEM_TIME": "sent by default",
 }
 

@@ -35,6 +35,8 @@ SILENT_S = 1.0  # a link silent for longer explains that the autopilot changed t
 REGAIN_S = 6.0  # … for so long afterwards
 GIVEN_S = 5.0  # so long after control was given back the agent sets off, if the supervisor lets it
 WIND_FRESH_S = 10.0
+CRITICAL = 5  # MAV_STATE of a vehicle in a failsafe, and of worse
+HOMEWARD = frozenset(("RTL", "SMART_RTL", "AUTO_RTL", "LAND", "AUTOLAND", "PRECLAND", "QRTL", "QLAND"))
 RELEASES = {
     Command.RELEASE_TO_HOLD: ReleaseMode.HOLD,
     Command.RELEASE_TO_RETURN: ReleaseMode.RETURN,
@@ -74,6 +76,7 @@ class Flight:
         self._policy = part.policy
         self._jumps = JumpWatch(config.safety.clock_jump_s)
         self._number = 0
+        self._resumed = False  # the master alone let this process in
         self._failing = False
         self._alive_at = NEVER  # the strategy's last sign of life [s]
         self._silent_at = NEVER  # when the link was last found silent [s]
@@ -90,6 +93,7 @@ class Flight:
         telemetry = self.vehicle.look(now.s)
         self.part.follow(now)
         state = self.part.state(now.wall_ns)
+        self._resumed = state.resumed
         if self.part.policy is not self._policy:  # another game: what was latched in the last one is over
             self._policy, self._state = self.part.policy, in_another_game(self._state)
             telemetry = self.vehicle.look(now.s)  # its game frame is another, too
@@ -172,6 +176,7 @@ class Flight:
         telemetry = self.vehicle.look(now)
         if self._orders.order is Action.PASS:
             self._given_at = now
+            self.part.let_in()
             self.resumed()
             self._judge(ZERO, self._input(now, telemetry), streams=False)
         else:
@@ -253,7 +258,9 @@ class Flight:
             # Without an order only what is ours is released, or what is on its way to a milder mode.
             leaving = adapter.stage is Stage.LEAVING and command is not Command.RELEASE_TO_HOLD
             if ours or leaving or self._orders.order is not Action.PASS or self.take_off.climbing:
-                adapter.leave(now, RELEASES[command])
+                ends = self.ending and self._orders.order is Action.PASS
+                departs = ends and command is Command.RELEASE_TO_HOLD
+                adapter.leave(now, ReleaseMode.DEPART if departs else RELEASES[command])
         flown = streams and (command is Command.STREAM or ours)
         self.drive(now, output if flown else None)
 
@@ -276,7 +283,8 @@ class Flight:
         hovers = not adapter.holds_airspeed
         seen = self._input(now, t)._replace(over=state.over, wind=ZERO if hovers else t.wind)
         still = ZERO if hovers else sub(t.velocity, t.wind)
-        output = self._judge(still, seen, streams=hovers and not climbs, enters=wanted)
+        waits = climbs or (state.late and not self._orders.granted)
+        output = self._judge(still, seen, streams=hovers and not waits, enters=wanted)
         if not (held or ours):  # what was not ours has latched nothing
             self._state = self._state._replace(floor=before.floor, floor_cause=before.floor_cause)
         if climbs and output.command is Command.STREAM and self.take_off.step(now, self.vehicle):
@@ -295,8 +303,19 @@ class Flight:
 
     @property
     def may_control(self) -> bool:
-        """Whether this agent may enter the guided mode by itself."""
-        return (self.config.take_control or self._orders.granted) and not self._orders.blocked
+        """Whether this agent may enter the guided mode, by a person's word since its start or by itself.
+
+        By itself it ends neither a way home nor a failsafe, and where it was started while the game runs it
+        enters nothing: then it flies a vehicle that it finds in the guided mode.
+        """
+        t = self.vehicle.telemetry
+        bound = t.mode in HOMEWARD or t.status >= CRITICAL
+        return (self._orders.granted or (self._trusted and not bound)) and not self._orders.blocked
+
+    @property
+    def _trusted(self) -> bool:
+        """Whether the configuration lets this process take control of what it began with."""
+        return self.config.take_control and not self._resumed
 
     def drive(self, now: float, verdict: SupervisorOutput | None = None) -> None:
         """Let the adapter do what is due, with the supervisor's verdict on this step or without a setpoint."""
@@ -314,7 +333,7 @@ class Flight:
     def _taken(self, now: float) -> None:
         t = self.vehicle.telemetry
         fell_back = t.mode == "HOLD" and now - self._silent_at < REGAIN_S
-        if fell_back and self.may_control:
+        if fell_back and (self._orders.granted or self._trusted):
             self._journal.warning("regain", f"{t.mode} while the link was silent: asking again")
             self._given_at = now
         else:

@@ -105,7 +105,12 @@ class GamePlayer:
             on=engaged and part.running(phase, wall_ns),
             late=late,
             over=part.over(phase),
+            resumed=part.resumed,
         )
+
+    def let_in(self) -> None:
+        """A person lets this process act, also in a game that it has not seen begin."""
+        self._participation.let_in()
 
     def ask(self, now: Instant, own: Own) -> Question | PilotDecision:
         """The view of the game at `now`."""

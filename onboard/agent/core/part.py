@@ -19,6 +19,7 @@ class PartState(NamedTuple):
     on: bool = False  # it is on: the vehicle is flown by decisions
     late: bool = False  # it runs without this vehicle until the master lets it act
     over: bool = False  # it has ended
+    resumed: bool = False  # the master alone let this process in: it flies what it finds guided, no more
 
 
 class Part(Protocol):
@@ -30,6 +31,10 @@ class Part(Protocol):
 
     def follow(self, now: Instant) -> None:
         """Take in what bus and vehicle have told since the last control step."""
+        ...
+
+    def let_in(self) -> None:
+        """A person lets this process act."""
         ...
 
     def state(self, wall_ns: int) -> PartState:

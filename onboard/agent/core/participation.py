@@ -13,21 +13,28 @@ class Participation:
 
     def __init__(self, id: int) -> None:
         self.joined = False
+        self.resumed = False  # by the master, not by a person or from the beginning
         self._id = id
         self._t0_ns = 0
 
     def follow(self, phase: PhaseChange, wall_ns: int) -> None:
         """Take a phase change (or the cached one) in."""
         if phase.phase in (Phase.STAGING, Phase.READY):
-            self.joined = True
+            self.joined, self.resumed = True, False
         elif phase.phase is Phase.RUNNING:
             begun = (wall_ns - phase.t0_ns) / NS_PER_S
-            if self._id in phase.resume or begun < JUST_STARTED_S:
+            if not self.joined and begun >= JUST_STARTED_S and self._id in phase.resume:
+                self.joined = self.resumed = True
+            elif begun < JUST_STARTED_S:
                 self.joined = True
+
+    def let_in(self) -> None:
+        """A person lets this agent act."""
+        self.joined, self.resumed = True, False
 
     def leave(self) -> None:
         """Another game's setup came: what was joined is over."""
-        self.joined = False
+        self.joined = self.resumed = False
 
     def waits_for_resume(self, phase: PhaseChange | None) -> bool:
         """Whether the game runs without this agent."""

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from math import asin, pi, radians, sin, tan
 
-from onboard.agent.config import AgentConfig
+from onboard.agent.config import POLICY_ALONE, POLICY_KEYS, AgentConfig
+from onboard.config.derive import core_from
 from onboard.core.game.rules import NO_TARGET, Control, Target
 from onboard.core.math.constants import STANDARD_GRAVITY
 from onboard.core.math.states import VehicleLimits
@@ -14,6 +15,8 @@ from onboard.core.safety.field_profile import capture_in_space_refused, field_po
 from onboard.core.safety.policy import Envelope, Fence, Policy
 from onboard.pilot.setup import GameSetup, Player, Side
 from onboard.wire.bus.messages import Member, Role, Setup
+
+_DEFAULT = Policy()
 
 
 def envelope_of(config: AgentConfig, member: Member | None, hovers: bool) -> Envelope:
@@ -59,29 +62,15 @@ def policy_of(config: AgentConfig, setup: Setup | None, hovers: bool) -> Policy:
     separation = setup.rules.separation if setup is not None else 0.0
     if s.separation is not None:
         separation = s.separation
-    policy = Policy(
-        envelope=envelope_of(config, member, hovers),
-        fences=tuple(fences),
-        fence_margin=s.fence_margin,
-        height_margin=s.height_margin,
-        fence_far=s.fence_far,
-        reaction=s.reaction_s,
-        separation=separation,
-        mate_age=s.mate_age_s,
-        telemetry_age=s.telemetry_age_s,
-        heartbeat_age=s.heartbeat_age_s,
-        heartbeat_alone=max(s.heartbeat_age_s, s.heartbeat_alone_s),
-        strategy_age=s.strategy_age_s,
-        track_sigma=s.track_sigma,
-        track_action=s.track_action.action(),
-        ground_age=s.ground_age_s,
-        ground_action=s.ground_action.action(),
-        clock_jump=s.clock_jump_s,
-        clock_hold=s.clock_hold_s,
-        battery=s.battery,
-        gps_fix=s.gps_fix,
-        settle=s.settle_s,
-    )
+    given = {name: getattr(_DEFAULT, name) for name in POLICY_ALONE} | {
+        "envelope": envelope_of(config, member, hovers),
+        "fences": tuple(fences),
+        "separation": separation,
+        "heartbeat_alone": max(s.heartbeat_age_s, s.heartbeat_alone_s),
+        "track_action": s.track_action.action(),
+        "ground_action": s.ground_action.action(),
+    }
+    policy = core_from(s, Policy, POLICY_KEYS, **given)
     if setup is not None and setup.field_profile and member is not None:
         heights = layers(tuple(-one.start[2] for one in setup.roster))
         own = next(index for index, one in enumerate(setup.roster) if one.id == config.id)

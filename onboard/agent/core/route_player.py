@@ -65,6 +65,9 @@ class RoutePlayer:
             engaged=self._placed, near=not self._done, on=begun and not self._done, over=self._done
         )
 
+    def let_in(self) -> None:
+        """Nothing to do: a route has no beginning to be missed."""
+
     def ask(self, now: Instant, own: Own) -> Question | PilotDecision:
         """The route's own rules decide: nobody needs to be asked."""
         leg = self._track.leg if self._track is not None else 1

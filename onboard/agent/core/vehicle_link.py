@@ -240,6 +240,10 @@ class VehicleLink:
             return
         if self.adapter is not None and self.adapter.stage is Stage.ACTIVE:
             return  # it does not turn into another aircraft in flight
+        if self._asking is None:
+            self._asking = Requests(
+                self.to, heartbeat.kind, self.config.control_rate_hz, self.radio.active, self.radio.signed
+            )
         found = adapter_for(
             heartbeat,
             self.to,
@@ -262,7 +266,3 @@ class VehicleLink:
             if self.adapter is None and (known is None or known.kind is not heartbeat.kind):
                 self._journal.info("autopilot", f"{heartbeat.kind.value} found, in {heartbeat.mode}")
             self.adapter = found
-        if self._asking is None:
-            self._asking = Requests(
-                self.to, heartbeat.kind, self.config.control_rate_hz, self.radio.active, self.radio.signed
-            )

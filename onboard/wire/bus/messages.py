@@ -303,7 +303,7 @@ class CommandKind(Enum):
 
 
 class Quote(Message, frozen=True):
-    """What the sender of an order had heard when it was given: the order's age and place, without any clock."""
+    """What the sender of an order had heard when it was given: its age and place in order."""
 
     nonce: int = 0  # of the master's process (of the agent's, where there is no master)
     number: int = 0  # of its newest word: `Master.number`, or `Health.number`

@@ -284,6 +284,14 @@ class Dispatcher:
                 take(heard.message)
 
 
+def echo_key(game: str) -> str:
+    """The key on which the listener of a field answers every member: the session works both ways.
+
+    It is no topic: it says nothing, and nobody records it.
+    """
+    return f"{ROOT}/{game}/bus/echo"
+
+
 def everything(game: str) -> str:
     """The pattern that matches every topic of a game."""
     return f"{ROOT}/{game}/**"

@@ -30,6 +30,7 @@ from onboard.wire.mavlink.values import (
     Home,
     ParamValue,
     RadioStatus,
+    RcChannels,
     StatusText,
     SysStatus,
     Timesync,
@@ -235,6 +236,15 @@ def _radio_status(m: Any) -> RadioStatus:
     return RadioStatus(min(m.txbuf, 100) * 0.01, m.rssi, m.remrssi, m.rxerrors)
 
 
+def _rc_channels(m: Any) -> RcChannels:
+    """A channel that is not heard reads 0."""
+    pulses: list[int] = []
+    for number in range(1, min(m.chancount, 18) + 1):
+        pulse = getattr(m, f"chan{number}_raw")
+        pulses.append(pulse if 0 < pulse < 65535 else 0)
+    return RcChannels(tuple(pulses))
+
+
 def _text(raw: str | bytes) -> str:
     if isinstance(raw, bytes):
         raw = raw.split(b"\0", 1)[0].decode("ascii", errors="replace")
@@ -262,6 +272,7 @@ _READERS: dict[int, Callable[[Any], Value | None]] = {
     dialect.MAVLINK_MSG_ID_TIMESYNC: _timesync,
     dialect.MAVLINK_MSG_ID_ADSB_VEHICLE: _adsb_vehicle,
     dialect.MAVLINK_MSG_ID_RADIO_STATUS: _radio_status,
+    dialect.MAVLINK_MSG_ID_RC_CHANNELS: _rc_channels,
 }
 
 READ = frozenset(_READERS)

@@ -172,6 +172,12 @@ class AdsbVehicle(NamedTuple):
     velocity_valid: bool
 
 
+class RcChannels(NamedTuple):
+    """RC_CHANNELS."""
+
+    pulses: tuple[int, ...]  # [µs] of the channels that the receiver hears, channel 1 first
+
+
 class RadioStatus(NamedTuple):
     """RADIO_STATUS of a telemetry radio."""
 
@@ -200,4 +206,5 @@ Value = (
     | Timesync
     | AdsbVehicle
     | RadioStatus
+    | RcChannels
 )

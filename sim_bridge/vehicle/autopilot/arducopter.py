@@ -6,21 +6,32 @@ from collections.abc import Callable
 from math import cos, isfinite, sin
 
 from onboard.core.math.vectors import ZERO, Vec, is_finite
+from onboard.game.scenario import Kind
 from onboard.wire.mavlink.dialect import DialectPacket, dialect
 from onboard.wire.mavlink.modes import ARDUCOPTER_MODES
 from sim_bridge.vehicle.autopilot import default_parameters as tables
-from sim_bridge.vehicle.autopilot.ardupilot import ABOVE_HOME, ABSOLUTE, ArduPilot
+from sim_bridge.vehicle.autopilot.ardupilot import ABOVE_HOME, ABSOLUTE, RADIO_S, ArduPilot, Place
 from sim_bridge.vehicle.autopilot.command import ACCEPTED, DENIED, FAILED, Command
+from sim_bridge.vehicle.autopilot.generations import ADDED, renamed
 from sim_bridge.vehicle.autopilot.multicopter import Leg, Multicopter, Speeds
 from sim_bridge.vehicle.autopilot.parameters import Parameters
 from sim_bridge.vehicle.motion import Demand
 
 M = ARDUCOPTER_MODES
 CM = 0.01
-PILOTED = frozenset(
+PILOTED = frozenset(  # not flown by the autopilot: BRAKE too
+    M[name]
+    for name in ("STABILIZE", "ACRO", "ALT_HOLD", "LOITER", "POSHOLD", "SPORT", "DRIFT", "FLOWHOLD", "BRAKE")
+)
+BY_STICK = frozenset(  # the throttle stick is the climb rate: at the bottom they sink
     M[name]
     for name in ("STABILIZE", "ACRO", "ALT_HOLD", "LOITER", "POSHOLD", "SPORT", "DRIFT", "FLOWHOLD", "CIRCLE")
 )
+BLOCKABLE = (
+    "STABILIZE", "ACRO", "ALT_HOLD", "AUTO", "GUIDED", "LOITER", "CIRCLE", "DRIFT", "SPORT", "FLIP",
+    "AUTOTUNE", "POSHOLD", "BRAKE", "THROW", "AVOID_ADSB", "GUIDED_NOGPS", "SMART_RTL", "FLOWHOLD", "FOLLOW",
+    "ZIGZAG", "SYSTEMID", "AUTOROTATE", "AUTO_RTL", "TURTLE",
+)  # fmt: skip
 POSITIONAL = frozenset(
     M[name]
     for name in ("AUTO", "GUIDED", "LOITER", "RTL", "CIRCLE", "DRIFT", "POSHOLD", "BRAKE", "FOLLOW", "ZIGZAG")
@@ -37,6 +48,7 @@ USER_TAKEOFF = frozenset(M[name] for name in ("GUIDED", "LOITER", "ALT_HOLD", "P
 # type_mask: a set bit ignores the field; one bit of a group ignores the group
 NO_POSITION, NO_VELOCITY, NO_ACCELERATION, FORCE_SET = 0x007, 0x038, 0x1C0, 0x200
 LOCAL, LOCAL_OFFSET, BODY, BODY_OFFSET = 1, 7, 8, 9  # MAV_FRAME
+RC_CONTINUE_GUIDED = 4  # FS_OPTIONS: the transmitter's loss does not end GUIDED
 CONTINUE_PILOTED = 16  # FS_OPTIONS: the ground station's silence does not end a mode flown by hand
 
 
@@ -44,14 +56,22 @@ class ArduCopter(Multicopter, ArduPilot):
     """ArduCopter 4.5 on a quadrotor: modes, failsafes, targets and commands."""
 
     modes = M
-    banner = ("ArduCopter V4.5.6 (simulated)", "Frame: QUAD/PLUS")
+    blockable = BLOCKABLE
+    recovered = "Cleared"
     starts_by_velocity = False
     armed_text = "Arming motors"
     _target_ns = 0  # of the last velocity target
 
     def _new_parameters(self) -> Parameters:
+        options = self.setup.options
+        key = Kind.ARDUCOPTER, options.firmware
         own = {"SYSID_THISMAV": self.system, "SCHED_LOOP_RATE": 400}
-        return Parameters(tables.ARDUCOPTER, own | dict(self.setup.options.parameters), bytewise=False)
+        table = tables.ARDUCOPTER + ADDED.get(key, ())
+        return Parameters(table, own | dict(options.parameters), bytewise=False, aliases=renamed(*key))
+
+    @property
+    def banner(self) -> tuple[str, ...]:
+        return f"ArduCopter V{self.version_name} (simulated)", "Frame: QUAD/PLUS"
 
     def _message_handlers(self) -> dict[int, Callable[[int, DialectPacket], None]]:
         return super()._message_handlers() | {
@@ -71,7 +91,16 @@ class ArduCopter(Multicopter, ArduPilot):
 
     @property
     def first_mode(self) -> int:
-        return M["STABILIZE"] if self.landed else M["LOITER"]
+        if self.landed:
+            return M["STABILIZE"]
+        return M["LOITER"] if self._stick_climb() == 0.0 else M["BRAKE"]
+
+    def _stick_climb(self) -> float:
+        """Climb rate that the pilot's throttle stick asks for [m/s, up]."""
+        p = self.parameters
+        share = self.transmitter.climb_share(1e-3 * p["THR_DZ"])
+        down = p["PILOT_SPEED_DN"] or p["PILOT_SPEED_UP"]
+        return share * CM * (p["PILOT_SPEED_UP"] if share > 0.0 else down)
 
     @property
     def speeds(self) -> Speeds:
@@ -110,6 +139,8 @@ class ArduCopter(Multicopter, ArduPilot):
             return "Arm: Need Position Estimate"
         if self.health.battery <= 0.0:
             return "Arm: Battery 1 low voltage failsafe"
+        if self._failsafe:
+            return "Arm: GCS failsafe on"
         return f"Arm: {self.mode_name} mode not armable" if self.mode in NOT_ARMABLE else ""
 
     # ------------------------------------------------------------------ failsafes
@@ -117,14 +148,21 @@ class ArduCopter(Multicopter, ArduPilot):
     def guide(self, now_ns: int, dt: float) -> Demand:
         if self.leg == Leg.VELOCITY and (now_ns - self._target_ns) * 1e-9 > self.parameters["GUID_TIMEOUT"]:
             self.fly(Leg.HOLD, now_ns)
+        if self.mode in BY_STICK and not self.landed:
+            climb = self._stick_climb()
+            if climb != 0.0:
+                self.fly_by_stick(now_ns, climb)
+            elif self.leg == Leg.STICK:
+                self.fly(Leg.HOLD, now_ns)
         return super().guide(now_ns, dt)
 
     def silence_limit_s(self) -> float:
         return self.parameters["FS_GCS_TIMEOUT"] if self.parameters["FS_GCS_ENABLE"] else 0.0
 
     def on_silence(self, now_ns: int) -> None:
-        piloted = self.mode in PILOTED and int(self.parameters["FS_OPTIONS"]) & CONTINUE_PILOTED
-        if piloted:
+        if self._told_on_ground(now_ns, "GCS"):
+            return
+        if self.mode in PILOTED and int(self.parameters["FS_OPTIONS"]) & CONTINUE_PILOTED:
             self.say(dialect.MAV_SEVERITY_WARNING, "GCS Failsafe - Continuing Pilot Control")
             return
         self.say(dialect.MAV_SEVERITY_WARNING, "GCS Failsafe")
@@ -133,14 +171,50 @@ class ArduCopter(Multicopter, ArduPilot):
             return
         self.escape(now_ns, {5: "LAND", 7: "BRAKE"}.get(action, "RTL"))
 
+    def _told_on_ground(self, now_ns: int, which: str) -> bool:
+        """Act on a failsafe that finds the vehicle on the ground: it disarms, and says so."""
+        if not self.landed:
+            return False
+        if self.armed:
+            self.say(dialect.MAV_SEVERITY_WARNING, f"{which} Failsafe - Disarming")
+            self.disarm(now_ns)
+        else:
+            self.say(dialect.MAV_SEVERITY_WARNING, f"{which} Failsafe")
+        return True
+
+    def radio_limit_s(self) -> float:
+        return RADIO_S if self.parameters["FS_THR_ENABLE"] else 0.0
+
+    def on_radio_lost(self, now_ns: int) -> None:
+        if self._told_on_ground(now_ns, "Radio"):
+            return
+        if self.is_mode("GUIDED") and int(self.parameters["FS_OPTIONS"]) & RC_CONTINUE_GUIDED:
+            self.say(dialect.MAV_SEVERITY_WARNING, "Radio Failsafe - Continuing Guided Mode")
+            return
+        self.say(dialect.MAV_SEVERITY_WARNING, "Radio Failsafe")
+        self.escape(now_ns, {3: "LAND", 7: "BRAKE"}.get(int(self.parameters["FS_THR_ENABLE"]), "RTL"))
+
     def on_lost_position(self, now_ns: int) -> None:
-        if self.mode in POSITIONAL and self.parameters["FS_EKF_ACTION"]:
-            self.say(dialect.MAV_SEVERITY_CRITICAL, "EKF Failsafe: changed to LAND Mode")
-            self.escape(now_ns, "LAND")
+        action = int(self.parameters["FS_EKF_ACTION"])
+        if self._ekf_failsafe or not action or not (self.mode in POSITIONAL or action == 3):
+            return
+        self._ekf_failsafe = True
+        name = "ALT_HOLD" if action == 2 else "LAND"
+        self.say(dialect.MAV_SEVERITY_CRITICAL, "EKF variance")
+        self.say(dialect.MAV_SEVERITY_CRITICAL, f"EKF Failsafe: changed to {name} Mode")
+        self.escape(now_ns, name)
 
     def on_low_battery(self, now_ns: int, action: int) -> None:
-        if action in (1, 2, 3, 4):
-            self.escape(now_ns, "LAND" if action == 1 else "RTL")
+        if action in (1, 2, 3, 4, 7):
+            self.say(dialect.MAV_SEVERITY_WARNING, "Battery Failsafe")
+            self.escape(now_ns, {1: "LAND", 7: "BRAKE"}.get(action, "RTL"))
+
+    def on_fence(self, now_ns: int, action: int) -> None:
+        if action:
+            self.escape(now_ns, {2: "LAND", 4: "BRAKE"}.get(action, "RTL"))
+
+    def fly_to(self, now_ns: int, place: Place) -> None:
+        self.fly(Leg.GOTO, now_ns, self.game_of(place))
 
     # ------------------------------------------------------------------ setpoints
 

@@ -4,17 +4,23 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Callable
-from math import isfinite
-from typing import NamedTuple
+from math import hypot, isfinite
+from typing import ClassVar, NamedTuple
 
+from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec
+from onboard.game.scenario import Firmware
 from onboard.wire.mavlink.dialect import DialectPacket, dialect
 from sim_bridge.vehicle.autopilot.autopilot import Autopilot
 from sim_bridge.vehicle.autopilot.command import ACCEPTED, DENIED, FAILED, Command
+from sim_bridge.vehicle.autopilot.health import CURRENT_FLYING
 
-VERSION = 4 << 24 | 5 << 16 | 6 << 8 | 255  # 4.5.6, release
+VERSIONS = {Firmware.OLDER: (4, 4, 4), Firmware.RECORDED: (4, 5, 6), Firmware.NEWER: (4, 7, 0)}
+GUIDED_POINT, GUIDED_ALTITUDE = 2, 3  # MISSION_ITEM.current: not of a mission, to be flown to at once
+FENCE_HEIGHT, FENCE_CIRCLE = 1, 2  # bits of FENCE_TYPE
 PREARM_EVERY_S = 30.0
 EKF_PATIENCE_S = 1.0
+RADIO_S = 0.5  # from channels that have gone to the failsafe, where no parameter names it
 ABSOLUTE = (dialect.MAV_FRAME_GLOBAL, dialect.MAV_FRAME_GLOBAL_INT)
 ABOVE_HOME = (dialect.MAV_FRAME_GLOBAL_RELATIVE_ALT, dialect.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT)
 
@@ -31,6 +37,7 @@ RATES = {
     dialect.MAVLINK_MSG_ID_WIND: 1.0,
     dialect.MAVLINK_MSG_ID_SYSTEM_TIME: 1.0,
     dialect.MAVLINK_MSG_ID_MISSION_CURRENT: 0.5,
+    dialect.MAVLINK_MSG_ID_RC_CHANNELS: 2.0,
 }
 
 
@@ -46,15 +53,21 @@ class ArduPilot(Autopilot):
     """What ArduCopter and ArduPlane do alike: modes by number, the watched ground station, failsafes."""
 
     autopilot_type = dialect.MAV_AUTOPILOT_ARDUPILOTMEGA
-    version = VERSION
+    versions = VERSIONS
     default_rates = RATES
     refused_arming = FAILED
     unknown_message = FAILED
     unknown_interval = DENIED
     _failsafe = False  # the ground station's silence has been acted upon
+    _radio_failsafe = False  # the transmitter's loss has been acted upon
     _ekf_bad_ns = -1  # since when the estimator has no position; −1: it has
-    _battery_told = False
+    _ekf_failsafe = False
+    _battery_low_ns = -1  # since when the voltage is below the present level's; −1: it is not
+    _battery_level = 0  # acted upon: 0 none, 1 low, 2 critical; it never falls
+    _fence_breached = False
     _prearm_ns = -1
+    blockable: ClassVar[tuple[str, ...]]  # modes by their bits in FLTMODE_GCSBLOCK
+    recovered: ClassVar[str]  # what is said of a failsafe that is over
 
     def _command_handlers(self) -> dict[int, Callable[[int, Command], int]]:
         return super()._command_handlers() | {
@@ -62,9 +75,21 @@ class ArduPilot(Autopilot):
             dialect.MAV_CMD_NAV_RETURN_TO_LAUNCH: lambda now, c: self._by_command(now, "RTL"),
         }
 
+    def _message_handlers(self) -> dict[int, Callable[[int, DialectPacket], None]]:
+        return super()._message_handlers() | {
+            dialect.MAVLINK_MSG_ID_MISSION_ITEM: self._on_mission_item,
+            dialect.MAVLINK_MSG_ID_MISSION_ITEM_INT: self._on_mission_item,
+        }
+
+    @property
+    def critical(self) -> bool:
+        return self._failsafe or self._radio_failsafe or self._ekf_failsafe or self._battery_level > 0
+
     def watched_ground_station(self, packet: DialectPacket) -> bool:
-        """ArduPilot watches one system id, whatever its component: an agent's only if told to."""
-        return packet.system == int(self.parameters["SYSID_MYGCS"])
+        """ArduPilot watches one system id (from 4.7 on a range), whatever its component, a gimbal's too."""
+        first = int(self.parameters["SYSID_MYGCS"])
+        last = int(self.parameters["MAV_GCS_SYSID_HI"]) if "MAV_GCS_SYSID_HI" in self.parameters else 0
+        return first <= packet.system <= max(first, last)
 
     def set_mode_result(self, now_ns: int, command: Command) -> int:
         if not (isfinite(command.p1) and int(command.p1) & dialect.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED):
@@ -77,9 +102,13 @@ class ArduPilot(Autopilot):
         if mode not in self.modes.values():
             self.say(dialect.MAV_SEVERITY_WARNING, f"No such mode {mode}")
             return FAILED
-        reason = self.request_mode(now_ns, mode)
+        name = next(name for name, number in self.modes.items() if number == mode)
+        blocked = name in self.blockable and int(self.parameters["FLTMODE_GCSBLOCK"]) >> (
+            self.blockable.index(name)
+        )
+        refused = "GCS entry disabled (FLTMODE_GCSBLOCK)" if blocked & 1 else ""
+        reason = refused or self.request_mode(now_ns, mode)
         if reason:
-            name = next(name for name, number in self.modes.items() if number == mode)
             self.say(dialect.MAV_SEVERITY_WARNING, f"Mode change to {name} failed: {reason}")
             return FAILED
         return ACCEPTED
@@ -103,12 +132,12 @@ class ArduPilot(Autopilot):
 
     def watch(self, now_ns: int) -> None:
         self._watch_prearm(now_ns)
+        self._watch_ground_station(now_ns)
+        self._watch_radio(now_ns)
         if self.armed and not self.landed:
-            self._watch_ground_station(now_ns)
             self._watch_estimator(now_ns)
             self._watch_battery(now_ns)
-        else:
-            self._failsafe = False
+            self._watch_fence(now_ns)
 
     @abstractmethod
     def on_silence(self, now_ns: int) -> None:
@@ -119,12 +148,28 @@ class ArduPilot(Autopilot):
         """Time for which the watched ground station may be silent [s]; 0 = for ever."""
 
     @abstractmethod
+    def radio_limit_s(self) -> float:
+        """Time after the transmitter's loss until the failsafe acts [s]; 0 = never."""
+
+    @abstractmethod
+    def on_radio_lost(self, now_ns: int) -> None:
+        """The transmitter that was heard is heard no more."""
+
+    @abstractmethod
+    def fly_to(self, now_ns: int, place: Place) -> None:
+        """Follow a guided point."""
+
+    @abstractmethod
     def on_lost_position(self, now_ns: int) -> None:
         """The estimator has had no position for a while."""
 
     @abstractmethod
     def on_low_battery(self, now_ns: int, action: int) -> None:
-        """Act on a low battery as the parameter BATT_FS_LOW_ACT, `action`, says."""
+        """Act on a battery as the parameter BATT_FS_LOW_ACT or BATT_FS_CRT_ACT, `action`, says."""
+
+    @abstractmethod
+    def on_fence(self, now_ns: int, action: int) -> None:
+        """Act on a crossed fence as the parameter FENCE_ACTION, `action`, says."""
 
     def _by_command(self, now_ns: int, name: str) -> int:
         return FAILED if self.request_mode(now_ns, self.modes[name]) else ACCEPTED
@@ -145,20 +190,85 @@ class ArduPilot(Autopilot):
             self.on_silence(now_ns)
         elif self._failsafe and not silent:
             self._failsafe = False
-            self.say(dialect.MAV_SEVERITY_WARNING, "GCS Failsafe Cleared")
+            self.say(dialect.MAV_SEVERITY_WARNING, f"GCS Failsafe {self.recovered}")
+
+    def _watch_radio(self, now_ns: int) -> None:
+        limit = self.radio_limit_s()
+        lost = limit > 0.0 and self.transmitter.lost(now_ns - round(limit * NS_PER_S))
+        if lost and not self._radio_failsafe:
+            self._radio_failsafe = True
+            self.on_radio_lost(now_ns)
+        elif self._radio_failsafe and not lost:
+            self._radio_failsafe = False
+            self.say(dialect.MAV_SEVERITY_WARNING, f"Radio Failsafe {self.recovered}")
 
     def _watch_estimator(self, now_ns: int) -> None:
         if self.positioned(now_ns):
             self._ekf_bad_ns = -1
+            if self._ekf_failsafe:
+                self._ekf_failsafe = False
+                self.say(dialect.MAV_SEVERITY_CRITICAL, "EKF Failsafe Cleared")
         elif self._ekf_bad_ns < 0:
             self._ekf_bad_ns = now_ns
         elif (now_ns - self._ekf_bad_ns) * 1e-9 >= EKF_PATIENCE_S:
             self.on_lost_position(now_ns)
 
     def _watch_battery(self, now_ns: int) -> None:
-        if self.health.voltage >= self.parameters["BATT_LOW_VOLT"] and self.health.battery > 0.0:
-            self._battery_told = False
-        elif not self._battery_told:
-            self._battery_told = True
-            self.say(dialect.MAV_SEVERITY_WARNING, f"Battery 1 is low {self.health.voltage:.2f}V used")
-            self.on_low_battery(now_ns, int(self.parameters["BATT_FS_LOW_ACT"]))
+        """Voltage or charge below a level for BATT_LOW_TIMER; levels never fall again before a reboot."""
+        p, h = self.parameters, self.health
+        used = (1.0 - h.battery) * self.setup.options.battery_s * CURRENT_FLYING / 3.6  # [mAh]
+        left = p["BATT_CAPACITY"] - used
+        level = 0
+        for number, which in ((1, "LOW"), (2, "CRT")):
+            volt, charge = p[f"BATT_{which}_VOLT"], p[f"BATT_{which}_MAH"]
+            if (volt > 0.0 and h.voltage < volt) or (charge > 0.0 and left < charge):
+                level = number
+        if h.battery <= 0.0:
+            level = max(level, 1)
+        if level <= self._battery_level:
+            self._battery_low_ns = -1
+            return
+        if self._battery_low_ns < 0:
+            self._battery_low_ns = now_ns
+        if (now_ns - self._battery_low_ns) * 1e-9 < p["BATT_LOW_TIMER"]:
+            return
+        self._battery_level = level
+        self._battery_low_ns = -1
+        word, which = ("low", "LOW") if level == 1 else ("critical", "CRT")
+        self.say(dialect.MAV_SEVERITY_WARNING, f"Battery 1 is {word} {h.voltage:.2f}V used {used:.0f} mAh")
+        self.on_low_battery(now_ns, int(p[f"BATT_FS_{which}_ACT"]))
+
+    def _watch_fence(self, now_ns: int) -> None:
+        p = self.parameters
+        if not p["FENCE_ENABLE"]:
+            self._fence_breached = False
+            return
+        home, here, kinds = self.game_position(*self.home), self.motion.position, int(p["FENCE_TYPE"])
+        far = hypot(here.x - home.x, here.y - home.y) > p["FENCE_RADIUS"] and kinds & FENCE_CIRCLE
+        high = self.height > p["FENCE_ALT_MAX"] and kinds & FENCE_HEIGHT
+        breached = bool(far or high)
+        if breached and not self._fence_breached:
+            self.say(dialect.MAV_SEVERITY_NOTICE, "Fence Breached")
+            self.on_fence(now_ns, int(p["FENCE_ACTION"]))
+        self._fence_breached = breached
+
+    def _on_mission_item(self, now_ns: int, packet: DialectPacket) -> None:
+        """MISSION_ITEM(_INT): current = 2 is a guided point, 3 a guided altitude; others find no room."""
+        m = packet.message
+        whole = m.get_type() == "MISSION_ITEM_INT"
+        x, y = (m.x * 1e-7, m.y * 1e-7) if whole else (m.x, m.y)
+        if m.current not in (GUIDED_POINT, GUIDED_ALTITUDE) or not self.is_mode("GUIDED") or self.landed:
+            result = dialect.MAV_MISSION_ERROR
+        else:
+            if m.current == GUIDED_ALTITUDE:
+                x, y = self.place.latitude_deg, self.place.longitude_deg
+            asked = Command(0, 0.0, 0.0, 0.0, 0.0, x, y, m.z, m.frame, packet.system, packet.component)
+            place = self.place_of(asked)
+            if place is None:
+                result = dialect.MAV_MISSION_UNSUPPORTED_FRAME
+            else:
+                self.fly_to(now_ns, place)
+                result = dialect.MAV_MISSION_ACCEPTED
+        self.emit(
+            dialect.MAVLink_mission_ack_message(packet.system, packet.component, result, m.mission_type)
+        )

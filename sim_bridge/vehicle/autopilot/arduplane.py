@@ -6,18 +6,21 @@ Priority sideways in GUIDED: a fresh roll, then the course or heading of 43002, 
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import asin, atan, atan2, ceil, degrees, floor, hypot, isfinite, pi, radians, sin
+from math import asin, atan2, ceil, degrees, floor, isfinite, radians, sin
 
 from onboard.core.math.constants import STANDARD_GRAVITY
 from onboard.core.math.vectors import ZERO, clamp
+from onboard.game.scenario import Kind
 from onboard.wire.mavlink.dialect import DialectPacket, dialect
 from onboard.wire.mavlink.modes import ARDUPLANE_MODES
 from sim_bridge.vehicle.autopilot import default_parameters as tables
 from sim_bridge.vehicle.autopilot import telemetry
-from sim_bridge.vehicle.autopilot.ardupilot import ABOVE_HOME, ABSOLUTE, ArduPilot
+from sim_bridge.vehicle.autopilot.ardupilot import ABOVE_HOME, ABSOLUTE, ArduPilot, Place
 from sim_bridge.vehicle.autopilot.command import ACCEPTED, DENIED, FAILED, Command
+from sim_bridge.vehicle.autopilot.generations import ADDED, renamed
 from sim_bridge.vehicle.autopilot.parameters import Parameters
 from sim_bridge.vehicle.autopilot.setup import Setup
+from sim_bridge.vehicle.autopilot.winged import ALTITUDE_S, circling_course
 from sim_bridge.vehicle.motion import Demand, Lateral
 
 M = ARDUPLANE_MODES
@@ -26,9 +29,11 @@ NOT_SIMULATED = frozenset(number for name, number in M.items() if name.startswit
 )
 BY_HAND = frozenset(M[name] for name in ("MANUAL", "STABILIZE", "TRAINING", "ACRO", "FBWA", "FBWB", "CRUISE"))
 KEEPS_ON_SILENCE = frozenset(M[name] for name in ("GUIDED", "AUTO", "TAKEOFF", "RTL"))
+BLOCKABLE = (
+    "MANUAL", "CIRCLE", "STABILIZE", "TRAINING", "ACRO", "FBWA", "FBWB", "CRUISE", "AUTOTUNE", "AUTO",
+    "LOITER", "TAKEOFF", "AVOID_ADSB", "GUIDED", "THERMAL",
+)  # fmt: skip
 LAPSE_S = 3.0  # of a forced attitude
-ALTITUDE_S = 3.3  # [s] climb rate per altitude error
-CIRCLE_GAIN = 2.0  # how steeply it turns towards a circle, per radius
 COURSE_OVER_GROUND, HEADING = 0, 1  # 43002, param1
 TAKEOFF_CLIMB = 5.0  # [m/s]
 FAST = 1000.0  # [m/s² or m/s] "as fast as possible"
@@ -40,7 +45,8 @@ class ArduPlane(ArduPilot):
 
     vehicle_type = dialect.MAV_TYPE_FIXED_WING
     modes = M
-    banner = ("ArduPlane V4.5.6 (simulated)",)
+    blockable = BLOCKABLE
+    recovered = "Off"
 
     def __init__(self, setup: Setup, now_ns: int) -> None:
         self._course: tuple[Lateral, float] | None = None  # of 43002
@@ -75,7 +81,13 @@ class ArduPlane(ArduPilot):
             "TECS_SINK_MAX": max(5.0, s.speed_cruise * sin(radians(-s.pitch_min_deg))),
             "WP_LOITER_RAD": float(ceil(max(60.0, radius))),
         }
-        return Parameters(tables.ARDUPLANE, own | dict(s.options.parameters), bytewise=False)
+        key = Kind.ARDUPLANE, s.options.firmware
+        table = tables.ARDUPLANE + ADDED.get(key, ())
+        return Parameters(table, own | dict(s.options.parameters), bytewise=False, aliases=renamed(*key))
+
+    @property
+    def banner(self) -> tuple[str, ...]:
+        return (f"ArduPlane V{self.version_name} (simulated)",)
 
     def _message_handlers(self) -> dict[int, Callable[[int, DialectPacket], None]]:
         return super()._message_handlers() | {
@@ -190,14 +202,8 @@ class ArduPlane(ArduPilot):
 
     def _circling(self) -> float:
         """Course onto and around the circle [rad]."""
-        p, c = self.motion.position, self._centre
-        north, east = p.x - c.x, p.y - c.y
         radius = self._radius or self.parameters["WP_LOITER_RAD"]
-        if hypot(north, east) < 1.0:
-            return self.motion.yaw
-        outward = atan2(east, north)
-        inward = atan(CIRCLE_GAIN * (hypot(north, east) - radius) / radius)
-        return outward + self._turn * (0.5 * pi + inward)
+        return circling_course(self.motion.position, self.motion.yaw, self._centre, radius, self._turn)
 
     def _climb(self, now_ns: int) -> float:
         """Climb rate [m/s, up]."""
@@ -229,8 +235,21 @@ class ArduPlane(ArduPilot):
     def silence_limit_s(self) -> float:
         return self.parameters["FS_LONG_TIMEOUT"] if self.parameters["FS_GCS_ENABL"] else 0.0
 
+    def ground_station_silence_s(self, now_ns: int) -> float:
+        """ArduPlane counts from boot where it never heard the watched ground station [s]."""
+        return super().ground_station_silence_s(now_ns) if self._ground_station_ns >= 0 else self.up_s(now_ns)
+
+    def radio_limit_s(self) -> float:
+        return self.parameters["FS_LONG_TIMEOUT"] if self.parameters["THR_FAILSAFE"] == 1 else 0.0
+
+    def on_radio_lost(self, now_ns: int) -> None:
+        self._long_event(now_ns, "type=2/reason=3")
+
     def on_silence(self, now_ns: int) -> None:
-        self.say(dialect.MAV_SEVERITY_WARNING, "Failsafe. Long event on: type=4/reason=3")
+        self._long_event(now_ns, "type=3/reason=5")
+
+    def _long_event(self, now_ns: int, what: str) -> None:
+        self.say(dialect.MAV_SEVERITY_WARNING, f"Failsafe. Long event on: {what}")
         action = int(self.parameters["FS_LONG_ACTN"])
         if action == 2:
             self.request_mode(now_ns, M["FBWA"])
@@ -243,6 +262,16 @@ class ArduPlane(ArduPilot):
     def on_low_battery(self, now_ns: int, action: int) -> None:
         if action in (1, 2):
             self.request_mode(now_ns, M["RTL"])
+
+    def on_fence(self, now_ns: int, action: int) -> None:
+        if action in (1, 6, 7):  # RTL, or the fence's return point, which is home where none is set
+            self.request_mode(now_ns, M["GUIDED" if action != 1 else "RTL"])
+            self._centre = self.game_position(*self.home)
+
+    def fly_to(self, now_ns: int, place: Place) -> None:
+        self._course = None
+        self._centre = self.game_of(place)
+        self._seek(place.altitude_m, FAST)
 
     # ------------------------------------------------------------------ setpoints
 

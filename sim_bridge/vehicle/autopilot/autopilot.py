@@ -7,18 +7,20 @@ Sans I/O. Time is an argument: `now_ns`, integer nanoseconds, any monotonic zero
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections import OrderedDict
+from collections import OrderedDict, deque
 from collections.abc import Callable, Hashable
 from functools import partial
 
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import ZERO
-from onboard.wire.mavlink.dialect import DialectPacket, dialect, dialect_packet
+from onboard.wire.mavlink.dialect import DialectPacket, DialectSender, dialect, dialect_packet
 from onboard.wire.mavlink.frames import Framer
 from sim_bridge.vehicle.autopilot import telemetry
 from sim_bridge.vehicle.autopilot.command import ACCEPTED, FAILED, UNSUPPORTED, Command, from_int, from_long
 from sim_bridge.vehicle.autopilot.commands import COMMANDS
-from sim_bridge.vehicle.autopilot.health import Fault
+from sim_bridge.vehicle.autopilot.company import Company
+from sim_bridge.vehicle.autopilot.generations import REMOVED
+from sim_bridge.vehicle.autopilot.health import Fault, pack_voltage
 from sim_bridge.vehicle.autopilot.microservices import SERVICES
 from sim_bridge.vehicle.autopilot.setup import Setup
 from sim_bridge.vehicle.autopilot.state import COMPONENT, AutopilotState
@@ -27,6 +29,14 @@ from sim_bridge.vehicle.motion import Air, Demand, Motion
 HEARTBEAT_NS = NS_PER_S
 PEERS_MAX = 16  # framing states kept, least recently heard forgotten first
 PARAMETERS_A_STEP = 5
+LATE_MOST = 256  # commands that wait for their delay; beyond them they are lost, and counted
+DELAYED = frozenset(
+    (
+        dialect.MAVLINK_MSG_ID_COMMAND_LONG,
+        dialect.MAVLINK_MSG_ID_COMMAND_INT,
+        dialect.MAVLINK_MSG_ID_SET_MODE,
+    )
+)
 FORCE = 21196  # param2 of 400: arm or disarm whatever the checks say
 
 
@@ -37,8 +47,14 @@ class Autopilot(AutopilotState):
         super().__init__(setup, now_ns)
         self.handlers: dict[int, Callable[[int, DialectPacket], None]] = self._message_handlers()
         self.commands: dict[int, Callable[[int, Command], int]] = self._command_handlers()
+        for number in REMOVED.get((setup.kind, setup.options.firmware), ()):
+            self.commands.pop(number, None)
         self._framers: OrderedDict[Hashable, Framer] = OrderedDict()
+        self._late: deque[tuple[int, DialectPacket]] = deque()  # commands and when each is executed
+        self._company = Company(setup.options, setup.system, now_ns)
+        self._senders: dict[tuple[int, int], DialectSender] = {}  # of the company
         self._ground_station_ns = -1  # last heartbeat of the watched one; −1 = never
+        self._any_station_ns = -1  # last heartbeat of any ground station; −1 = never
         self._heartbeat_ns = now_ns  # when the next one is due
         self.enter(now_ns, self.mode)
 
@@ -67,6 +83,8 @@ class Autopilot(AutopilotState):
             self.home_known = True
             self.emit(telemetry.home_position(self, now_ns))
             self.emit(telemetry.global_origin(self, now_ns))
+        self._hear_company(now_ns)
+        self._execute_late(now_ns)
         self.watch(now_ns)
         demand = self.guide(now_ns, dt)
         self._send_due(now_ns)
@@ -86,6 +104,7 @@ class Autopilot(AutopilotState):
         self._boot(now_ns)
         self._heartbeat_ns = now_ns
         self._framers.clear()
+        self._late.clear()
         self._out.clear()
         self._cold = self.landed
         self.armed = self.armed and not self.landed
@@ -109,8 +128,16 @@ class Autopilot(AutopilotState):
             self.health.faults.discard(fault)
 
     def set_battery(self, share: float) -> None:
-        """Set the battery's charge, 0…1."""
+        """Set the flight battery's charge, 0…1."""
         self.health.battery = min(1.0, max(0.0, share))
+
+    def set_voltage(self, voltage: float) -> None:
+        """Let the flight battery's voltage drop to `voltage` [V] at its present charge."""
+        self.health.sag = max(0.0, pack_voltage(self.health.battery) - voltage)
+
+    def set_throttle(self, now_ns: int, throttle: float | None) -> None:
+        """Move the pilot's throttle stick, 0…1; None: the transmitter is no longer heard."""
+        self.transmitter.put(throttle, now_ns)
 
     # ------------------------------------------------------------------ the personality's side
 
@@ -212,6 +239,8 @@ class Autopilot(AutopilotState):
             self._heartbeat_ns = following if following > now_ns else now_ns + HEARTBEAT_NS
         for number in self.streams.due(now_ns):
             self.emit(telemetry.build(self, number, now_ns))
+            if number == dialect.MAVLINK_MSG_ID_BATTERY_STATUS:
+                self.emit(telemetry.payload_battery(self, now_ns))
         for message in self.parameters.due(PARAMETERS_A_STEP):
             self.emit(message)
 
@@ -229,9 +258,46 @@ class Autopilot(AutopilotState):
         if handler is None:
             self.counters["not_handled"] += 1
             return
+        most = self.setup.options.answer_delay_s[1]
+        if most > 0.0 and message.get_msgId() in DELAYED:
+            self._wait(now_ns, packet)
+            return
         handler(now_ns, packet)
 
+    def _wait(self, now_ns: int, packet: DialectPacket) -> None:
+        """Put a command aside for its delay; each draws its own, so that they may be executed crosswise."""
+        if len(self._late) >= LATE_MOST:
+            self.counters["late_lost"] += 1
+            return
+        least, most = self.setup.options.answer_delay_s
+        generator = self.setup.options.generator
+        delay = least if generator is None else float(generator.uniform(least, most))
+        self._late.append((now_ns + round(delay * NS_PER_S), packet))
+
+    def _execute_late(self, now_ns: int) -> None:
+        if not self._late:
+            return
+        due = [entry for entry in self._late if entry[0] <= now_ns]
+        if due:
+            self._late = deque(entry for entry in self._late if entry[0] > now_ns)
+            for _, packet in sorted(due, key=lambda entry: entry[0]):
+                self.handlers[packet.message.get_msgId()](now_ns, packet)
+
+    def _hear_company(self, now_ns: int) -> None:
+        """Let the neighbours on the link speak: to this autopilot, and to everybody through its links."""
+        for voice in self._company.step(now_ns):
+            packet = DialectPacket(voice.system, voice.component, voice.message)
+            sender = self._senders.get((voice.system, voice.component))
+            if sender is None:
+                signing = self.setup.options.signing
+                sender = DialectSender(voice.system, voice.component, signing=signing)
+                self._senders[voice.system, voice.component] = sender
+            self._out.append(sender.pack(voice.message, now_ns + self.setup.options.epoch_ns))
+            self._take(now_ns, packet)
+
     def _on_heartbeat(self, now_ns: int, packet: DialectPacket) -> None:
+        if packet.message.type == dialect.MAV_TYPE_GCS:
+            self._any_station_ns = now_ns
         if self.watched_ground_station(packet):
             self._ground_station_ns = now_ns
 

@@ -40,6 +40,11 @@ _NO_POSITION = (
 )
 
 
+def pack_voltage(charge: float) -> float:
+    """Voltage of a pack at a charge of 0…1 [V]."""
+    return CELLS * (CELL_EMPTY + (CELL_FULL - CELL_EMPTY) * charge)
+
+
 class Fault(Enum):
     """What can be made to fail, and to recover."""
 
@@ -48,10 +53,12 @@ class Fault(Enum):
 
 
 class Health:
-    """Battery and failures of one vehicle's sensors."""
+    """Batteries and failures of one vehicle's sensors."""
 
-    def __init__(self, battery_s: float) -> None:
-        self.battery = 1.0  # of the charge
+    def __init__(self, battery_s: float, batteries: int = 1) -> None:
+        self.battery = 1.0  # of the charge of the first battery, which flies it
+        self.payload: float | None = 1.0 if batteries > 1 else None  # … of the second, which feeds a payload
+        self.sag = 0.0  # voltage that is missing beside the charge: a bad cell [V]
         self.faults: set[Fault] = set()
         self._drain = 1.0 / battery_s  # [1/s] in flight
 
@@ -63,7 +70,7 @@ class Health:
     @property
     def voltage(self) -> float:
         """Voltage of the battery pack [V]."""
-        return CELLS * (CELL_EMPTY + (CELL_FULL - CELL_EMPTY) * self.battery)
+        return max(0.0, pack_voltage(self.battery) - self.sag)
 
     @property
     def gps(self) -> bool:

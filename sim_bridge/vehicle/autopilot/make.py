@@ -5,24 +5,63 @@ from __future__ import annotations
 from collections.abc import Mapping
 from math import atan, degrees
 
+from numpy.random import Generator
+
 from onboard.core.math.constants import STANDARD_GRAVITY
 from onboard.core.math.vectors import Vec
-from onboard.game.scenario import Kind, VehicleSpec
+from onboard.game.scenario import Firmware, Kind, Scenario, Transmitter, VehicleSpec
 from onboard.wire.geodesy import Frame
+from sim_bridge.vehicle.autopilot import default_parameters as tables
 from sim_bridge.vehicle.autopilot.arducopter import ArduCopter
 from sim_bridge.vehicle.autopilot.arduplane import ArduPlane
 from sim_bridge.vehicle.autopilot.autopilot import Autopilot
-from sim_bridge.vehicle.autopilot.px4 import Px4Multicopter
+from sim_bridge.vehicle.autopilot.generations import ADDED, renamed
+from sim_bridge.vehicle.autopilot.px4_multicopter import Px4Multicopter
+from sim_bridge.vehicle.autopilot.px4_plane import Px4Plane
 from sim_bridge.vehicle.autopilot.setup import Options, Setup
 from sim_bridge.vehicle.flight.kinematic import ability_of
 from sim_bridge.vehicle.motion import Motion
 
 PERSONALITIES: Mapping[Kind, type[Autopilot]] = {
     Kind.PX4: Px4Multicopter,
+    Kind.PX4_PLANE: Px4Plane,
     Kind.ARDUCOPTER: ArduCopter,
     Kind.ARDUPLANE: ArduPlane,
 }
 OFFSET = Vec(3.0, -2.0, -0.5)  # [m; NED] per system id, of an autopilot's own origin from its home
+
+
+TABLES = {
+    Kind.PX4: tables.PX4,
+    Kind.PX4_PLANE: tables.PX4_PLANE,
+    Kind.ARDUCOPTER: tables.ARDUCOPTER,
+    Kind.ARDUPLANE: tables.ARDUPLANE,
+}
+THROTTLE = {Transmitter.CENTRED: 0.5, Transmitter.LOW: 0.0, Transmitter.NONE: None}
+
+
+def parameter_names(kind: Kind, firmware: Firmware) -> frozenset[str]:
+    """The parameters that a kind has, under the names of a generation and under the recorded ones."""
+    recorded = {parameter.name for parameter in TABLES[kind]}
+    own = {parameter.name for parameter in ADDED.get((kind, firmware), ())}
+    return frozenset(recorded | own | {new.name for new in renamed(kind, firmware).values()})
+
+
+def options_of(scenario: Scenario, random: Generator, parameters: Mapping[str, float]) -> Options:
+    """The options of a scenario's autopilots; `random` draws the delays of one vehicle's answers."""
+    spec = scenario.flight.simulated
+    least = spec.answer_delay_s
+    return Options(
+        airborne=not scenario.flight.ground_start,
+        parameters=parameters,
+        throttle=THROTTLE[spec.transmitter],
+        answer_delay_s=(least, max(least, spec.answer_delay_max_s)),
+        generator=random,
+        batteries=spec.batteries,
+        firmware=spec.firmware,
+        gimbal=spec.gimbal,
+        other_station_hz=spec.other_station_hz,
+    )
 
 
 def autopilot_for(

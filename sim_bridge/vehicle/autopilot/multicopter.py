@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from enum import Enum
-from math import sqrt
+from math import hypot, sqrt
 from typing import ClassVar, NamedTuple
 
 from onboard.core.math.vectors import ZERO, Vec, norm, sub
@@ -37,6 +37,7 @@ class Leg(Enum):
     RETURN = "return"
     LINGER = "linger above home"
     LAND = "land"
+    STICK = "climb or sink by the pilot's stick, above one place"
 
 
 class Speeds(NamedTuple):
@@ -77,6 +78,8 @@ class Multicopter(Autopilot):
         self.target = ZERO  # of GOTO, TAKEOFF, CLIMB, RETURN, LINGER and LAND, and the place held
         self.velocity = ZERO  # of VELOCITY
         self.feed_forward = ZERO  # of GOTO: velocity that comes with a moving place
+        self._climb = 0.0  # of STICK [m/s, up]
+        self._drift: Vec | None = None  # of STICK; None: above one place
         self._held = False  # whether `target` is the place to hold
         self._since_ns = now_ns  # of the leg
         self._idle_ns = now_ns  # armed on the ground without a leg that leaves it
@@ -131,6 +134,12 @@ class Multicopter(Autopilot):
         self.velocity = velocity
         self._since_ns = now_ns
 
+    def fly_by_stick(self, now_ns: int, climb: float, drift: Vec | None = None) -> None:
+        """Climb at `climb` [m/s, up] above one place, or drifting over ground with `drift` [m/s; NED]."""
+        if self.leg != Leg.STICK:
+            self.fly(Leg.STICK, now_ns)
+        self._climb, self._drift = climb, drift
+
     def fly_home(self, now_ns: int, height: float) -> None:
         """Climb to at least a height above home [m], return, land."""
         p = self.motion.position
@@ -157,6 +166,8 @@ class Multicopter(Autopilot):
             return self._hold()
         if leg == Leg.LAND:
             return self._land(now_ns)
+        if leg == Leg.STICK:
+            return self._by_stick(now_ns)
         if leg == Leg.LINGER:
             if (now_ns - self._since_ns) * 1e-9 >= self.linger_s:
                 self.fly(Leg.LAND, now_ns, self.target)
@@ -186,6 +197,23 @@ class Multicopter(Autopilot):
             self.target = self.motion.position
             self._held = True
         return velocity_demand(towards(self.motion.position, self.target, self.speeds))
+
+    def _by_stick(self, now_ns: int) -> Demand:
+        if self._climb < 0.0 and self.above_ground <= TOUCHED:
+            self.touch_down()
+            self._idle_ns = now_ns
+            self.fly(Leg.HOLD, now_ns)
+            return REST
+        motion = self.motion
+        if self._drift is not None:
+            self._held = False
+            return velocity_demand(Vec(self._drift.x, self._drift.y, -self._climb))
+        if not self._held and hypot(motion.velocity.x, motion.velocity.y) > STOPPED:
+            return velocity_demand(Vec(0.0, 0.0, -self._climb))
+        if not self._held:
+            self.target, self._held = motion.position, True
+        flat = towards(motion.position, self.target, self.speeds)
+        return velocity_demand(Vec(flat.x, flat.y, -self._climb))
 
     def _land(self, now_ns: int) -> Demand:
         above = self.above_ground

@@ -29,35 +29,56 @@ class Parameter(NamedTuple):
     kind: int  # MAV_PARAM_TYPE
 
 
+class Renamed(NamedTuple):
+    """A parameter's name in another generation of firmware; its value is the recorded one times `factor`."""
+
+    name: str
+    factor: float = 1.0
+    kind: int | None = None  # MAV_PARAM_TYPE where that changed too
+
+
 class Parameters:
     """One autopilot's parameters, and the values still to be sent."""
 
     def __init__(
-        self, table: tuple[Parameter, ...], overrides: Mapping[str, float], *, bytewise: bool
+        self,
+        table: tuple[Parameter, ...],
+        overrides: Mapping[str, float],
+        *,
+        bytewise: bool,
+        aliases: Mapping[str, Renamed] = {},
     ) -> None:
-        self._table = tuple(sorted(table))
+        """`overrides` take the place of the defaults. `aliases` say under which name and in which unit
+        a parameter is delivered: the simulation goes on to read and put it under its own.
+        """
+        self._aliases = dict(aliases)
+        self._table = tuple(sorted(self._delivered(parameter) for parameter in table))
         self._numbers = {parameter.name: number for number, parameter in enumerate(self._table)}
-        self._values = {p.name: float(overrides.get(p.name, p.default)) for p in self._table}
-        unknown = sorted(set(overrides) - set(self._values))
+        self._values = {p.name: p.default for p in self._table}
+        unknown = sorted(name for name in overrides if name not in self)
         if unknown:
             raise ValueError(f"no such parameters: {', '.join(unknown)}")
+        for name, value in overrides.items():
+            self.put(name, float(value))
         self._bytewise = bytewise
         self._listing = len(self._table)  # next number to send; beyond the last: none
 
     def __getitem__(self, name: str) -> float:
-        return self._values[name]
+        alias = self._aliases.get(name)
+        return self._values[name] if alias is None else self._values[alias.name] / alias.factor
 
     def __len__(self) -> int:
         return len(self._table)
 
     def __contains__(self, name: str) -> bool:
-        return name in self._values
+        return name in self._values or name in self._aliases
 
     def put(self, name: str, value: float) -> None:
         """Change a value from within. Raises KeyError for a name it does not know."""
-        if name not in self._numbers:
+        alias = self._aliases.get(name, Renamed(name))
+        if alias.name not in self._numbers:
             raise KeyError(name)
-        self._values[name] = min(max(value, -LARGEST), LARGEST)
+        self._values[alias.name] = min(max(value * alias.factor, -LARGEST), LARGEST)
 
     def list_all(self) -> None:
         """Begin to send the whole table."""
@@ -91,6 +112,11 @@ class Parameters:
                 value = float(min(max(round(value), low), high))
             self._values[name] = value
         return self._value(parameter, UNNUMBERED)
+
+    def _delivered(self, parameter: Parameter) -> Parameter:
+        alias = self._aliases.get(parameter.name, Renamed(parameter.name))
+        kind = parameter.kind if alias.kind is None else alias.kind
+        return Parameter(alias.name, float(parameter.default) * alias.factor, kind)
 
     def _value(self, parameter: Parameter, number: int) -> MavMessage:
         value = self._values[parameter.name]

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from onboard.game.scenario import Kind
+from numpy.random import Generator
+
+from onboard.game.scenario import Firmware, Kind
 from onboard.wire.geodesy import Frame, Geodetic
 from onboard.wire.mavlink.signing import Signing
 from sim_bridge.vehicle.motion import Motion
@@ -20,6 +22,13 @@ class Options(NamedTuple):
     battery_s: float = 1200.0  # from full to empty in flight [s]
     parameters: Mapping[str, float] = {}  # in place of the defaults
     signing: Signing | None = None  # of all frames sent; None: frames are not signed
+    throttle: float | None = 0.5  # of the pilot's stick, 0…1 (0.5 centred); None: no transmitter is heard
+    answer_delay_s: tuple[float, float] = (0.0, 0.0)  # least and most time from a command to its answer [s]
+    generator: Generator | None = None  # draws the delays; None: each takes the least
+    batteries: int = 1
+    firmware: Firmware = Firmware.RECORDED
+    gimbal: bool = False  # whether component 154 of the vehicle's own system sends heartbeats
+    other_station_hz: float = 0.0  # rate of all streams that a second ground station asks for [Hz]; 0: none
     healthy_share: float = 0.6  # of `ready_s`, after which the pre-arm bit is set: before arming is accepted
 
     @property

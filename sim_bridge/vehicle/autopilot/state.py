@@ -11,15 +11,18 @@ from collections.abc import Mapping
 from typing import ClassVar
 
 from onboard.core.math.vectors import Vec
+from onboard.game.scenario import Firmware
 from onboard.wire.geodesy import Frame, Geodetic
 from onboard.wire.mavlink.dialect import DialectSender, MavMessage, dialect
 from sim_bridge.vehicle.autopilot.health import Health
 from sim_bridge.vehicle.autopilot.parameters import Parameters
 from sim_bridge.vehicle.autopilot.setup import Setup
 from sim_bridge.vehicle.autopilot.streams import Streams
+from sim_bridge.vehicle.autopilot.transmitter import Transmitter
 from sim_bridge.vehicle.motion import CALM
 
 COMPONENT = 1  # MAV_COMP_ID_AUTOPILOT1
+TEXT_LONGEST = 50  # bytes of one STATUSTEXT; longer texts are sent in chunks
 
 
 class AutopilotState(ABC):
@@ -29,8 +32,7 @@ class AutopilotState(ABC):
     vehicle_type: ClassVar[int]
     modes: ClassVar[Mapping[str, int]]  # names ↔ custom_mode
     default_rates: ClassVar[Mapping[int, float]]  # message number → [Hz]
-    banner: ClassVar[tuple[str, ...]]
-    version: ClassVar[int]  # AUTOPILOT_VERSION.flight_sw_version
+    versions: ClassVar[Mapping[Firmware, tuple[int, int, int]]]  # major, minor, patch
     refused_arming: ClassVar[int]  # result of a refused arm or disarm
     unknown_message: ClassVar[int]  # result of REQUEST_MESSAGE for what it cannot send
     unknown_interval: ClassVar[int]  # … and of SET_MESSAGE_INTERVAL
@@ -43,7 +45,8 @@ class AutopilotState(ABC):
         self.air = CALM
         self.home = setup.home
         self.local = Frame(*setup.origin)
-        self.health = Health(setup.options.battery_s)
+        self.health = Health(setup.options.battery_s, setup.options.batteries)
+        self.transmitter = Transmitter(setup.options.throttle)
         self.parameters = self._new_parameters()
         self.counters: Counter[str] = Counter()
         self.armed = setup.options.airborne
@@ -60,8 +63,30 @@ class AutopilotState(ABC):
     def _boot(self, now_ns: int) -> None:
         """Begin a life of the wire: sequence, time since boot and streams start anew."""
         self._boot_ns = now_ns
+        self._text_number = 0  # of the latest text in chunks
         self._sender = DialectSender(self.system, COMPONENT, signing=self.setup.options.signing)
         self.streams = Streams(self.default_rates, now_ns)
+
+    @property
+    def version(self) -> int:
+        """AUTOPILOT_VERSION.flight_sw_version: of a release (type 255)."""
+        major, minor, patch = self.versions[self.setup.options.firmware]
+        return major << 24 | minor << 16 | patch << 8 | 255
+
+    @property
+    def version_name(self) -> str:
+        """The firmware's version as people write it."""
+        return ".".join(str(part) for part in self.versions[self.setup.options.firmware])
+
+    @property
+    @abstractmethod
+    def banner(self) -> tuple[str, ...]:
+        """What it says at boot and before a listing of parameters."""
+
+    @property
+    @abstractmethod
+    def critical(self) -> bool:
+        """Whether a failsafe is active: HEARTBEAT.system_status then says CRITICAL."""
 
     @property
     @abstractmethod
@@ -81,8 +106,20 @@ class AutopilotState(ABC):
         self._out.append(self._sender.pack(message, self._last_step_ns + self.setup.options.epoch_ns))
 
     def say(self, severity: int, text: str) -> None:
-        """Queue a STATUSTEXT of a MAV_SEVERITY; the text is cut to 50 bytes."""
-        self.emit(dialect.MAVLink_statustext_message(severity, text.encode()[:50]))
+        """Queue a STATUSTEXT of a MAV_SEVERITY; a text above 50 bytes goes out in numbered chunks.
+
+        A last chunk of exactly 50 bytes is followed by an empty one: a chunk without a zero byte goes on.
+        """
+        told = text.encode()
+        if len(told) <= TEXT_LONGEST:
+            self.emit(dialect.MAVLink_statustext_message(severity, told))
+            return
+        self._text_number = self._text_number % 65535 + 1
+        chunks = [told[at : at + TEXT_LONGEST] for at in range(0, len(told), TEXT_LONGEST)]
+        if len(chunks[-1]) == TEXT_LONGEST:
+            chunks.append(b"")
+        for number, chunk in enumerate(chunks):
+            self.emit(dialect.MAVLink_statustext_message(severity, chunk, self._text_number, number))
 
     def outgoing(self) -> list[bytes]:
         """The frames to be sent now, each to every peer; they are handed over once."""

@@ -9,6 +9,7 @@ from onboard.core.math.vectors import Vec, clamp
 from onboard.wire.mavlink.dialect import MavMessage, dialect
 from sim_bridge.vehicle.autopilot import health
 from sim_bridge.vehicle.autopilot.state import AutopilotState
+from sim_bridge.vehicle.autopilot.transmitter import CHANNELS
 
 PX4: int = dialect.MAV_AUTOPILOT_PX4
 MAVLINK_VERSION = 3
@@ -38,7 +39,7 @@ def heartbeat(ap: AutopilotState, now_ns: int) -> MavMessage:
         mode |= dialect.MAV_MODE_FLAG_SAFETY_ARMED
     if not ap.is_mode("STABILIZED" if ap.autopilot_type == PX4 else "STABILIZE"):
         mode |= dialect.MAV_MODE_FLAG_STABILIZE_ENABLED | dialect.MAV_MODE_FLAG_GUIDED_ENABLED
-    if not ap.health.positioned and not ap.landed:
+    if ap.critical:
         status: int = dialect.MAV_STATE_CRITICAL
     else:
         status = dialect.MAV_STATE_ACTIVE if ap.armed else dialect.MAV_STATE_STANDBY
@@ -127,6 +128,32 @@ def battery_status(ap: AutopilotState, now_ns: int) -> MavMessage:
         _i32(used),
         -1,
         round(h.battery * 100.0),
+    )
+    return message
+
+
+def payload_battery(ap: AutopilotState, now_ns: int) -> MavMessage | None:
+    """BATTERY_STATUS of the second battery, which feeds a payload; None where there is none."""
+    charge = ap.health.payload
+    if charge is None:
+        return None
+    cells = [_u16(health.pack_voltage(charge) / health.CELLS * 1e3)] * health.CELLS
+    message: MavMessage = dialect.MAVLink_battery_status_message(
+        1, dialect.MAV_BATTERY_FUNCTION_PAYLOAD, dialect.MAV_BATTERY_TYPE_LIPO, 32767,
+        cells + [UNKNOWN_U16] * (10 - health.CELLS), _i16(health.CURRENT_IDLE * 1e2), -1, -1,
+        round(charge * 100.0),
+    )  # fmt: skip
+    return message
+
+
+def rc_channels(ap: AutopilotState, now_ns: int) -> MavMessage | None:
+    """RC_CHANNELS: what the receiver hears; None where PX4 hears nothing, which then is silent about it."""
+    told = ap.transmitter.channels()
+    heard = ap.transmitter.throttle is not None
+    if not heard and ap.autopilot_type == PX4:
+        return None
+    message: MavMessage = dialect.MAVLink_rc_channels_message(
+        ap.boot_ms(now_ns), CHANNELS if heard else 0, *told, 255
     )
     return message
 
@@ -300,6 +327,7 @@ COMMON: dict[int, Builder] = {
     dialect.MAVLINK_MSG_ID_GLOBAL_POSITION_INT: global_position,
     dialect.MAVLINK_MSG_ID_MISSION_CURRENT: mission_current,
     dialect.MAVLINK_MSG_ID_GPS_GLOBAL_ORIGIN: global_origin,
+    dialect.MAVLINK_MSG_ID_RC_CHANNELS: rc_channels,
     dialect.MAVLINK_MSG_ID_VFR_HUD: vfr_hud,
     dialect.MAVLINK_MSG_ID_BATTERY_STATUS: battery_status,
     dialect.MAVLINK_MSG_ID_AUTOPILOT_VERSION: autopilot_version,
@@ -321,6 +349,7 @@ OF_ARDUPILOT: dict[int, Builder] = {
 # REQUEST_DATA_STREAM, as ArduPilot groups what is simulated here.
 DATA_STREAMS: dict[int, tuple[int, ...]] = {
     dialect.MAV_DATA_STREAM_EXTENDED_STATUS: (1, 24, 42),  # SYS_STATUS, GPS_RAW_INT, MISSION_CURRENT
+    dialect.MAV_DATA_STREAM_RC_CHANNELS: (65,),  # RC_CHANNELS
     dialect.MAV_DATA_STREAM_POSITION: (32, 33),  # LOCAL_POSITION_NED, GLOBAL_POSITION_INT
     dialect.MAV_DATA_STREAM_EXTRA1: (30,),  # ATTITUDE
     dialect.MAV_DATA_STREAM_EXTRA2: (74,),  # VFR_HUD

@@ -31,7 +31,7 @@ from onboard.runtime.resources import configs
 from sim_bridge.vehicle.flight.axis import AxisLaw
 from sim_bridge.vehicle.flight.loop_analysis import closed_loop
 from sim_bridge.vehicle.flight.plane import PathLaw, PathModel, PlaneModel, SpeedLaw
-from sim_bridge.vehicle.flight.transfer import AxisTransfer, check, sampled
+from sim_bridge.vehicle.flight.transfer import AxisTransfer, check, check_wind, sampled
 
 
 class PathName(Enum):
@@ -62,7 +62,7 @@ class PitchFunctions(StrictConfig, frozen=True):
     denominator: Coefficients
     elevator: Coefficients  # [deg]
     wind_x: Coefficients = (0.0,)  # along the heading [m/s]
-    wind_y: Coefficients = (0.0,)  # up [m/s]
+    wind_y: Coefficients = (0.0,)  # up [m/s]; negative: the nose goes down
 
 
 class YawFunctions(StrictConfig, frozen=True):
@@ -70,7 +70,7 @@ class YawFunctions(StrictConfig, frozen=True):
 
     denominator: Coefficients
     rudder: Coefficients  # [deg]
-    wind_z: Coefficients = (0.0,)  # to the right [m/s]
+    wind_z: Coefficients = (0.0,)  # to the right [m/s]; negative: the nose turns left
 
 
 class Loop(StrictConfig, frozen=True):
@@ -193,6 +193,8 @@ def build(spec: Spec, name: str) -> Aircraft:
     yaw = yaw_transfer(spec)
     check(pitch, name, ("pitch.denominator", "pitch.elevator", "pitch.wind_x", "pitch.wind_y"))
     check(yaw, name, ("yaw.denominator", "yaw.rudder", "yaw.wind_z", "yaw"))
+    check_wind(pitch, pitch.wind2, spec.speed.trim, f"{name}: pitch.wind_y")
+    check_wind(yaw, yaw.wind1, spec.speed.trim, f"{name}: yaw.wind_z")
     for key, transfer, loop in (("pitch_loop", pitch, spec.pitch_loop), ("yaw_loop", yaw, spec.yaw_loop)):
         sign = 1.0 if transfer.steady > 0 else -1.0
         if loop.rate_gain * sign <= 0 or loop.integral_gain * sign < 0:

@@ -1,12 +1,18 @@
 """From stability derivatives to transfer functions: the equations of motion (33)–(35).
 
 For users with an aircraft of their own: the result goes into the aircraft's configuration file.
-Angles in degrees, speeds in m/s, as in the paper, with its factor k = 1/57.3 exactly π/180.
+Angles in degrees, speeds in m/s, as in the paper, with its factor k = 1/57.3 exactly π/180. Pitch up,
+w_y up, yaw to the right and w_z to the right are positive; a positive surface turns down or left.
 
-Two readings of what is printed: the third equation of (33) uses one symbol for the coefficients of
-dV_gy/dt and V_gy, here `c_ydd` and `c_yd`; and (34) with +k V_b ω gives the w_y numerator of (36)
-with the sign of −k V_b (only a negative k V_b, −1.396, matches all of (36) at once: the vertical
-axis of its source points the other way). The sign of k V_b is therefore an argument.
+Readings of what is printed (docs/flight-model.md has them all in one table):
+
+* the third equation of (33) uses one symbol for the coefficients of dV_gy/dt and V_gy, here `c_ydd` and
+  `c_yd`;
+* (34) as printed, with w_y upwards, gives the w_y numerator of (36) with the other sign: an updraft
+  pushes the nose down. The source of (36) counts w_y downwards;
+* (35) counts yaw to the left where w_z points to the right. Here yaw is to the right, so w_z enters with the
+  other sign: a gust to the right turns the nose left, into the relative wind;
+* w_z / V_b of (35) is an angle in radians. With the other angles in degrees it is (180/π) w_z / V_b.
 """
 
 from __future__ import annotations
@@ -38,7 +44,6 @@ class Longitudinal(NamedTuple):
     a_theta: float = 0.0  # gravity, per degree, [m/s²]
     a_xd: float = 0.0  # drag [1/s]
     a_yd: float = 0.0
-    upward: float = 1.0  # sign of k V_b: +1 as printed, −1 as (36) was made
 
 
 class Lateral(NamedTuple):
@@ -66,7 +71,7 @@ class Transfer(NamedTuple):
 
 def short_period(d: Longitudinal) -> AxisTransfer:
     """(34): elevator, w_x and w_y to the pitch rate [deg/s]."""
-    turn = d.upward * K * d.speed
+    turn = K * d.speed
     determinant = (1.0, d.b_yd + d.c_theta + turn * d.c_ydd, d.b_yd * d.c_theta + turn * d.c_yd)
     return AxisTransfer(
         determinant,
@@ -77,14 +82,19 @@ def short_period(d: Longitudinal) -> AxisTransfer:
 
 
 def yaw(d: Lateral) -> AxisTransfer:
-    """(35) without roll, as the paper discards it: rudder and w_z to the yaw rate [deg/s]."""
+    """(35) without roll, as the paper discards it: rudder and w_z to the yaw rate [deg/s; right]."""
     determinant = (1.0, d.k_beta + d.n_psi, d.k_beta * d.n_psi + d.n_beta)
     return AxisTransfer(
         determinant,
         surface=(-d.n_rudder, -d.n_rudder * d.k_beta),
-        wind1=(d.n_beta / d.speed, 0.0),
+        wind1=(d.n_beta * slip_per_wind(d), 0.0),
         wind2=(0.0,),
     )
+
+
+def slip_per_wind(d: Lateral) -> float:
+    """β that a side wind to the right makes, yaw counted to the right [deg per m/s]: −(180/π) / V_b."""
+    return -1.0 / (K * d.speed)
 
 
 def longitudinal(d: Longitudinal) -> dict[str, Transfer]:
@@ -92,7 +102,7 @@ def longitudinal(d: Longitudinal) -> dict[str, Transfer]:
 
     Keys: `elevator`, `wind_x`, `wind_y`; all over one denominator of degree four.
     """
-    v = d.upward * K * d.speed
+    v = K * d.speed
     # unknowns: pitch θ [deg], ΔV_gx, V_gy; rows: the three equations; polynomials lowest power first
     system = [
         [_p(d.a_theta), _p(d.a_xd, 1.0), _p(d.a_yd)],
@@ -108,7 +118,7 @@ def longitudinal(d: Longitudinal) -> dict[str, Transfer]:
 
 
 def lateral(d: Lateral) -> dict[str, Transfer]:
-    """All of (35), roll included: rudder, aileron and w_z to the yaw rate [deg/s].
+    """All of (35), roll included: rudder, aileron and w_z to the yaw rate [deg/s; right].
 
     Keys: `rudder`, `aileron`, `wind_z`; all over one denominator.
     """
@@ -118,10 +128,11 @@ def lateral(d: Lateral) -> dict[str, Transfer]:
         [_p(0.0, d.l_psi), _p(d.l_beta), _p(0.0, d.l_gamma, 1.0)],
         [_p(0.0, d.n_psi, 1.0), _p(d.n_beta), _p(0.0, d.n_gamma)],
     ]
+    wind = slip_per_wind(d)
     inputs = {
         "rudder": [_p(0.0), _p(0.0), _p(-d.n_rudder)],
         "aileron": [_p(0.0), _p(-d.l_aileron), _p(0.0)],
-        "wind_z": [_p(d.k_beta / d.speed), _p(d.l_beta / d.speed), _p(d.n_beta / d.speed)],
+        "wind_z": [_p(d.k_beta * wind), _p(d.l_beta * wind), _p(d.n_beta * wind)],
     }
     return _rates(system, inputs, unknown=0)
 

@@ -15,7 +15,7 @@ from typing import NamedTuple
 from onboard.core.math.angles import wrap
 from onboard.core.math.constants import STANDARD_GRAVITY
 from onboard.core.math.vectors import ZERO, Vec, clamp, norm, scale, sub, yaw_of
-from onboard.game.scenario import Kind, VehicleSpec
+from onboard.game.scenario import WINGED, Kind, VehicleSpec
 from sim_bridge.vehicle.motion import CALM, Air, Airframe, Demand, Lateral, Motion
 
 ROLL_RATE = radians(180.0)  # [rad/s] how fast a plane banks
@@ -176,7 +176,7 @@ def crab(course: float, airspeed: float, wind: Vec) -> float:
 def ability_of(spec: VehicleSpec, kind: Kind) -> Ability:
     """Limits of a scenario's vehicle. A plane that names no least speed stalls below 40 % of its speed."""
     limits = spec.limits()
-    stall = STALL_SHARE * spec.speed if kind == Kind.ARDUPLANE and spec.speed_min <= 0.0 else 0.0
+    stall = STALL_SHARE * spec.speed if kind in WINGED and spec.speed_min <= 0.0 else 0.0
     return Ability(
         max(limits.speed_min, stall),
         limits.speed_max,
@@ -189,7 +189,7 @@ def ability_of(spec: VehicleSpec, kind: Kind) -> Ability:
 
 def start_motion(position: Vec, yaw: float, kind: Kind, speed: float, air: Air, airborne: bool) -> Motion:
     """How a vehicle starts: a plane at its airspeed, a multicopter hovering, either at rest on the ground."""
-    if not airborne or kind != Kind.ARDUPLANE:
+    if not airborne or kind not in WINGED:
         return Motion(position, ZERO, norm(air.wind) if airborne else 0.0, 0.0, 0.0, yaw)
     velocity = Vec(speed * cos(yaw) + air.wind.x, speed * sin(yaw) + air.wind.y, air.wind.z)
     return Motion(position, velocity, speed, 0.0, 0.0, yaw)
@@ -198,6 +198,6 @@ def start_motion(position: Vec, yaw: float, kind: Kind, speed: float, air: Air, 
 def kinematic(spec: VehicleSpec, kind: Kind, start: Motion, air: Air = CALM) -> Airframe:
     """The kinematic airframe of a scenario's vehicle: of a plane for ArduPlane, else of a multicopter."""
     ability = ability_of(spec, kind)
-    if kind == Kind.ARDUPLANE:
+    if kind in WINGED:
         return KinematicPlane(ability, start, air)
     return KinematicMulticopter(ability, start)

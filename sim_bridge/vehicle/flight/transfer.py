@@ -17,6 +17,9 @@ from sim_bridge.vehicle.flight import control_toolbox as linear
 from sim_bridge.vehicle.flight.axis import AxisModel
 from sim_bridge.vehicle.flight.control_toolbox import Array
 
+LEAST_SHARE = (
+    0.2  # of the coefficient that the denominator implies: V_b is not exactly known; 57.3 is refused
+)
 ORDER = 2  # of the denominators: the short-period and the yaw motion
 
 
@@ -61,6 +64,38 @@ def check(transfer: AxisTransfer, name: str, keys: tuple[str, str, str, str]) ->
         raise ConfigError(
             f"{name}: {keys[1]}: found a zero at s = 0 (no steady effect), "
             "expected a last coefficient that is not zero"
+        )
+
+
+def weathercock(transfer: AxisTransfer, speed: float) -> float:
+    """What (34) and (35) say of the wind across the path: the leading coefficient to expect [deg/s² per m/s].
+
+    Both have the form v' + b v ± k V ω = b w, ω' + c ω − m v = −m w: the surface's zero is −b, the
+    denominator s² + (b + c) s + b c + k V m, and the wind's numerator −m s. `speed` is V_b [m/s].
+    """
+    lead, first, last = transfer.denominator
+    slope, level = (0.0, 0.0, *transfer.surface)[-2:]
+    lag = level / slope if slope != 0.0 else 0.0
+    return -(last / lead - lag * (first / lead - lag)) / (speed * pi / 180.0)
+
+
+def check_wind(transfer: AxisTransfer, across: tuple[float, ...], speed: float, place: str) -> None:
+    """Refuse the wrong sign or unit of the wind across the path. Raises ConfigError with the reason.
+
+    An updraft pushes the nose down, a gust to the right turns it left; `across` is that numerator, `place`
+    names it. Nothing but zeros is accepted: an aircraft that the wind does not turn.
+    """
+    if not any(across):
+        return
+    expected = weathercock(transfer, speed)
+    if expected >= 0.0:  # the denominator says that it is no weathercock: nothing to compare with
+        return
+    found = (0.0, 0.0, *across)[-2] / transfer.denominator[0]
+    if not LEAST_SHARE * expected >= found >= expected / LEAST_SHARE:
+        raise ConfigError(
+            f"{place}: found {found:.3g} deg/s² per m/s as its coefficient of s, expected about "
+            f"{expected:.3g} by the denominator: the nose turns into the relative wind "
+            "(negative), angles are in degrees"
         )
 
 

@@ -4,17 +4,22 @@ Frozen turbulence met at airspeed V: the longitudinal component is white noise t
 H_u = 1/(1 + τ s), the lateral and vertical ones through (1 + √3 τ s)/(1 + τ s)², with τ = L/V. The
 states are normalised, so that the components have unit variance whatever the time step and while L and V
 change; the rms value multiplies at the end.
+
+Axes: along the mean wind up to 1000 ft, along the body from 2000 ft up; between, the two gusts are
+interpolated over height.
 """
 
 from __future__ import annotations
 
-from math import exp, sqrt
+from math import cos, exp, sin, sqrt
 from typing import NamedTuple
 
 from onboard.core.math.vectors import Vec
 
 FOOT = 0.3048  # [m]
 ROOT3 = sqrt(3.0)
+LOW = 1000.0 * FOOT  # [m] up to here gusts lie along the mean wind
+MEDIUM = 2000.0 * FOOT  # [m] from here on along the body
 SLOWEST = 1.0  # [m/s] gusts pass a vehicle at rest this fast
 
 
@@ -128,9 +133,44 @@ def step_gust(state: GustState, airspeed: float, height: float, dt: float, noise
     )
 
 
-def gust_of(state: GustState, sigma: float, axis_x: float, axis_y: float) -> Vec:
-    """The gust [m/s; NED]: longitudinal along the level unit vector (axis_x, axis_y), rms `sigma` an axis."""
+class GustAxes(NamedTuple):
+    """Along what a vehicle's gusts are longitudinal."""
+
+    wind_x: float  # level unit vector along the mean wind [NED]
+    wind_y: float
+    yaw: float  # of the nose [rad]
+    pitch: float  # of the nose [rad, up]
+    height: float  # above ground [m]
+
+
+def body_share(height: float) -> float:
+    """Share of the body's axes at `height` above ground [m]: 0 to 1000 ft, 1 from 2000 ft, linear between."""
+    if height <= LOW:
+        return 0.0
+    if height >= MEDIUM:
+        return 1.0
+    return (height - LOW) / (MEDIUM - LOW)
+
+
+def gust_of(state: GustState, sigma: float, axes: GustAxes) -> Vec:
+    """The gust [m/s; NED], rms `sigma` an axis below 1000 ft and above 2000 ft.
+
+    Between, the gust in the mean wind's axes and that in the body's are interpolated, as the standard has
+    it. The body's lateral axis is taken level: above 2000 ft the lateral and the vertical gust have one
+    spectrum, so that a bank changes neither.
+    """
     u = sigma * state.u
     v = sigma * (ROOT3 * state.v1 + (1.0 - ROOT3) * state.v2)
     w = sigma * (ROOT3 * state.w1 + (1.0 - ROOT3) * state.w2)
-    return Vec(u * axis_x - v * axis_y, u * axis_y + v * axis_x, w)
+    share = body_share(axes.height)
+    low = 1.0 - share
+    c = cos(axes.yaw)
+    s = sin(axes.yaw)
+    up = sin(axes.pitch)
+    level = cos(axes.pitch)
+    along = u * level + w * up  # of the body's u and w, level and along the heading
+    return Vec(
+        low * (u * axes.wind_x - v * axes.wind_y) + share * (along * c - v * s),
+        low * (u * axes.wind_y + v * axes.wind_x) + share * (along * s + v * c),
+        low * w + share * (w * level - u * up),
+    )

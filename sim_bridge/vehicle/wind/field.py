@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from onboard.core.math.vectors import ZERO, Vec, unit
 from onboard.game.scenario import WindSpec
-from sim_bridge.vehicle.motion import CALM, Air
-from sim_bridge.vehicle.wind.dryden import GustNoise, GustState, first_gust, gust_of, step_gust
+from sim_bridge.vehicle.motion import CALM, Air, Motion
+from sim_bridge.vehicle.wind.dryden import GustAxes, GustNoise, GustState, first_gust, gust_of, step_gust
 from sim_bridge.vehicle.wind.recorded import RecordedWind, read
 from sim_bridge.vehicle.wind.shear import ROUGHNESS, mean_wind
 
@@ -59,11 +59,13 @@ class WindField:
         self._states = [GustState(0.0, 0.0, 0.0, 0.0, 0.0)] * count
         self._started = False
 
-    def air(self, vehicle: int, position: Vec, airspeed: float, time: float) -> Air:
-        """The air at vehicle number `vehicle` (from 0) at `position` [m; NED] and `time` [s; never falls].
+    def air(self, vehicle: int, motion: Motion, time: float) -> Air:
+        """The air at vehicle number `vehicle` (from 0) in `motion` at `time` [s; never falls].
 
-        `airspeed` [m/s] is how fast it meets the gusts. Ground is at the height of the game's origin.
+        Its airspeed is how fast it meets the gusts, and above 1000 ft they lie along its nose. Ground is at
+        the height of the game's origin.
         """
+        position = motion.position
         if self._recorded is not None:
             return self._recorded.at(time)
         height = -position.z
@@ -71,9 +73,10 @@ class WindField:
         if self._sigma <= 0.0:
             return CALM if wind == ZERO else Air(wind, ZERO)
         self._places[vehicle] = position
-        self._speeds[vehicle] = airspeed
+        self._speeds[vehicle] = motion.airspeed
         self._advance(int(time / TICK + 1e-6))
-        return Air(wind, gust_of(self._states[vehicle], self._sigma, *self._axis))
+        axes = GustAxes(*self._axis, motion.yaw, motion.pitch, height)
+        return Air(wind, gust_of(self._states[vehicle], self._sigma, axes))
 
     def _advance(self, tick: int) -> None:
         if not self._started:

@@ -18,7 +18,7 @@ from onboard.game.scenario import load
 from onboard.runtime.loop import run_virtual, virtual_clock
 from onboard.runtime.resources import configs
 from onboard.wire.bus.messages import Role
-from sim_bridge.rehearsal import Rehearsal
+from sim_bridge.rehearsal import Options, Rehearsal
 
 
 def fly(folder: Path, seconds: float) -> Path:
@@ -26,7 +26,7 @@ def fly(folder: Path, seconds: float) -> Path:
     scenario = load(configs() / "scenarios" / "flight" / "one-on-one.toml")
 
     async def play() -> None:
-        async with Rehearsal(scenario, virtual_clock(), folder=folder):
+        async with Rehearsal(scenario, virtual_clock(), Options(folder=folder)):
             await asyncio.sleep(seconds)
 
     run_virtual(play())

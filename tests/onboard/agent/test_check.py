@@ -10,6 +10,7 @@ import pytest
 from onboard.agent.config import AgentConfig
 from onboard.agent.preflight import Mark, Row, Sight, judge, table
 from onboard.autopilot.base import Telemetry
+from onboard.runtime.bus_security import BusSecurity, Lock
 from onboard.wire.mavlink.modes import Kind
 from tests.support.real_time import patience
 
@@ -82,6 +83,13 @@ def test_each_trouble_has_its_row_with_what_to_do(
 
 def test_in_the_field_an_unsigned_link_is_a_warning() -> None:
     assert row(GOOD, "signing key", AgentConfig(field=True)).mark is Mark.WARN
+
+
+def test_the_lock_of_the_bus_has_a_row_of_its_own() -> None:
+    opened = GOOD._replace(lock=BusSecurity(Lock.OPEN, "OPEN: whoever reaches tcp/10.0.0.1:7447 takes part"))
+    assert row(opened, "bus lock", AgentConfig(field=True, open_bus=True)).mark is Mark.WARN
+    locked = GOOD._replace(lock=BusSecurity(Lock.KEYS, "locked: vehicle-2.1 in field range, 30 days left"))
+    assert row(locked, "bus lock").mark is Mark.PASS
 
 
 @pytest.mark.real

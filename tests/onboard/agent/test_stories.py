@@ -9,11 +9,12 @@ from onboard.autopilot.base import Stage
 from onboard.game.scenario import Kind
 from onboard.runtime.impairment import CLEAR, CUT
 from onboard.wire.bus.messages import AgentStage, Phase
+from tests.support.flown_autopilot import FLOWN
 from tests.support.small_scenarios import EVADER, MATE, PURSUER, chase, fenced, lossy
 from tests.support.virtual_time import virtual
 from tests.support.whole_games import autopilot, choose_mode, flies, game_of, mode, place, speed, under_way
 
-KINDS = pytest.mark.parametrize("kind", list(Kind), ids=lambda kind: kind.value)
+KINDS = pytest.mark.parametrize("kind", FLOWN, ids=lambda kind: kind.value)
 GUIDED = {Kind.PX4: "OFFBOARD", Kind.ARDUCOPTER: "GUIDED", Kind.ARDUPLANE: "GUIDED"}
 HOLD = {Kind.PX4: "HOLD", Kind.ARDUCOPTER: "LOITER", Kind.ARDUPLANE: "LOITER"}
 

@@ -24,10 +24,10 @@ from onboard.wire.mavlink.commands import Outgoing, SetpointMessage, Target
 from onboard.wire.mavlink.frames import Framer, Sender
 from onboard.wire.mavlink.modes import Kind as Autopilot
 from onboard.wire.mavlink.values import CommandAck, Heartbeat, Timesync
-from tests.support.flown_autopilot import ORIGIN, FlownAutopilot
+from tests.support.flown_autopilot import FLOWN, ORIGIN, FlownAutopilot
 
-KINDS = pytest.mark.parametrize("kind", list(Kind), ids=lambda kind: kind.value)
-HOLD = {Kind.PX4: "HOLD", Kind.ARDUCOPTER: "LOITER", Kind.ARDUPLANE: "LOITER"}
+KINDS = pytest.mark.parametrize("kind", FLOWN, ids=lambda kind: kind.value)
+HOLD = {Kind.PX4: "HOLD", Kind.ARDUCOPTER: "BRAKE", Kind.ARDUPLANE: "LOITER"}
 GUIDED = {Kind.PX4: "OFFBOARD", Kind.ARDUCOPTER: "GUIDED", Kind.ARDUPLANE: "GUIDED"}
 
 

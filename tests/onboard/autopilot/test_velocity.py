@@ -162,7 +162,7 @@ def test_a_pilot_who_changes_the_mode_while_we_ask_is_obeyed() -> None:
 @pytest.mark.parametrize(
     ("way", "px4_mode", "copter_mode"),
     [
-        (ReleaseMode.HOLD, "HOLD", "LOITER"),
+        (ReleaseMode.HOLD, "HOLD", "BRAKE"),
         (ReleaseMode.RETURN, "RTL", "RTL"),
         (ReleaseMode.LAND, "LAND", "LAND"),
     ],

@@ -6,6 +6,7 @@ from collections import Counter
 from itertools import pairwise
 from typing import Any
 
+import msgspec
 import pytest
 
 from onboard.core.math.constants import NS_PER_S
@@ -225,9 +226,47 @@ def test_an_agent_lost_in_the_countdown_takes_everybody_back_to_staging() -> Non
     assert field.master.phase is Phase.RUNNING
 
 
+def acting(field: Range, id: int) -> None:
+    """The agent flies."""
+    field.agents[id] = health(id, AgentStage.ACTING)
+    field.fly(0.5)
+
+
+@pytest.mark.parametrize(
+    ("flew", "dead_s", "changes"),
+    [
+        (True, 4.0, {"mode": "LOITER"}),
+        (True, 4.0, {"mode": "RTL"}),
+        (True, 4.0, {"autopilot": None, "mode": ""}),
+        (True, 4.0, {"autopilot": Kind.PX4_MULTICOPTER, "mode": "HOLD"}),
+        (True, 11.0, {}),
+        (False, 4.0, {}),
+    ],
+)
+def test_a_restarted_agent_that_finds_its_vehicle_otherwise_needs_a_person(
+    flew: bool, dead_s: float, changes: dict[str, object]
+) -> None:
+    field = Range()
+    field.begin()
+    if flew:
+        acting(field, 3)
+    del field.agents[3]
+    field.fly(dead_s)
+    waiting = health(3, AgentStage.WAITING, nonce=999)
+    field.agents[3] = msgspec.structs.replace(waiting, **changes)
+    field.fly(3.0)
+    assert not any(phase.resume for phase in field.phases())
+    if changes.get("autopilot", True):
+        assert sum("a person's resume is needed" in line for line in field.news) == 1
+    field.agents[3] = health(3, AgentStage.ACTING, nonce=999)  # the person has spoken
+    field.fly(1.0)
+    assert field.phases()[-1].phase is Phase.RUNNING
+
+
 def test_a_restarted_agent_acts_again_only_with_the_masters_word() -> None:
     field = Range()
     field.begin()
+    acting(field, 3)
     del field.agents[3]
     field.fly(4.0)
     assert field.news[-1] == "agent 3 is silent"
@@ -244,6 +283,7 @@ def test_a_restarted_agent_acts_again_only_with_the_masters_word() -> None:
 def test_a_restart_within_one_heartbeat_is_a_restart_and_not_a_double() -> None:
     field = Range()
     field.begin()
+    acting(field, 3)
     field.agents[3] = health(3, AgentStage.WAITING, nonce=999)
     field.fly(1.0)
     assert field.phases()[-1].resume == ()  # the old process might still be alive

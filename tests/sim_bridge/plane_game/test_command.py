@@ -70,6 +70,20 @@ def test_table_1_comes_out_as_in_the_paper_at_every_time_step(dt: str) -> None:
     assert (ended.code, ended.err) == (0, "")
 
 
+def test_the_claim_names_its_horizon_and_where_it_ends() -> None:
+    """An evader that still flies at the horizon has escaped without arriving: a longer one lets it arrive."""
+    said = command("--dt", "0.05").out.rstrip().splitlines()[-1]
+    assert said == (
+        "30 of 30 verdicts as in the paper, within a horizon of 100 s"
+        " (30 of 30 hold from 55.7 to 120.4 s only: --horizon)"
+    )
+    for horizon, agree in (("55.6", 29), ("55.8", 30), ("120.3", 30), ("120.5", 29), ("200", 28)):
+        ended = command("--horizon", horizon)
+        last = ended.out.rstrip().splitlines()[-1]
+        assert last.startswith(f"{agree} of 30 verdicts as in the paper, within a horizon of {horizon} s")
+        assert ended.code == (0 if agree == 30 else 1)
+
+
 @pytest.mark.real
 def test_the_program_alone_plays_the_ten_rows_in_any_folder(tmp_path: Path) -> None:
     ended = process("--dt", "0.1", folder=tmp_path)
@@ -191,6 +205,8 @@ def test_a_bad_file_among_good_ones_is_found_before_anything_is_played(tmp_path:
     ("options", "said"),
     [
         (["--dt", "0"], "--dt: found 0.0, expected a time step in (0, 1] s"),
+        (["--horizon", "0"], "--horizon: found 0.0, expected a time in (0, 100000] s"),
+        (["--horizon", "nan"], "--horizon: found nan, expected a time in (0, 100000] s"),
         (["--dt", "nan"], "--dt: found nan, expected a time step in (0, 1] s"),
         (["--strategy", "magic"], "strategy: found 'magic', expected one of: paper, predictive"),
         (["--animate", "film.txt"], "--animate: found 'film.txt', expected a name ending in .gif or .mp4"),

@@ -10,7 +10,7 @@ import pytest
 from onboard.config.strict import ConfigError
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import ZERO, Vec, distance, norm
-from onboard.game.scenario import AirframeKind, Flight, Kind, Scenario, VehicleSpec
+from onboard.game.scenario import WINGED, AirframeKind, Flight, Kind, Scenario, VehicleSpec
 from onboard.runtime.clock import VirtualClock
 from onboard.runtime.links import MemoryLink, memory_pair
 from onboard.runtime.loop import EPOCH_NS, run_virtual, virtual_clock
@@ -28,7 +28,7 @@ POSITION = dialect.MAVLINK_MSG_ID_GLOBAL_POSITION_INT
 
 def three(kind: Kind, **flight: object) -> Scenario:
     """An evader and two pursuers, spread out, 100 m up."""
-    fast = kind is Kind.ARDUPLANE
+    fast = kind in WINGED
     evader = VehicleSpec(position=(0.0, 0.0, 100.0), speed=20.0 if fast else 4.0, target=(900.0, 0.0, 100.0))
     pursuers = tuple(
         VehicleSpec(position=(500.0, 300.0 * side, 100.0), speed=22.0 if fast else 5.0) for side in (-1, 1)
@@ -78,7 +78,7 @@ async def test_multicopters_hover_and_planes_keep_flying() -> None:
         before = sky.world.motions
         await sky.fly(20.0)
         for id, motion in sky.world.motions.items():
-            if kind is Kind.ARDUPLANE:
+            if kind in WINGED:
                 assert motion.airspeed == pytest.approx(20.0 if id == 1 else 22.0, abs=2.0)
                 assert motion.position.z == pytest.approx(-100.0, abs=10.0)
             else:

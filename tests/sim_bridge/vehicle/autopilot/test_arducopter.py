@@ -196,12 +196,18 @@ def test_a_mode_flown_by_hand_goes_on() -> None:
 def test_a_low_battery_acts_as_its_parameter_says() -> None:
     flown = guided(parameters={"BATT_FS_LOW_ACT": 2})
     flown.autopilot.set_battery(0.05)
+    chase(flown, Vec(1.0, 0.0, 0.0), 9.5)
+    assert flown.mode == "GUIDED"  # BATT_LOW_TIMER has not passed
     chase(flown, Vec(1.0, 0.0, 0.0), 1.0)
     assert flown.mode == "RTL"
-    assert flown.texts()[-1].startswith("Battery 1 is low")
+    assert [t.split(" used")[0] for t in flown.texts()[-2:]] == [
+        "Battery 1 is low 10.30V",
+        "Battery Failsafe",
+    ]
+    assert flown.forward(1.0).last("HEARTBEAT").system_status == 5
     quiet = guided()
     quiet.autopilot.set_battery(0.05)
-    assert chase(quiet, Vec(1.0, 0.0, 0.0), 1.0).mode == "GUIDED"
+    assert chase(quiet, Vec(1.0, 0.0, 0.0), 12.0).mode == "GUIDED"
 
 
 def test_return_climbs_first_and_home_may_be_moved() -> None:

@@ -53,7 +53,6 @@ def test_the_state_space_has_the_printed_poles_zeros_and_steady_gains(aircraft: 
 def test_the_printed_constants_give_the_known_figures(aircraft: Aircraft) -> None:
     assert aircraft.pitch.steady == pytest.approx(-1.213)
     assert aircraft.yaw.steady == pytest.approx(-0.75 / 4.2)
-    assert aircraft.yaw.wind1[-1] / aircraft.yaw.denominator[-1] == pytest.approx(0.0417, abs=1e-4)
     poles = np.roots(aircraft.pitch.denominator)
     assert abs(poles[0]) == pytest.approx(2.682, abs=1e-3)
     assert -poles[0].real / abs(poles[0]) == pytest.approx(0.720, abs=1e-3)
@@ -119,23 +118,24 @@ def test_the_frequency_response_agrees_with_python_control(aircraft: Aircraft, a
 def test_equations_34_recover_36() -> None:
     lead = 0.139
     b_yd = 1.213 / 0.753
-    turn = -1.396  # k V_b, with the sign that (36) was made with
+    turn = 1.396  # k V_b
     c_delta = 0.753 / lead
     # the two unknown coefficients of V_gy follow from the damping and from the numerator of w_y
     c_theta = 1.2
     c_ydd = (0.537 / lead - b_yd - c_theta) / turn
-    c_yd = b_yd * c_ydd - 0.355 / lead
+    c_yd = b_yd * c_ydd + 0.355 / lead
     found = short_period(
-        Longitudinal(1.396 / K, b_yd, c_theta, c_delta, c_ydd, c_yd, c_xd=0.057 / lead / b_yd, upward=-1.0)
+        Longitudinal(turn / K, b_yd, c_theta, c_delta, c_ydd, c_yd, c_xd=0.057 / lead / b_yd)
     )
     np.testing.assert_allclose(np.array(found.denominator) * lead, [lead, 0.537, 1.0], atol=2e-3)
     np.testing.assert_allclose(np.array(found.surface) * lead, [-0.753, -1.213], atol=1e-12)
-    np.testing.assert_allclose(np.array(found.wind2) * lead, [0.355, 0.0], atol=1e-12)
+    # the source of (36) has w_y downwards: an updraft pushes the nose down
+    np.testing.assert_allclose(np.array(found.wind2) * lead, [-0.355, 0.0], atol=1e-12)
     assert found.wind1[-1] * lead == pytest.approx(0.057)
 
 
-def test_the_sign_printed_in_34_turns_the_sign_of_the_vertical_wind() -> None:
-    """With +k V_b no choice of c_θ gives both the denominator and the w_y numerator of (36)."""
+def test_no_aircraft_of_34_has_the_sign_of_w_y_that_36_prints() -> None:
+    """With w_y upwards no choice of c_θ gives both the denominator and the printed w_y numerator of (36)."""
     lead = 0.139
     b_yd = 1.213 / 0.753
     damping, stiffness = 0.537 / lead, 1.0 / lead
@@ -144,14 +144,16 @@ def test_the_sign_printed_in_34_turns_the_sign_of_the_vertical_wind() -> None:
     assert product / (0.355 / lead) == pytest.approx(-1.396, abs=1e-2)
 
 
-def test_equations_35_without_roll_recover_37_but_for_the_constant_of_w_z() -> None:
+def test_equations_35_without_roll_recover_37_but_for_the_unit_and_the_constant_of_w_z() -> None:
+    """0.072 is n_β / V_b in rad/s per m/s, with yaw to the left; in degrees to the right −4.125."""
     k_beta = 0.75 / 4.5
     n_psi = 1.1 - k_beta
     n_beta = 4.2 - k_beta * n_psi
     found = yaw(Lateral(n_beta / 0.072, k_beta, n_beta, n_psi, 4.5))
     np.testing.assert_allclose(found.denominator, [1.0, 1.1, 4.2], atol=1e-12)
     np.testing.assert_allclose(found.surface, [-4.5, -0.75], atol=1e-12)
-    assert found.wind1[0] == pytest.approx(0.072)
+    assert found.wind1[0] == pytest.approx(-0.072 * 180.0 / pi)
+    assert found.wind1[0] == pytest.approx(named("nose").yaw.wind1[0], rel=1e-4)
     assert found.wind1[1] == 0.0  # a uniform wind turns nobody: the printed 0.175 cannot come from here
 
 

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from onboard.config.strict import ConfigError
 from onboard.core.math.vectors import ZERO, Vec, norm
 from onboard.game.scenario import WindSpec
+from sim_bridge.vehicle.motion import Motion
 from sim_bridge.vehicle.wind.dryden import power12, scales
 from sim_bridge.vehicle.wind.field import TICK, WindField, wind_vector
 from sim_bridge.vehicle.wind.recorded import read
@@ -24,6 +25,11 @@ SPEED = 45.0
 PLACE = Vec(0.0, 0.0, -HEIGHT)
 
 
+def north(place: Vec) -> Motion:
+    """Level flight to the north."""
+    return Motion(place, Vec(SPEED, 0.0, 0.0), SPEED, 0.0, 0.0, 0.0)
+
+
 def gusts(spec: WindSpec, seed: int, count: int, seconds: float) -> np.ndarray:
     """(ticks, count, 3): north = along, east = across, down."""
     field = WindField(spec, seed, count)
@@ -31,7 +37,7 @@ def gusts(spec: WindSpec, seed: int, count: int, seconds: float) -> np.ndarray:
     out = np.empty((ticks, count, 3))
     for k in range(ticks):
         for i in range(count):
-            out[k, i] = field.air(i, PLACE, SPEED, k * TICK).gust
+            out[k, i] = field.air(i, north(PLACE), k * TICK).gust
     return out
 
 
@@ -53,7 +59,7 @@ def test_the_rms_does_not_depend_on_how_the_scale_changes() -> None:
     for k in range(30_000):
         height = 150.0 + 140.0 * sin(k * 0.003)
         squares += [
-            sum(x * x for x in field.air(i, Vec(0.0, 0.0, -height), SPEED, k * TICK).gust) for i in range(6)
+            sum(x * x for x in field.air(i, north(Vec(0.0, 0.0, -height)), k * TICK).gust) for i in range(6)
         ]
     assert sqrt(float(np.mean(squares)) / 3.0) == pytest.approx(3.0, rel=0.05)
 
@@ -89,26 +95,26 @@ def test_the_same_seed_gives_the_same_wind_whatever_the_time_step() -> None:
     spec = WindSpec(speed=5.0, from_deg=300.0, gust_sigma=3.0)
     fine, coarse, other = (WindField(spec, seed, 2) for seed in (3, 3, 4))
     for k in range(400):
-        a = fine.air(0, PLACE, SPEED, k * 0.01)
-        fine.air(1, PLACE, SPEED, k * 0.01)
+        a = fine.air(0, north(PLACE), k * 0.01)
+        fine.air(1, north(PLACE), k * 0.01)
         if k % 4 == 0:
-            coarse.air(1, PLACE, SPEED, k * 0.01)
-            assert coarse.air(0, PLACE, SPEED, k * 0.01) == a
-    assert other.air(0, PLACE, SPEED, 3.96) != a
+            coarse.air(1, north(PLACE), k * 0.01)
+            assert coarse.air(0, north(PLACE), k * 0.01) == a
+    assert other.air(0, north(PLACE), 3.96) != a
 
 
 def test_a_vehicle_more_changes_nobody_s_wind() -> None:
     spec = WindSpec(gust_sigma=3.0)
     few, many = WindField(spec, 3, 2), WindField(spec, 3, 6)
     for k in range(100):
-        assert few.air(1, PLACE, SPEED, k * TICK) == many.air(1, PLACE, SPEED, k * TICK)
+        assert few.air(1, north(PLACE), k * TICK) == many.air(1, north(PLACE), k * TICK)
 
 
 def test_neighbours_meet_the_same_gusts_and_strangers_do_not() -> None:
     field = WindField(WindSpec(gust_sigma=3.0, correlation_m=200.0), 9, 3)
     places = [PLACE, Vec(20.0, 0.0, -HEIGHT), Vec(4000.0, 0.0, -HEIGHT)]
     series = np.array(
-        [[field.air(i, places[i], SPEED, k * TICK).gust for i in range(3)] for k in range(20_000)]
+        [[field.air(i, north(places[i]), k * TICK).gust for i in range(3)] for k in range(20_000)]
     )
     for axis in range(3):
         correlation = np.corrcoef(series[:, :, axis].T)
@@ -128,17 +134,17 @@ def test_the_shear_profile_is_the_standard_s(height: float) -> None:
 
 def test_the_mean_wind_comes_from_where_it_is_said_to() -> None:
     field = WindField(WindSpec(speed=5.0, from_deg=270.0, shear=True), 0, 1)
-    at_reference = field.air(0, Vec(0.0, 0.0, -6.096), SPEED, 0.0).wind
+    at_reference = field.air(0, north(Vec(0.0, 0.0, -6.096)), 0.0).wind
     assert at_reference.y == pytest.approx(5.0)  # a west wind blows east
     assert at_reference.x == pytest.approx(0.0, abs=1e-12)
-    high = field.air(0, Vec(0.0, 0.0, -200.0), SPEED, 0.0)
+    high = field.air(0, north(Vec(0.0, 0.0, -200.0)), 0.0)
     assert norm(high.wind) > norm(at_reference)
     assert high.gust == ZERO
     assert wind_vector(5.0, 0.0).x == -5.0
 
 
 def test_no_wind_is_calm() -> None:
-    assert WindField(WindSpec(), 0, 1).air(0, PLACE, SPEED, 12.0) == (ZERO, ZERO)
+    assert WindField(WindSpec(), 0, 1).air(0, north(PLACE), 12.0) == (ZERO, ZERO)
 
 
 @settings(max_examples=50, deadline=None)
@@ -158,8 +164,8 @@ def test_a_recorded_wind_is_flown_as_recorded(tmp_path: Path) -> None:
     path = tmp_path / "wind.csv"
     path.write_text("time,north,east,down\n0,1,0,0\n10,3,-2,0\n", encoding="utf-8")
     field = WindField(WindSpec(recorded="wind.csv"), 0, 1, tmp_path)
-    assert field.air(0, PLACE, SPEED, 5.0).wind == Vec(2.0, -1.0, 0.0)
-    assert field.air(0, PLACE, SPEED, 99.0).wind == Vec(3.0, -2.0, 0.0)
+    assert field.air(0, north(PLACE), 5.0).wind == Vec(2.0, -1.0, 0.0)
+    assert field.air(0, north(PLACE), 99.0).wind == Vec(3.0, -2.0, 0.0)
     path.write_text("time,north,east,down,gust_north,gust_east,gust_down\n0,1,0,0,.5,0,0\n", encoding="utf-8")
     assert read(path).at(0.0).gust == Vec(0.5, 0.0, 0.0)
 

@@ -1,0 +1,95 @@
+"""Bounds on how much of one kind one sender may bring: token buckets. What is over them is counted by kind.
+
+Time is an argument. A bucket is small, and their number is bounded: who is heard beyond it shares one.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, OrderedDict
+from collections.abc import Hashable
+from typing import NamedTuple
+
+from onboard.wire.bus.topics import ID, TOPICS, Delivery
+
+BUCKETS_MAX = 1024
+PAYLOAD_MAX = 65_536  # [bytes] of a message on the bus: none of the table comes near it
+
+
+class Rate(NamedTuple):
+    """A bound: so many a second on the long run, and so many at once."""
+
+    per_s: float
+    burst: float
+
+
+LATEST_FACTOR = 5.0  # a topic's nominal rate times this, for late packets that come together
+KEPT = Rate(100.0, 512.0)  # events and cached values; all that a publisher keeps comes at once
+ASKED = Rate(100.0, 100.0)  # orders to one vehicle
+FOREIGN = Rate(100.0, 100.0)  # keys that the table does not have, all together
+FROM_AUTOPILOT = Rate(2000.0, 500.0)  # datagrams of a link, from whom setpoints are sent to
+FROM_OTHERS = Rate(500.0, 250.0)  # datagrams of a link, from all others together
+
+
+class _Bucket:
+    """What is left of a bound."""
+
+    __slots__ = ("at", "left")
+
+    def __init__(self, burst: float, now: float) -> None:
+        self.left = burst
+        self.at = now
+
+
+class RateLimit:
+    """One bucket for each sender and kind."""
+
+    def __init__(self) -> None:
+        self.limited: Counter[str] = Counter()  # by kind
+        self._buckets: OrderedDict[Hashable, _Bucket] = OrderedDict()
+
+    def admits(self, sender: Hashable, kind: str, rate: Rate, now: float) -> bool:
+        """Whether one more of a kind from a sender at `now` [s; steady] is within its bound."""
+        key = (sender, kind)
+        bucket = self._buckets.get(key)
+        if bucket is None:
+            if len(self._buckets) >= BUCKETS_MAX:
+                key = ("", "")  # the rest share one
+            bucket = self._buckets.setdefault(key, _Bucket(rate.burst, now))
+        left = min(rate.burst, bucket.left + (now - bucket.at) * rate.per_s)
+        bucket.at = now
+        if left < 1.0:
+            bucket.left = left
+            self.limited[kind] += 1
+            return False
+        bucket.left = left - 1.0
+        return True
+
+
+class BusLimit:
+    """The bounds of the bus: for each key, which names the sender and the kind."""
+
+    def __init__(self) -> None:
+        self._limit = RateLimit()
+
+    def admits(self, key: str, size: int, now: float) -> bool:
+        """Whether a message of `size` bytes on a key is within its bound."""
+        place = TOPICS.find(key)
+        if size > PAYLOAD_MAX:
+            self._limit.limited["payload"] += 1
+            return False
+        if place is None:
+            return self._limit.admits("", "foreign", FOREIGN, now)
+        kind = place.topic.suffix.replace(f"/{ID}", "").replace("/", "_")
+        return self._limit.admits(key, kind, rate_of(place.topic.delivery, place.topic.rate_hz), now)
+
+    def counters(self) -> dict[str, int]:
+        """How many were over their bound, by kind: `limited_KIND`."""
+        return {f"limited_{kind}": number for kind, number in self._limit.limited.items()}
+
+
+def rate_of(delivery: Delivery, nominal_hz: float) -> Rate:
+    """The bound of a topic's key."""
+    if delivery is Delivery.LATEST:
+        rate = max(nominal_hz, 2.0) * LATEST_FACTOR
+        return Rate(rate, rate)
+    return ASKED if delivery is Delivery.REQUEST else KEPT
