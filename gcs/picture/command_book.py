@@ -81,8 +81,10 @@ class CommandBook:
         now_ns: int,
         quotes: Mapping[int, Quote] = MappingProxyType({}),
     ) -> None:
-        """Enter a command to `ids`, with what each quotes: fixed now, however often it is sent. It supersedes what is open to them, but for one thing: nothing that
-        sets a vehicle off supersedes an abort that is not confirmed yet."""
+        """Enter a command to `ids`, with what each quotes: fixed now, however often it is sent.
+
+        It supersedes what is open to them, but for one thing: nothing that sets a vehicle off supersedes an
+        abort that is not confirmed yet."""
         if command.command_id in self._orders:
             return
         order = _Order(command, ids, now_ns, quotes)

@@ -153,7 +153,9 @@ class BusView:
         self.phase = phase
         self.masters.game_runs = phase.phase is Phase.RUNNING
 
-    def _wait(self, who: Who, text: str, setup: Setup | None = None, phase: PhaseChange | None = None) -> None:
+    def _wait(
+        self, who: Who, text: str, setup: Setup | None = None, phase: PhaseChange | None = None
+    ) -> None:
         """Keep what another than the master says: it may come to lead."""
         if self.masters.leader is not None and self.masters.holds(self._now.s):
             self._trouble("two_masters", text)
