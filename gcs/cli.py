@@ -150,7 +150,8 @@ def game_run(
     from onboard.game.scenario import load
 
     found, played = options.settings(), load(scenario)
-    return _play(programs.play(found, played, plain=bool(options.plain), auto_start=start, takes_over=take_over))
+    plain = bool(options.plain)
+    return _play(programs.play(found, played, plain=plain, auto_start=start, takes_over=take_over))
 
 
 @keys_app.command("init")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from msgspec.structs import replace
 
+from onboard.runtime.clock import SteadyClock
 from onboard.runtime.loop import EPOCH_NS
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import AgentStage, Phase, RulesMessage
@@ -132,3 +133,22 @@ def test_a_new_stream_from_a_minute_ago_or_from_the_future_is_still_refused() ->
         framer = Framer(signing=Signing(KEY, MemoryStore()))
         assert not framer.feed(frame, EPOCH_NS)
         assert framer.causes[f"signature_{cause.value}"] == 1
+
+
+class Set:
+    """A machine's clocks, whose wall time is set by a person or by NTP."""
+
+    wall, steady = 5_000, 1_000
+
+    def wall_ns(self) -> int:
+        return self.wall
+
+    def monotonic_ns(self) -> int:
+        return self.steady
+
+
+def test_a_simulation_lives_on_steady_time() -> None:
+    machine = Set()
+    clock = SteadyClock(machine)
+    machine.wall, machine.steady = machine.wall + HOUR_NS, machine.steady + 50
+    assert (clock.wall_ns(), clock.monotonic_ns()) == (5_050, 1_050)

@@ -20,7 +20,8 @@ class CommandDesk:
         self, config: AgentConfig, nonce: int, orders: Orders, flight: Flight, out: Outbox, journal: Journal
     ) -> None:
         self.config = config
-        self._nonce, self._orders, self._flight, self._out, self._journal = nonce, orders, flight, out, journal
+        self._nonce, self._orders, self._flight = nonce, orders, flight
+        self._out, self._journal = out, journal
         self._vehicle, self._bus = flight.vehicle, flight.bus
         self._said = Words()
         self.number = 0

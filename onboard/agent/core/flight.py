@@ -185,7 +185,7 @@ class Flight:
             self._judge(ZERO, self._input(now, telemetry))
 
     def leave(self, now: float) -> None:
-        """The process ends: leave the vehicle in a mode that the autopilot holds alone, or on its way home."""
+        """The process ends: leave the vehicle in a mode that the autopilot holds alone, or going home."""
         self.ending, self.open = True, None
         self._judge(ZERO, self._input(now, self.vehicle.look(now)))
 
@@ -267,7 +267,7 @@ class Flight:
     # ------------------------------------------------------------------ before and after the part
 
     def _stand_by(self, now: float, t: Telemetry, state: PartState) -> None:
-        """Take control when the part is about to begin; what is or becomes ours is supervised in each step."""
+        """Take control when the part is about to begin; what is or becomes ours is judged in each step."""
         adapter = self.vehicle.adapter
         if adapter is None:
             return
@@ -318,7 +318,7 @@ class Flight:
         return self.config.take_control and not self._resumed
 
     def drive(self, now: float, verdict: SupervisorOutput | None = None) -> None:
-        """Let the adapter do what is due, with the supervisor's verdict on this step or without a setpoint."""
+        """Let the adapter do what is due, with the verdict on this step or without a setpoint."""
         change = self.vehicle.step(now, verdict)
         if change is Control.TAKEN:
             self._taken(now)

@@ -1,7 +1,7 @@
 """Whom an agent follows: one master at a time, by its lease; the clocks of two masters are never compared.
 
-The first whose word is heard leads. Another one leads only after its lease has ended; in a running game only if,
-moreover, a person took the game over by the old master's name.
+The first whose word is heard leads. Another one leads only after its lease has ended; in a running game only
+if, moreover, a person took the game over by the old master's name.
 """
 
 from __future__ import annotations
