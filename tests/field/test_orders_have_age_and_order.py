@@ -22,7 +22,8 @@ def heard_now(agent: LoneAgent) -> Quote:
 
 def order(agent: LoneAgent, kind: CommandKind, id: str, sender: str = "A") -> Command:
     """An order given now."""
-    return Command(id, kind, sender, 0, heard_now(agent))
+    shown = agent.autopilot.mode_name
+    return Command(id, kind, sender, 0, mode=shown, quote=heard_now(agent))
 
 
 def test_a_resume_from_before_an_abort_does_not_undo_it() -> None:
@@ -46,7 +47,7 @@ def test_a_start_of_long_ago_or_for_another_process_is_refused() -> None:
     old = order(agent, CommandKind.START, "old")
     agent.run(5.2)
     assert "too old" in agent.order(old).reason
-    assert "too old" in agent.order(Command("none", CommandKind.START, "x", 0, Quote(0, 0, 77))).reason
+    assert "too old" in agent.order(Command("none", CommandKind.START, "x", 0, quote=Quote(0, 0, 77))).reason
     again = playing(nonce=78)  # the agent was started again
     reply = again.order(order(agent, CommandKind.START, "other"))
     assert reply.state is CommandState.REFUSED
@@ -61,7 +62,8 @@ def test_without_a_master_an_order_quotes_the_agents_own_word() -> None:
     health = agent.health
     assert health is not None
     quote = Quote(health.nonce, health.number, health.nonce, health.stopped_by)
-    assert agent.order(Command("o", CommandKind.RESUME, "A", 0, quote)).state is not CommandState.REFUSED
+    reply = agent.order(Command("o", CommandKind.RESUME, "A", 0, quote=quote))
+    assert reply.state is not CommandState.REFUSED, reply.reason
 
 
 def test_ids_do_not_become_new_again() -> None:

@@ -8,7 +8,6 @@ from onboard.agent.core.events import Count, Instant, Outbox, Reply
 from onboard.agent.core.flight import Flight
 from onboard.agent.core.journal import Journal
 from onboard.agent.core.masters import Words
-from onboard.autopilot.base import Stage
 from onboard.wire.bus.messages import Command, CommandReply, CommandState
 from onboard.wire.bus.topics import COMMAND
 
@@ -88,6 +87,4 @@ class CommandDesk:
             return unfit
         if self._vehicle.adapter is None:
             return self._vehicle.refusal or "no autopilot"
-        if self._vehicle.stage is Stage.TAKEN and command.kind not in SETS_OFF:
-            return f"a pilot flies it, in {self._vehicle.telemetry.mode}"
-        return ""
+        return self._flight.objection(command)

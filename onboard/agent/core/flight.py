@@ -10,6 +10,7 @@ from onboard.agent.core.bus_view import BusView
 from onboard.agent.core.clocks import JumpWatch
 from onboard.agent.core.command_book import Orders
 from onboard.agent.core.events import Answered, Instant, Think
+from onboard.agent.core.hold_alert import HoldAlert
 from onboard.agent.core.journal import Journal
 from onboard.agent.core.part import Part, PartState
 from onboard.agent.core.takeoff import TakeOff
@@ -29,6 +30,7 @@ from onboard.core.safety.supervisor import (
 from onboard.core.safety.words import ACTIONS, CAUSES
 from onboard.pilot.pilot import PilotDecision, Question
 from onboard.pilot.setup import Own
+from onboard.wire.bus import messages
 from onboard.wire.bus.messages import Severity
 
 SILENT_S = 1.0  # a link silent for longer explains that the autopilot changed to hold by itself
@@ -75,6 +77,7 @@ class Flight:
         self._state = SupervisorState()
         self._policy = part.policy
         self._jumps = JumpWatch(config.safety.clock_jump_s)
+        self._hold = HoldAlert(journal)
         self._number = 0
         self._resumed = False  # the master alone let this process in
         self._failing = False
@@ -312,6 +315,23 @@ class Flight:
         bound = t.mode in HOMEWARD or t.status >= CRITICAL
         return (self._orders.granted or (self._trusted and not bound)) and not self._orders.blocked
 
+    def objection(self, command: messages.Command) -> str:
+        """Why the hands that fly now stand against a command; "" where they do not.
+
+        Who takes a vehicle out of a way home, a landing or a failsafe must have named it alone and seen its
+        mode: one word to all does not do. What this agent was ordered itself it may be ordered out of.
+        """
+        t = self.vehicle.telemetry
+        if command.kind not in (messages.CommandKind.RESUME, messages.CommandKind.START):
+            return f"a pilot flies it, in {t.mode}" if self.vehicle.stage is Stage.TAKEN else ""
+        failsafe = t.status >= CRITICAL
+        bound = failsafe or (t.mode in HOMEWARD and self._orders.order is Action.PASS)
+        if not bound or command.mode == t.mode:
+            return ""
+        why = f"{t.mode}, by a failsafe" if failsafe else t.mode
+        shown = f" (it was shown in {command.mode})" if command.mode else ""
+        return f"it is in {why}{shown}: resume this vehicle alone, by its id"
+
     @property
     def _trusted(self) -> bool:
         """Whether the configuration lets this process take control of what it began with."""
@@ -320,6 +340,7 @@ class Flight:
     def drive(self, now: float, verdict: SupervisorOutput | None = None) -> None:
         """Let the adapter do what is due, with the verdict on this step or without a setpoint."""
         change = self.vehicle.step(now, verdict)
+        self._hold.look(now, self.vehicle, self.part.policy.envelope)
         if change is Control.TAKEN:
             self._taken(now)
         elif change is not Control.SAME:

@@ -318,6 +318,7 @@ class Command(Message, frozen=True):
     kind: CommandKind
     sender: str
     stamp_ns: int  # for people: no age is taken from it
+    mode: str = ""  # the autopilot's, as a person saw it who named this vehicle alone; "": not confirmed
     quote: Quote = Quote()
 
 
