@@ -1,6 +1,6 @@
-"""Stories that the simulated autopilots tell truthfully and today's agent does not yet live through.
+"""Stories that the simulated autopilots tell truthfully and that ended badly with agents of 0.1.0.
 
-Each is marked with the reason; its owner removes the mark with the change that mends it.
+Those that today's agent does not yet live through are marked with the reason.
 """
 
 from __future__ import annotations
@@ -18,7 +18,6 @@ from tests.support.whole_games import autopilot, command, game_of, mode, order, 
 pytestmark = pytest.mark.game
 
 
-@pytest.mark.xfail(strict=True, reason="the agent hands back to LOITER, which sinks without a stick")
 @pytest.mark.parametrize("transmitter", [Transmitter.NONE, Transmitter.LOW], ids=lambda it: it.value)
 @virtual
 async def test_the_end_of_a_game_holds_copters_that_have_no_transmitter(transmitter: Transmitter) -> None:
@@ -53,9 +52,6 @@ async def test_an_agent_without_control_never_takes_px4_out_of_its_failsafe() ->
         assert mode(game, PURSUER) == "HOLD"
 
 
-@pytest.mark.xfail(
-    strict=True, reason="answers to own requests that come late are taken for a pilot's choice"
-)
 @virtual
 async def test_an_answer_that_comes_late_is_not_a_pilot() -> None:
     """For whoever judges changes of mode: count the delays of the own requests."""
