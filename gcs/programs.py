@@ -116,7 +116,7 @@ async def command(settings: Settings, order: Order, *, sure: bool) -> int:
         while session.station.now_ns() < ends_ns:
             fresh = [i for i in _whom(session, order) if i not in told]
             if fresh:  # an abort goes out at once, to whoever is known so far, and to the rest as it appears
-                command_id = session.station.command(order.kind, fresh)
+                command_id = session.station.command(order.kind, fresh, named=len(order.ids) == 1)
                 told.update(dict.fromkeys(fresh, command_id))
             settled = all(not leg.open for leg in _legs(session, told))
             complete = bool(order.ids) or session.station.now_ns() > gathered_ns

@@ -64,7 +64,8 @@ class Session:
 
     def command(self, kind: CommandKind, ids: Iterable[int]) -> str:
         """Give a command."""
-        self.station.command(kind, ids)
+        whom = tuple(ids)
+        self.station.command(kind, whom, named=len(whom) == 1)
         return ""
 
     def acknowledge(self, alert: str) -> None:

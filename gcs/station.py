@@ -130,13 +130,22 @@ class Station:
         finally:
             self.close()
 
-    def command(self, kind: CommandKind, ids: Iterable[int]) -> str:
-        """Give a command to vehicles; its id. It is repeated until each has confirmed."""
+    def command(self, kind: CommandKind, ids: Iterable[int], *, named: bool = False) -> str:
+        """Give a command to vehicles; its id. It is repeated until each has confirmed.
+
+        `named`: a person has named the one vehicle, and confirms the mode that is shown of it.
+        """
         now_ns = self.now_ns()
-        order = Command(self._new_id(), kind, self.operator, now_ns)
-        self.note(station_journal.SENT, station_journal.Sent(order, tuple(sorted(set(ids)))))
+        whom = tuple(sorted(set(ids)))
+        mode = self._shown_mode(whom[0]) if named and len(whom) == 1 else ""
+        order = Command(self._new_id(), kind, self.operator, now_ns, mode)
+        self.note(station_journal.SENT, station_journal.Sent(order, whom))
         self._courier.wake()
         return order.command_id
+
+    def _shown_mode(self, id: int) -> str:
+        vehicles = self.reducer.fleet.vehicles(self.now_ns())
+        return next((v.mode for v in vehicles if v.id == id), "")
 
     def ids(self, role: Role | None = None) -> tuple[int, ...]:
         """All vehicles heard or expected, or those of a role."""

@@ -153,6 +153,31 @@ def fly(
         raise typer.Exit(1)
 
 
+@app.command(
+    epilog="Examples: sim-bridge accept udpin://127.0.0.1:14541 | sim-bridge accept"
+    " serial:///dev/ttyUSB0:57600 --only hold --only silence --tlog bench.tlog",
+)
+def accept(
+    url: Annotated[str, typer.Argument(help="Link to the autopilot, as the agent's.")],
+    tlog: Annotated[Path, typer.Option(help="New file for all frames of the flight.")] = Path("accept.tlog"),
+    only: Annotated[
+        list[str] | None,
+        typer.Option(help="A story: hold, refusal, follow, return, silence; may be repeated. Default: all."),
+    ] = None,
+    yes: Annotated[bool, typer.Option("--yes", help="Fly every story without asking.")] = False,
+) -> None:
+    """Fly stories against a real autopilot and its simulated twin; exit 1 when they differ."""
+    from sim_bridge.programs import accept as room
+
+    options = room.Options(tlog=tlog, only=tuple(only or ()), yes=yes)
+    rows = room.accept(url, options, lambda line: print(line, flush=True), typer.confirm)
+    differ = sum(not row.same for row in rows)
+    print(room.table(rows))
+    print(f"\n{len(rows) - differ} of {len(rows)} as the simulated twin; the flight is in {tlog}")
+    if differ:
+        raise typer.Exit(1)
+
+
 scenario_app = typer.Typer(help="Make and check scenario files.", no_args_is_help=True, rich_markup_mode=None)
 app.add_typer(scenario_app, name="scenario")
 

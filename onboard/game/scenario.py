@@ -209,6 +209,7 @@ class SimulatedSpec(StrictConfig, frozen=True):
     firmware: Firmware = Firmware.RECORDED
     gimbal: bool = False  # whether component 154 sends heartbeats with the vehicle's own system id
     other_station_hz: NotNegative = 0.0  # a second ground station asks for all streams at this rate; 0: none
+    full_streams: bool = False  # whether PX4 streams by default what a real one does: 22 kB/s
     parameters: Mapping[str, float] = msgspec.field(default_factory=dict)  # of the autopilots that have them
 
     def __post_init__(self) -> None:

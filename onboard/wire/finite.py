@@ -13,9 +13,12 @@ def all_finite(items: tuple[Any, ...]) -> bool:
     Every message that arrives passes this function, so it is lean.
     """
     for item in items:
-        if type(item) is float:
+        kind = type(item)
+        if kind is float:
             if item - item != 0.0:  # NaN for NaN and for infinity
                 return False
+        elif kind is int or kind is str:
+            continue
         elif isinstance(item, tuple):
             if item and not all_finite(item):
                 return False

@@ -183,7 +183,8 @@ class Soak:
                 vehicle.resumes += 1
                 self._orders += 1
                 self.totals["resumes"] += 1
-                order = Command(f"soak-{self._orders}", CommandKind.RESUME, "operator", 0)
+                shown = self.game.bridge.world.vehicles[id].autopilot.mode_name
+                order = Command(f"soak-{self._orders}", CommandKind.RESUME, "operator", 0, shown)
                 where = COMMAND.key(self.game.game, id)
                 await self.game.bus.request(where, COMMAND.encode(order), 0.5)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from onboard.game.scenario import (
+    WINGED,
     FenceSpec,
     Flight,
     ImpairmentSpec,
@@ -27,7 +28,7 @@ def chase(
 
     `separation` [m] is what pursuers keep from each other; 0 = nothing.
     """
-    scale = 10.0 if kind is Kind.ARDUPLANE else 1.0
+    scale = 10.0 if kind in WINGED else 1.0
     places = ((-60.0, 40.0), (-60.0, -40.0), (-90.0, 0.0))
     return Scenario(
         name="chase",
@@ -57,8 +58,8 @@ def duel(
 
     `mates` more pursuers come from behind, too far away to matter. Planes are ten times as fast, and loiter
     until it begins: they start farther apart, and are judged by 40 m."""
-    scale, R = (10.0, 40.0) if kind is Kind.ARDUPLANE else (1.0, 2.0)
-    gap = 3.0 * gap if kind is Kind.ARDUPLANE else gap
+    scale, R = (10.0, 40.0) if kind in WINGED else (1.0, 2.0)
+    gap = 3.0 * gap if kind in WINGED else gap
     behind = [(-80.0, 50.0), (-80.0, -50.0), (-120.0, 0.0), (-120.0, 80.0)]
     return Scenario(
         name="duel",

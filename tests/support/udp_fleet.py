@@ -8,7 +8,7 @@ from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager
 
 from onboard.core.math.vectors import Vec
-from onboard.game.scenario import Flight, Kind, Scenario, VehicleSpec
+from onboard.game.scenario import WINGED, Flight, Kind, Scenario, VehicleSpec
 from onboard.runtime.clock import RealClock
 from onboard.runtime.links import open_udp
 from sim_bridge.vehicle.autopilot.autopilot import Autopilot
@@ -52,7 +52,7 @@ def free_port() -> int:
 def scenario(kind: Kind, count: int, *, ground: bool) -> Scenario:
     """`count` vehicles of one kind, 100 m apart; planes at 22 m/s, multicopters at 5 m/s."""
     height = 0.0 if ground else 60.0
-    plane = kind == Kind.ARDUPLANE
+    plane = kind in WINGED
     specs = [
         VehicleSpec(
             position=(0.0, 100.0 * i, height),

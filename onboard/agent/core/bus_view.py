@@ -54,6 +54,8 @@ class BusView:
         self.target: Vec | None = None
         self.briefed = False
         self.mates: dict[int, Heard] = {}
+        self._mates_at = NEVER  # when `_mates` were carried forward to; NEVER = one has been heard since
+        self._mates: tuple[Mate, ...] = ()
         self.clock = MasterClock()
         self.master_at = NEVER  # when the master was last heard [s, monotonic]
         self._game, self._id, self._role, self._nonce = config.game, config.id, config.role, nonce
@@ -107,6 +109,7 @@ class BusView:
             self._followed.remove(id)
             self._out.put(Unsubscribe(topics.STATE.key(self._game, id)))
             self.mates.pop(id, None)
+            self._mates_at = NEVER
         for id in mates:
             if id not in self._followed and id != self._id:
                 self._followed.append(id)
@@ -116,10 +119,13 @@ class BusView:
         """The team mates where they are at `now` [s, monotonic], carried forward from when they were heard.
 
         The strategy and the supervisor are both given this one result."""
-        return tuple(
-            carried(MateState(id, heard.at, Vec(*heard.state.position), Vec(*heard.state.velocity)), now)
-            for id, heard in self.mates.items()
-        )
+        if now != self._mates_at:
+            self._mates_at = now
+            self._mates = tuple(
+                carried(MateState(id, heard.at, Vec(*heard.state.position), Vec(*heard.state.velocity)), now)
+                for id, heard in self.mates.items()
+            )
+        return self._mates
 
     def _take_setup(self, setup: Setup) -> None:
         if setup == self.setup:
@@ -154,6 +160,7 @@ class BusView:
     def _take_mate(self, state: State) -> None:
         if state.id in self._followed:
             self.mates[state.id] = Heard(state, self._now.s)
+            self._mates_at = NEVER
 
     def _take_master(self, master: Master) -> None:
         now = self._now

@@ -10,6 +10,7 @@ from onboard.agent.core.bus_view import BusView
 from onboard.agent.core.clocks import JumpWatch
 from onboard.agent.core.command_book import Orders
 from onboard.agent.core.events import Answered, Instant, Think
+from onboard.agent.core.hold_alert import HoldAlert
 from onboard.agent.core.journal import Journal
 from onboard.agent.core.part import Part, PartState
 from onboard.agent.core.takeoff import TakeOff
@@ -18,7 +19,7 @@ from onboard.autopilot.base import ReleaseMode, Setpoint, Stage, Telemetry
 from onboard.config.printable import named
 from onboard.core.math.constants import NEVER
 from onboard.core.math.vectors import ZERO, Vec, along, sub
-from onboard.core.safety.policy import Action, Cause, Command, SupervisorInput
+from onboard.core.safety.policy import Action, Cause, Command, Policy, SupervisorInput
 from onboard.core.safety.supervisor import (
     SupervisorOutput,
     SupervisorState,
@@ -29,6 +30,7 @@ from onboard.core.safety.supervisor import (
 from onboard.core.safety.words import ACTIONS, CAUSES
 from onboard.pilot.pilot import PilotDecision, Question
 from onboard.pilot.setup import Own
+from onboard.wire.bus import messages
 from onboard.wire.bus.messages import Severity
 
 SILENT_S = 1.0  # a link silent for longer explains that the autopilot changed to hold by itself
@@ -41,6 +43,11 @@ RELEASES = {
     Command.RELEASE_TO_RETURN: ReleaseMode.RETURN,
     Command.RELEASE_TO_LAND: ReleaseMode.LAND,
 }
+
+
+def _only_limits(before: Policy, after: Policy) -> bool:
+    """Whether a policy differs from another in the vehicle's own limits alone."""
+    return before.envelope != after.envelope and before._replace(envelope=after.envelope) == after
 
 
 class OpenStep(NamedTuple):
@@ -73,6 +80,7 @@ class Flight:
         self._state = SupervisorState()
         self._policy = part.policy
         self._jumps = JumpWatch(config.safety.clock_jump_s)
+        self._hold = HoldAlert(journal)
         self._number = 0
         self._resumed = False  # the master alone let this process in
         self._failing = False
@@ -87,12 +95,14 @@ class Flight:
         if jump != 0.0:
             self._bus.clock.restart()
             self._journal.error("clock_jump", f"the wall clock jumped by {jump:+.3f} s")
+        self.part.follow(now)  # it may fix the frame in which positions count
         telemetry = self._vehicle.look(now.s)
-        self.part.follow(now)
         state = self.part.state(now.wall_ns)
         self._resumed = state.resumed
-        if self.part.policy is not self._policy:  # another game: what was latched in the last one is over
-            self._policy, self._state = self.part.policy, SupervisorState()
+        if self.part.policy is not self._policy:
+            if not _only_limits(self._policy, self.part.policy):  # another game: nothing is latched any more
+                self._state = SupervisorState()
+            self._policy = self.part.policy
         heard_at = max(telemetry.heartbeat_at, telemetry.position_at)
         if telemetry.heartbeat_at != NEVER and now.s - heard_at > SILENT_S:
             self._silent_at = now.s
@@ -130,8 +140,8 @@ class Flight:
             self._complete(step, took, f"no answer within {took:.2f} s")
 
     def _ask(self, now: Instant, t: Telemetry) -> Think | None:
-        hovers = self._vehicle.hovers is not False
-        wind = t.wind if not hovers and now.s - t.wind_at < WIND_FRESH_S else ZERO
+        plane = self._vehicle.hovers is False
+        wind = t.wind if plane and now.s - t.wind_at < WIND_FRESH_S else ZERO
         position = along(t.position, t.velocity, min(max(0.0, now.s - t.position_at), 0.5))
         self._number += 1
         step = OpenStep(self._number, now, t, wind, None)
@@ -218,12 +228,13 @@ class Flight:
         ours = adapter.stage in (Stage.ACTIVE, Stage.ENTERING)
         command = output.command
         setpoint: Setpoint | None = None
-        if command is Command.STREAM and streams:
+        known = not self._vehicle.unread  # of what its limits are; until then no setpoint leaves
+        if command is Command.STREAM and streams and known:
             if not ours and adapter.stage is not Stage.TAKEN and self.may_control:
                 adapter.enter(now)
             setpoint = Setpoint(output.air, wind)
             self.setpoint = output.ground
-        elif command is Command.HOVER:
+        elif command is Command.HOVER and known:
             setpoint = Setpoint(ZERO)
         elif command is Command.END_STREAM:
             adapter.end(now)
@@ -281,6 +292,23 @@ class Flight:
         bound = t.mode in HOMEWARD or t.status >= CRITICAL
         return self._orders.granted or (self._trusted and not bound)
 
+    def objection(self, command: messages.Command) -> str:
+        """Why the hands that fly now stand against a command; "" where they do not.
+
+        Who takes a vehicle out of a way home, a landing or a failsafe must have named it alone and seen its
+        mode: one word to all does not do. What this agent was ordered itself it may be ordered out of.
+        """
+        t = self._vehicle.telemetry
+        if command.kind not in (messages.CommandKind.RESUME, messages.CommandKind.START):
+            return f"a pilot flies it, in {t.mode}" if self._vehicle.stage is Stage.TAKEN else ""
+        failsafe = t.status >= CRITICAL
+        bound = failsafe or (t.mode in HOMEWARD and self._orders.order is Action.PASS)
+        if not bound or command.mode == t.mode:
+            return ""
+        why = f"{t.mode}, by a failsafe" if failsafe else t.mode
+        shown = f" (it was shown in {command.mode})" if command.mode else ""
+        return f"it is in {why}{shown}: resume this vehicle alone, by its id"
+
     @property
     def _trusted(self) -> bool:
         """Whether the configuration lets this process take control of what it began with."""
@@ -289,6 +317,7 @@ class Flight:
     def drive(self, now: float, setpoint: Setpoint | None) -> None:
         """Let the adapter do what is due, with the setpoint of this step or without one."""
         change = self._vehicle.step(now, setpoint)
+        self._hold.look(now, self._vehicle, self.part.policy.envelope)
         if change is Control.TAKEN:
             self._taken(now)
         elif change is not Control.SAME:

@@ -45,6 +45,7 @@ from onboard.agent.core.game_player import GamePlayer
 from onboard.agent.core.journal import Journal
 from onboard.agent.core.mavlink_radio import Radio
 from onboard.agent.core.part import Part
+from onboard.agent.core.readiness import why_no_order
 from onboard.agent.core.reports import Reports, Standing
 from onboard.agent.core.route_player import RoutePlayer
 from onboard.agent.core.schedule import EARLY_S, Grid
@@ -53,7 +54,15 @@ from onboard.autopilot.base import ReleaseMode, Stage
 from onboard.core.math.constants import NEVER
 from onboard.core.safety.policy import Action
 from onboard.game.route_file import Route
-from onboard.wire.bus.messages import AgentStage, CommandKind, CommandReply, CommandState, Role, Severity
+from onboard.wire.bus.messages import (
+    AgentStage,
+    Command,
+    CommandKind,
+    CommandReply,
+    CommandState,
+    Role,
+    Severity,
+)
 from onboard.wire.bus.topics import ALIVE, COMMAND, DECISION, HEALTH, STATE, Topic
 from onboard.wire.mavlink.frames import Packet
 from onboard.wire.mavlink.signing import Signing
@@ -250,6 +259,8 @@ class AgentCore:
         received = self.radio.take(event.link, event.peer, event.data, now)
         if received.took_over:
             self.vehicle.other_link()
+        if received.second:
+            self.vehicle.second_autopilot(now.s, "setpoints stay with the first")
         for packet in received.packets:
             self._hear(packet, now)
 
@@ -296,7 +307,7 @@ class AgentCore:
             bad = CommandReply("", self.config.id, CommandState.REFUSED, "undecodable", "", now.wall_ns)
             self.out.put(Reply(event.token, COMMAND.encode_reply(bad)))
             return
-        entry, new = self.orders.give(command, self._refusal(command.kind))
+        entry, new = self.orders.give(command, self._refusal(command))
         if new:
             text = f"{command.kind.value} from {command.sender}"
             if entry.reason:
@@ -316,15 +327,12 @@ class AgentCore:
         )
         self.out.put(Reply(event.token, COMMAND.encode_reply(reply)))
 
-    def _refusal(self, kind: CommandKind) -> str:
+    def _refusal(self, command: Command) -> str:
         """Why a command cannot be obeyed; '' if it can."""
         if self.config.dry_run:
             return "dry run: this agent sends nothing"
-        if self.vehicle.adapter is None:
-            return self.vehicle.refusal or "no autopilot"
-        if self.vehicle.stage is Stage.TAKEN and kind not in (CommandKind.RESUME, CommandKind.START):
-            return f"a pilot flies it, in {self.vehicle.telemetry.mode}"
-        return ""
+        takes = command.kind in (CommandKind.RESUME, CommandKind.START)
+        return why_no_order(self.vehicle, takes=takes) or self.flight.objection(command)
 
     def _review_orders(self) -> None:
         entry = self.orders.review(self.vehicle.stage)

@@ -1,9 +1,9 @@
 """The own MAVLink links: frames in from one or two of them, messages out by the one that works.
 
-One framing state per peer; the autopilot's peer is the one its component was last heard from, so
-that another sender on the same port cannot draw the answers to itself. With two links to one
-autopilot each frame counts once, and the second takes over when the first falls silent; setpoints
-go out on the one that counts, everything else on both.
+One framing state per peer; the autopilot's peer is the first its component was heard from (`one_sender`),
+so that another sender on the same port cannot draw the answers to itself, be it a second autopilot.
+With two links to one autopilot each frame counts once, and the second takes over when the first falls silent;
+setpoints go out on the one that counts, everything else on both.
 """
 
 from __future__ import annotations
@@ -14,6 +14,8 @@ from typing import NamedTuple
 
 from onboard.agent.core.events import ANY_PEER, Instant, Keep, LinkFacts, Outbox, Send
 from onboard.autopilot.link_redundancy import Redundant
+from onboard.autopilot.one_sender import OneSender
+from onboard.autopilot.one_sender import Sender as Sent
 from onboard.wire.mavlink.commands import Outgoing, SetpointMessage
 from onboard.wire.mavlink.frames import Framer, Packet, Sender
 from onboard.wire.mavlink.ids import AUTOPILOT, COMPANION
@@ -28,7 +30,12 @@ class _Line:
     def __init__(self, facts: LinkFacts) -> None:
         self.facts = facts
         self.framers: OrderedDict[int, Framer] = OrderedDict()
-        self.peer: int | None = None
+        self.sender = OneSender()
+
+    @property
+    def peer(self) -> int | None:
+        """The autopilot's."""
+        return self.sender.peer
 
 
 class Received(NamedTuple):
@@ -36,6 +43,7 @@ class Received(NamedTuple):
 
     packets: tuple[Packet, ...]  # good frames of anybody's, each once
     took_over: bool  # the other link is used for sending from now on
+    second: bool = False  # another autopilot speaks under the same system id
 
 
 class Radio:
@@ -74,10 +82,14 @@ class Radio:
         line = self._lines[index]
         framer = line.framers.get(peer) or self._new_framer(line, peer)
         packets: list[Packet] = []
-        took_over = False
+        took_over = second = False
         for packet in framer.feed(data, now.wall_ns):
             if packet.system == self._system and packet.component == AUTOPILOT:
-                line.peer = peer
+                sender = line.sender.judge(now.s, peer, packet)
+                if sender in (Sent.OTHER, Sent.SECOND):
+                    second = second or sender is Sent.SECOND
+                    self.causes[f"{sender.value}_autopilot"] += 1
+                    continue
                 if len(self._lines) > 1:
                     heard = self._redundant.take(now.s, index, packet)
                     took_over = took_over or heard.took_over
@@ -86,7 +98,7 @@ class Radio:
                         continue
             self._out.put(Keep(now.wall_ns, packet.raw))
             packets.append(packet)
-        return Received(tuple(packets), took_over)
+        return Received(tuple(packets), took_over, second)
 
     def send(self, message: Outgoing) -> None:
         """Send to the autopilot, with the next `flush`."""

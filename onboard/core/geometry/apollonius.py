@@ -85,6 +85,9 @@ def closest_approach(e: Vec, heading: Vec, v_e: float, p: Vec, v_p: float) -> Me
     comes closer (cos φ > 0) and γ < 1; a pursuer as fast as the evader intercepts instead. The
     printed (19) lacks a factor v_e in its denominator and (20) is ambiguous by 180°; the vector
     form here agrees with the corrected ones.
+
+    What is least is the distance at T, not the integral of d² of (10): for the same T that is least on
+    the way to e(2T/3). (20) does not follow from the condition printed as (18), which is empty with λ(T) = 0.
     """
     ex, ey, ez = e
     hx, hy, hz = heading

@@ -8,6 +8,7 @@ from onboard.core.math.vectors import Vec, clamp
 from onboard.core.safety.policy import Action, Policy
 
 SPACING = 20.0  # least distance between two layers [m]
+GROUND_RETURN = 60.0  # of the master's silence [s], after which everybody flies home
 TRUST = 5.0  # R in space must be this many times the stated position error
 
 
@@ -29,9 +30,17 @@ def capture_in_space_refused(R: float, sigma: float) -> bool:
 
 
 def field_policy(policy: Policy, layer: float) -> Policy:
-    """The policy of a game in the field profile: a layer of one's own, lost tracks make one break off."""
+    """The policy of a game in the field profile: a layer of one's own, lost tracks make one break off.
+
+    Silence of the game's master makes one hold, and after a minute fly home.
+    """
     return policy._replace(
-        layered=True, layer=layer, track_latched=True, track_action=max(policy.track_action, Action.HOLD)
+        layered=True,
+        layer=layer,
+        track_latched=True,
+        track_action=max(policy.track_action, Action.HOLD),
+        ground_action=max(policy.ground_action, Action.HOLD),
+        ground_return=GROUND_RETURN,
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import inf
 from typing import NamedTuple
 
 from onboard.core.safety.envelope import believable
@@ -45,6 +46,9 @@ def health(seen: SupervisorInput, policy: Policy, far_outside: bool) -> HealthAc
     low = policy.battery > 0.0 and seen.battery != -1.0 and not seen.battery >= policy.battery
     if low and worst.action < Action.RETURN:
         worst = HealthAction(Action.RETURN, Cause.BATTERY, True)
+    alone = policy.ground_return < inf and not seen.ground_age <= policy.ground_return
+    if alone and worst.action < Action.RETURN:
+        worst = HealthAction(Action.RETURN, Cause.GROUND_STATION, True)
     if policy.ground_action > worst.action and not seen.ground_age <= policy.ground_age:
         worst = HealthAction(policy.ground_action, Cause.GROUND_STATION, False)
     if policy.track_action > worst.action and not seen.track_sigma <= policy.track_sigma:

@@ -109,6 +109,7 @@ class Policy(NamedTuple):
     track_latched: bool = False  # field profile: who loses the tracks breaks off for good
     ground_age: float = 5.0  # [s]
     ground_action: Action = Action.PASS  # PASS = the rule is off
+    ground_return: float = inf  # silence of the ground after which the vehicle flies home for good [s]
     clock_jump: float = 0.2  # [s]
     clock_hold: float = 2.0  # a jump makes everybody hold for so long [s]
     battery: float = 0.2  # share left; 0 = off

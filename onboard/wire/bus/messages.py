@@ -301,6 +301,7 @@ class Command(Message, frozen=True):
     kind: CommandKind
     sender: str
     stamp_ns: int
+    mode: str = ""  # the autopilot's, as a person saw it who named this vehicle alone; "": not confirmed
 
 
 class CommandState(Enum):

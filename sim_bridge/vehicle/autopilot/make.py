@@ -60,6 +60,7 @@ def options_of(scenario: Scenario, random: Generator, parameters: Mapping[str, f
         batteries=spec.batteries,
         firmware=spec.firmware,
         gimbal=spec.gimbal,
+        full_streams=spec.full_streams,
         other_station_hz=spec.other_station_hz,
     )
 

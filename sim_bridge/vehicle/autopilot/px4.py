@@ -23,6 +23,7 @@ from sim_bridge.vehicle.autopilot.command import ACCEPTED, DENIED, FAILED, LATER
 from sim_bridge.vehicle.autopilot.failsafes import Condition, Latches, stronger
 from sim_bridge.vehicle.autopilot.generations import renamed
 from sim_bridge.vehicle.autopilot.parameters import Parameter, Parameters
+from sim_bridge.vehicle.autopilot.px4_streams import FULL_RATES
 from sim_bridge.vehicle.autopilot.setup import Setup
 
 M = PX4_MODES
@@ -63,6 +64,7 @@ class Px4(Autopilot):
     autopilot_type = dialect.MAV_AUTOPILOT_PX4
     modes = M
     default_rates = RATES
+    full_rates = FULL_RATES
     versions = VERSIONS
     table: ClassVar[tuple[Parameter, ...]]  # of parameters as delivered
     refused_arming = LATER

@@ -29,6 +29,7 @@ class Options(NamedTuple):
     firmware: Firmware = Firmware.RECORDED
     gimbal: bool = False  # whether component 154 of the vehicle's own system sends heartbeats
     other_station_hz: float = 0.0  # rate of all streams that a second ground station asks for [Hz]; 0: none
+    full_streams: bool = False  # whether PX4 streams all that a real one does by default: 22 kB/s
     healthy_share: float = 0.6  # of `ready_s`, after which the pre-arm bit is set: before arming is accepted
 
     @property

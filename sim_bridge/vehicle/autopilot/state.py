@@ -32,6 +32,7 @@ class AutopilotState(ABC):
     vehicle_type: ClassVar[int]
     modes: ClassVar[Mapping[str, int]]  # names ↔ custom_mode
     default_rates: ClassVar[Mapping[int, float]]  # message number → [Hz]
+    full_rates: ClassVar[Mapping[int, float]] = {}  # of the real one by default, where they are simulated
     versions: ClassVar[Mapping[Firmware, tuple[int, int, int]]]  # major, minor, patch
     refused_arming: ClassVar[int]  # result of a refused arm or disarm
     unknown_message: ClassVar[int]  # result of REQUEST_MESSAGE for what it cannot send
@@ -65,7 +66,8 @@ class AutopilotState(ABC):
         self._boot_ns = now_ns
         self._text_number = 0  # of the latest text in chunks
         self._sender = DialectSender(self.system, COMPONENT, signing=self.setup.options.signing)
-        self.streams = Streams(self.default_rates, now_ns)
+        full = self.setup.options.full_streams and self.full_rates
+        self.streams = Streams(self.full_rates if full else self.default_rates, now_ns)
 
     @property
     def version(self) -> int:

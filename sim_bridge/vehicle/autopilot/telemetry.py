@@ -8,6 +8,7 @@ from math import atan2, cos, degrees, nan, sin, sqrt
 from onboard.core.math.vectors import Vec, clamp
 from onboard.wire.mavlink.dialect import MavMessage, dialect
 from sim_bridge.vehicle.autopilot import health
+from sim_bridge.vehicle.autopilot.px4_streams import UNREAD
 from sim_bridge.vehicle.autopilot.state import AutopilotState
 from sim_bridge.vehicle.autopilot.transmitter import CHANNELS
 
@@ -200,9 +201,10 @@ def estimator_status(ap: AutopilotState, now_ns: int) -> MavMessage:
     """ESTIMATOR_STATUS: PX4's estimator, its flags, innovation ratios and accuracies."""
     positioned = ap.positioned(now_ns)
     ratio = 0.05 if positioned else 1.5
+    at_rest = dialect.ESTIMATOR_CONST_POS_MODE if ap.landed else 0  # healthy there: nothing moves
+    flags = ap.health.ekf_flags(positioned) | at_rest
     message: MavMessage = dialect.MAVLink_estimator_status_message(
-        ap.boot_ms(now_ns) * 1000, ap.health.ekf_flags(positioned), ratio, ratio, 0.03, 0.02, 0.0, 0.0,
-        0.3, 0.4,
+        ap.boot_ms(now_ns) * 1000, flags, ratio, ratio, 0.03, 0.02, 0.0, 0.0, 0.3, 0.4
     )  # fmt: skip
     return message
 
@@ -339,6 +341,7 @@ OF_PX4: dict[int, Builder] = {
     dialect.MAVLINK_MSG_ID_ALTITUDE: altitude,
     dialect.MAVLINK_MSG_ID_ESTIMATOR_STATUS: estimator_status,
     dialect.MAVLINK_MSG_ID_WIND_COV: wind_cov,
+    **UNREAD,
 }
 OF_ARDUPILOT: dict[int, Builder] = {
     **COMMON,

@@ -6,6 +6,7 @@ import hashlib
 import itertools
 import json
 import re
+import shutil
 from base64 import b64encode
 from html.parser import HTMLParser
 from pathlib import Path
@@ -17,7 +18,8 @@ import pytest
 
 from gcs.recording.recorder import Recorder
 from gcs.report import theme
-from gcs.report.drawing import svg
+from gcs.report.data import Run
+from gcs.report.drawing import Drawing, svg
 from gcs.report.figures import NAMES, figures
 from gcs.report.program import read_run, write_report
 from onboard.config.strict import ConfigError
@@ -67,6 +69,23 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
+def values(run: Path) -> Run:
+    return read_run(run)
+
+
+@pytest.fixture(scope="module")
+def drawings(values: Run) -> list[Drawing]:
+    return figures(values)
+
+
+@pytest.fixture
+def copy(run: Path, tmp_path: Path) -> Path:
+    """The run's folder as it was before the report: a test may change it."""
+    written = shutil.ignore_patterns("figures", "report.html")
+    return Path(shutil.copytree(run, tmp_path / "run", ignore=written))
+
+
+@pytest.fixture(scope="module")
 def page(run: Path) -> Page:
     return Page((run / "report.html").read_text(encoding="utf-8"))
 
@@ -106,11 +125,11 @@ def test_the_page_refers_to_nothing_outside_itself(page: Page) -> None:
     assert [figure["name"] for figure in json.loads(data)["figures"]] == FIGURES
 
 
-def test_every_colour_of_a_figure_has_a_twin_for_dark_screens(run: Path, page: Page) -> None:
+def test_every_colour_of_a_figure_has_a_twin_for_dark_screens(drawings: list[Drawing], page: Page) -> None:
     sheet = page.styles[0]
     light, dark = sheet.split("@media screen", 1)
     used = set()
-    for drawing in figures(read_run(run)):
+    for drawing in drawings:
         text = svg(drawing)
         assert not re.search(r"#[0-9a-f]{3,8}\b|rgb", text.replace('href="#', ""))
         used |= set(re.findall(r"var\((--c[0-9a-f]{6})\)", text))
@@ -146,21 +165,19 @@ def test_the_page_explains_the_rules_that_were_in_force(page: Page) -> None:
     assert "close in A rule of a strategy that this program does not hold. plug-in" in page.text
 
 
-def test_what_was_played_on_virtual_time_says_so(run: Path, page: Page, tmp_path: Path) -> None:
+def test_what_was_played_on_virtual_time_says_so(page: Page, copy: Path) -> None:
     assert "virtual" not in page.text
     assert "began 2025-10-09 08:53:22 UTC" in page.text
-    folder = make_run(tmp_path / "fast")
-    (folder / "timing.json").write_text('{"virtual_s": 24.0, "wall_s": 2.0}', encoding="utf-8")
-    write_report(folder)
-    found = Page((folder / "report.html").read_text(encoding="utf-8"))
+    (copy / "timing.json").write_text('{"virtual_s": 24.0, "wall_s": 2.0}', encoding="utf-8")
+    write_report(copy)
+    found = Page((copy / "report.html").read_text(encoding="utf-8"))
     assert "played on virtual time" in found.text
     assert "virtual time since the start of the game [s]" in found.text
     assert "began" not in found.text
 
 
-def test_equal_links_do_not_hide_each_other(run: Path) -> None:
-    values = read_run(run)
-    (panel,) = next(d for d in figures(values) if d.name == "links").panels
+def test_equal_links_do_not_hide_each_other(values: Run, drawings: list[Drawing]) -> None:
+    (panel,) = next(d for d in drawings if d.name == "links").panels
     lines = {line.get_gid(): line for line in panel.axes.lines}
     for series in panel.series:
         vehicle, what = int(series.name.split(":")[0].split()[1]), series.name.split(": ")[1]
@@ -171,8 +188,8 @@ def test_equal_links_do_not_hide_each_other(run: Path) -> None:
         assert abs(series.zero - 0.4 - sorted(values.links).index(vehicle)) < 1e-9, "a row of its own"
 
 
-def test_silence_breaks_a_curve(run: Path) -> None:
-    drawing = next(d for d in figures(read_run(run)) if d.name == "speeds")
+def test_silence_breaks_a_curve(drawings: list[Drawing]) -> None:
+    drawing = next(d for d in drawings if d.name == "speeds")
     breaks = {
         line.get_label(): int(np.isnan(line.get_ydata()).sum())
         for line in drawing.panels[0].axes.lines if line.get_gid()
@@ -204,8 +221,7 @@ def test_the_figures_are_pictures_with_something_in_them(run: Path) -> None:
         assert len(np.unique(pixels[::3, ::3].reshape(-1, pixels.shape[2]), axis=0)) > 25, picture
 
 
-def test_distances_are_those_that_were_flown(run: Path) -> None:
-    values = read_run(run)
+def test_distances_are_those_that_were_flown(values: Run) -> None:
     assert values.outcome is not None
     nearest = {gap.id: gap.distance.min() for gap in values.gaps()}
     assert min(nearest.values()) == pytest.approx(values.outcome.smallest_distance, abs=0.2)
@@ -214,11 +230,11 @@ def test_distances_are_those_that_were_flown(run: Path) -> None:
     assert values.span == pytest.approx((-2.02, 21.93), abs=0.05)
 
 
-def test_rules_are_bands_in_order_without_gaps(run: Path) -> None:
-    bands = read_run(run).rules[3]
+def test_rules_are_bands_in_order_without_gaps(values: Run) -> None:
+    bands = values.rules[3]
     assert {band.rule for band in bands} == {"intercept", "close_in"}
     assert all(a.end == pytest.approx(b.start) and a.rule != b.rule for a, b in itertools.pairwise(bands))
-    silent = read_run(run).rules[2]
+    silent = values.rules[2]
     breaks = [(a.end, b.start) for a, b in itertools.pairwise(silent) if b.start - a.end > 1.0]
     assert breaks == [(pytest.approx(5.9, abs=0.2), pytest.approx(9.0, abs=0.2))], "silence is not a rule"
 
@@ -231,18 +247,17 @@ def test_the_same_run_gives_the_same_report(run: Path, tmp_path: Path) -> None:
     assert {p.name: p.read_bytes() for p in (run / "figures").iterdir()} == before
 
 
-def test_without_a_recording_the_logs_and_the_scenario_speak(tmp_path: Path) -> None:
+def test_without_a_recording_the_logs_and_the_scenario_speak(tmp_path: Path, values: Run) -> None:
     folder = make_tlogs(make_run(tmp_path / "run", recording=False))
-    with_recording = read_run(make_run(tmp_path / "whole"))
     written = write_report(folder)
     assert any("no such file" in note for note in written.notes)
     assert any("no decisions" in note for note in written.notes)
-    values = read_run(folder)
-    assert [figure.name for figure in figures(values)] == ["plan", "space", "distances", "speeds", "heights"]
-    assert values.capture_radius == 5.0
-    assert values.target == (400.0, 100.0, -60.0)
-    for vehicle, flown in values.flown.items():
-        known = with_recording.flown[vehicle]
+    found = read_run(folder)
+    assert [figure.name for figure in figures(found)] == ["plan", "space", "distances", "speeds", "heights"]
+    assert found.capture_radius == 5.0
+    assert found.target == (400.0, 100.0, -60.0)
+    for vehicle, flown in found.flown.items():
+        known = values.flown[vehicle]
         assert flown.role is known.role
         assert np.abs(flown.position - known.position).max() < 0.05
     text = Page((folder / "report.html").read_text(encoding="utf-8")).text
@@ -250,21 +265,19 @@ def test_without_a_recording_the_logs_and_the_scenario_speak(tmp_path: Path) -> 
     assert "Please note" in text
 
 
-def test_a_cut_recording_is_reported_up_to_the_cut(tmp_path: Path) -> None:
-    folder = make_run(tmp_path / "run")
-    data = (folder / "recording.mcap").read_bytes()
-    (folder / "recording.mcap").write_bytes(data[: len(data) // 3])
-    written = write_report(folder)
+def test_a_cut_recording_is_reported_up_to_the_cut(copy: Path) -> None:
+    data = (copy / "recording.mcap").read_bytes()
+    (copy / "recording.mcap").write_bytes(data[: len(data) // 3])
+    written = write_report(copy)
     assert len(written.notes) == 1
     assert "cut in the record at byte" in written.notes[0]
-    assert 3.0 < read_run(folder).span[1] < 20.0
+    assert 3.0 < read_run(copy).span[1] < 20.0
 
 
-def test_a_recording_alone_is_enough(tmp_path: Path) -> None:
-    folder = make_run(tmp_path / "run")
+def test_a_recording_alone_is_enough(copy: Path) -> None:
     for name in ("scenario.toml", "summary.json", "timing.json"):
-        (folder / name).unlink()
-    assert write_report(folder / "recording.mcap").page == folder / "report.html"
+        (copy / name).unlink()
+    assert write_report(copy / "recording.mcap").page == copy / "report.html"
 
 
 def test_an_evader_known_by_tracks_alone_still_has_distances(tmp_path: Path) -> None:
@@ -275,11 +288,10 @@ def test_an_evader_known_by_tracks_alone_still_has_distances(tmp_path: Path) -> 
     assert min(gap.distance.min() for gap in values.gaps()) < 5.0
 
 
-def test_bad_files_beside_it_are_notes(tmp_path: Path) -> None:
-    folder = make_run(tmp_path / "run")
-    (folder / "summary.json").write_text("{", encoding="utf-8")
-    (folder / "scenario.toml").write_text("name = 3", encoding="utf-8")
-    notes = write_report(folder).notes
+def test_bad_files_beside_it_are_notes(copy: Path) -> None:
+    (copy / "summary.json").write_text("{", encoding="utf-8")
+    (copy / "scenario.toml").write_text("name = 3", encoding="utf-8")
+    notes = write_report(copy).notes
     assert len(notes) == 2
     assert "summary.json: not valid JSON" in "\n".join(notes)
     assert "scenario.toml: " in "\n".join(notes)

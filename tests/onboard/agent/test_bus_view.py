@@ -42,6 +42,15 @@ def test_a_mate_is_carried_from_when_it_was_heard_whatever_its_clock_says(off_s:
     assert later.age == pytest.approx(3.0)
 
 
+def test_what_a_mate_says_meanwhile_counts_at_the_same_instant() -> None:
+    view, _ = opened()
+    assert view.mates_at(100.0) == ()
+    view.take(STATE.key("g", 3), state(3, EPOCH_NS), Instant(100.0, EPOCH_NS))
+    assert [mate.id for mate in view.mates_at(100.0)] == [3]
+    view.follow((2,))
+    assert view.mates_at(100.0) == ()
+
+
 def test_who_is_no_longer_a_mate_is_neither_heard_nor_kept() -> None:
     view, out = opened()
     view.take(STATE.key("g", 3), state(3, EPOCH_NS), Instant(100.0, EPOCH_NS))

@@ -8,7 +8,7 @@ from onboard.game.scenario import Kind, SimulatedSpec, Transmitter
 from onboard.wire.bus.messages import CommandKind, CommandState
 from tests.support.small_scenarios import PURSUER, chase
 from tests.support.virtual_time import virtual
-from tests.support.whole_games import WholeGame, command, game_of, mode, order, place, under_way
+from tests.support.whole_games import WholeGame, autopilot, command, game_of, mode, order, place, under_way
 
 STICK, LOW, NONE = Transmitter.CENTRED, Transmitter.LOW, Transmitter.NONE
 
@@ -70,3 +70,18 @@ async def test_where_the_mode_to_hold_is_blocked_the_next_one_is_taken_and_confi
         reply = await order(game, PURSUER, command(CommandKind.HOLD))
         assert (reply.state, reply.mode) == (CommandState.CONFIRMED, "RTL")
         assert "mode_chain" in game.kinds(PURSUER)
+
+
+@virtual
+async def test_a_hold_is_told_when_it_is_one_and_its_loss_is_an_alert() -> None:
+    async with game_of(chase(simulated=SimulatedSpec(transmitter=STICK))) as game:
+        await under_way(game, 3.0)
+        await order(game, PURSUER, command(CommandKind.HOLD))
+        await game.forward(10.0, until=lambda: "held" in game.kinds(PURSUER))
+        assert mode(game, PURSUER) == "LOITER"
+        game.expects(PURSUER, "hold_lost")
+        autopilot(game, PURSUER).set_throttle(game.bridge.world.elapsed_ns, 0.0)  # the stick falls
+        await game.forward(6.0, until=lambda: "hold_lost" in game.kinds(PURSUER))
+        told = game.kinds(PURSUER).count("hold_lost")
+        await game.forward(5.0)
+        assert game.kinds(PURSUER).count("hold_lost") == told  # once

@@ -50,6 +50,29 @@ def test_answers_go_to_the_autopilots_peer_and_to_nobody_elses() -> None:
     assert [send.peer for send in air.sent()] == [AUTOPILOT]
 
 
+def test_a_second_autopilot_with_the_same_id_draws_nothing_to_itself_and_is_said() -> None:
+    air, said = Air(), 0
+    for step in range(120):  # both twenty times a second, in every order
+        at = Instant(step * 0.025, EPOCH_NS + step * 25_000_000)
+        first = step % 2 == 0
+        found = air.radio.take(0, AUTOPILOT if first else STRANGER, beat(), at)
+        assert len(found.packets) == first
+        said += found.second
+        air.out.take()
+        assert [send.peer for send in air.sent()] == [AUTOPILOT]
+    assert said > 50
+    assert air.radio.causes["second_autopilot"] + air.radio.causes["other_autopilot"] == 60
+
+
+def test_an_autopilot_that_comes_back_from_another_port_is_believed_after_a_silence() -> None:
+    air = Air()
+    air.radio.take(0, AUTOPILOT, beat(), Instant(10.0, EPOCH_NS))
+    assert air.radio.take(0, STRANGER, beat(), Instant(10.2, EPOCH_NS)).packets == ()
+    assert len(air.radio.take(0, STRANGER, beat(), Instant(11.6, EPOCH_NS)).packets) == 1
+    air.out.take()
+    assert [send.peer for send in air.sent()] == [STRANGER]
+
+
 def test_before_anybody_was_heard_the_link_knows_whom_to_send_to() -> None:
     assert [send.peer for send in Air().sent()] == [ANY_PEER]
 

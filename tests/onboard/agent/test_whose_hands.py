@@ -6,7 +6,7 @@ import pytest
 
 from onboard.autopilot.base import Stage
 from onboard.game.scenario import Kind
-from onboard.wire.bus.messages import CommandKind
+from onboard.wire.bus.messages import Command, CommandKind, CommandState
 from tests.support.small_scenarios import HOLD, PURSUER, chase
 from tests.support.virtual_time import virtual
 from tests.support.whole_games import (
@@ -83,3 +83,24 @@ async def test_an_agent_that_may_take_control_leaves_a_vehicle_on_its_way_home_a
         await game.forward(8.0)
         assert mode(game, PURSUER) == "RTL"
         assert game.agents[PURSUER].core.vehicle.stage is Stage.IDLE
+
+
+@pytest.mark.parametrize("found", ["RTL", "LAND"])
+@virtual
+async def test_out_of_a_way_home_a_resume_must_name_the_vehicle_and_the_mode_shown(
+    found: str,
+) -> None:
+    async with game_of(chase()) as game:
+        await restarted_after(game, found)
+        await game.forward(3.0)
+        to_all = command(CommandKind.RESUME)
+        outdated = Command("c-2", CommandKind.RESUME, "tower", 0, "LOITER")
+        for given in (to_all, outdated):
+            reply = await order(game, PURSUER, given)
+            assert reply.state is CommandState.REFUSED
+            assert f"it is in {found}" in reply.reason
+        await game.forward(2.0)
+        assert mode(game, PURSUER) == found
+        named = Command("c-3", CommandKind.RESUME, "tower", 0, found)
+        assert (await order(game, PURSUER, named)).state is CommandState.PENDING
+        await game.forward(5.0, until=lambda: mode(game, PURSUER) == "GUIDED")

@@ -8,6 +8,7 @@ import pytest
 
 from onboard.core.math.states import Mate
 from onboard.core.math.vectors import ZERO, Vec, distance, norm
+from onboard.core.safety.field_profile import field_policy
 from onboard.core.safety.policy import Action, Cause, Command
 from onboard.core.safety.supervisor import commanded, reordered
 from onboard.core.safety.words import ACTIONS, CAUSES
@@ -176,6 +177,22 @@ def test_a_fault_takes_hold_at_once_and_leaves_a_second_after_it_is_gone(
     assert flight.transitions[0] == (action.name, cause.name)
     flight.fly(4.0, NORTH)
     assert flight.transitions[-1] == ("PASS", "NONE")
+
+
+def test_in_the_field_profile_a_silent_master_means_hold_and_after_a_minute_home_for_good() -> None:
+    flight = copter(**field_policy(COPTER, 30.0)._asdict())
+    assert flight.fly(1.0, NORTH, ground_age=4.9).stream
+    verdict = flight.fly(1.0, NORTH, ground_age=5.1)
+    assert (verdict.action, verdict.cause) == (Action.HOLD, Cause.GROUND_STATION)
+    assert flight.fly(2.0, NORTH, ground_age=0.1).stream  # it was heard again in time
+    verdict = flight.fly(1.0, NORTH, ground_age=59.9)
+    assert verdict.action is Action.HOLD
+    verdict = flight.fly(1.0, NORTH, ground_age=60.1)
+    assert (verdict.action, verdict.command) == (Action.RETURN, Command.RELEASE_TO_RETURN)
+    assert flight.fly(3.0, NORTH, ground_age=0.1).action is Action.RETURN  # until somebody gives it back
+    flight.hand_back()
+    assert flight.fly(3.0, NORTH).stream
+    assert copter().fly(1.0, NORTH, ground_age=1e9).stream  # elsewhere nobody asked for it
 
 
 def test_a_decision_that_is_not_a_number_holds() -> None:

@@ -279,3 +279,23 @@ def test_px4_takes_off_where_it_is_told_and_never_to_a_place_that_was_left_out()
     flown.forward(30.0)
     flown.assert_near(Vec(20.0, 10.0, -40.0), 1.5)
     assert flown.mode == "HOLD"
+
+
+def test_px4_fills_a_link_with_its_default_streams_until_they_are_switched_off() -> None:
+    flown = FlownAutopilot(Kind.PX4, full_streams=True).forward(1.0)
+    before = len(flown.frames)
+    flown.forward(10.0)
+    rate = sum(len(frame) for frame in flown.frames[before:]) / 10.0
+    assert rate == pytest.approx(22_000, rel=0.2)  # 22 kB/s
+    for number in (30, 31, 105, 331, 83, 85, 36, 141, 74):
+        assert flown.command(511, number, -1) == 0
+    before = len(flown.frames)
+    flown.forward(10.0)
+    assert sum(len(frame) for frame in flown.frames[before:]) / 10.0 < 6_000
+
+
+def test_px4_at_rest_says_constant_position_and_is_healthy() -> None:
+    flown = FlownAutopilot(Kind.PX4, airborne=False, ready_s=0.0).forward(2.0)
+    assert flown.last("ESTIMATOR_STATUS").flags & 128
+    assert flown.last("ESTIMATOR_STATUS").flags & 16
+    assert not FlownAutopilot(Kind.PX4).forward(2.0).last("ESTIMATOR_STATUS").flags & 128

@@ -1,0 +1,90 @@
+"""Stories that the simulated autopilots tell truthfully and today's agent does not yet live through.
+
+Each is marked with the reason; its owner removes the mark with the change that mends it.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from onboard.core.math.vectors import ZERO
+from onboard.game.scenario import Kind, SimulatedSpec, Transmitter
+from onboard.wire.bus.messages import CommandKind
+from onboard.wire.mavlink.dialect import DialectSender, dialect
+from tests.support.small_scenarios import EVADER, PURSUER, chase, duel
+from tests.support.virtual_time import virtual
+from tests.support.whole_games import autopilot, command, game_of, mode, order, place, under_way
+
+pytestmark = pytest.mark.game
+
+
+@pytest.mark.xfail(strict=True, reason="the agent hands back to LOITER, which sinks without a stick")
+@pytest.mark.parametrize("transmitter", [Transmitter.NONE, Transmitter.LOW], ids=lambda it: it.value)
+@virtual
+async def test_the_end_of_a_game_holds_copters_that_have_no_transmitter(transmitter: Transmitter) -> None:
+    """For whoever chooses the mode of holding: BRAKE where no centred stick was measured."""
+    around = SimulatedSpec(transmitter=transmitter)
+    async with game_of(duel(Kind.ARDUCOPTER, simulated=around), any_error=True) as game:
+        await game.until_ended()
+        heights = {id: -place(game, id).z for id in (EVADER, PURSUER)}
+        await game.forward(12.0)
+        for id, height in heights.items():
+            assert -place(game, id).z > height - 2.0
+
+
+@pytest.mark.xfail(
+    strict=True, reason="an agent that nobody asked streams targets, and PX4 re-enters OFFBOARD"
+)
+@virtual
+async def test_an_agent_without_control_never_takes_px4_out_of_its_failsafe() -> None:
+    """For whoever decides what is streamed: silence where no control was given."""
+    idle = {PURSUER: {"take_control": False}}
+    async with game_of(chase(Kind.PX4), configure=idle, any_error=True) as game:
+        await game.forward(3.0)
+        pilot, vehicle = DialectSender(PURSUER, 195), autopilot(game, PURSUER)
+        now = game.bridge.world.elapsed_ns
+        target = dialect.MAVLink_set_position_target_local_ned_message(
+            0, PURSUER, 1, 1, 0x9C7, 0, 0, 0, *ZERO, 0, 0, 0, 0, 0
+        )
+        vehicle.receive(now, pilot.pack(target), "another companion")
+        mode_order = dialect.MAVLink_command_long_message(PURSUER, 1, 176, 0, 1, 6, 0, 0, 0, 0, 0)
+        vehicle.receive(now, pilot.pack(mode_order), "another companion")
+        await game.forward(5.0)  # the other companion dies at once
+        assert mode(game, PURSUER) == "HOLD"
+
+
+@pytest.mark.xfail(
+    strict=True, reason="answers to own requests that come late are taken for a pilot's choice"
+)
+@virtual
+async def test_an_answer_that_comes_late_is_not_a_pilot() -> None:
+    """For whoever judges changes of mode: count the delays of the own requests."""
+    around = SimulatedSpec(answer_delay_s=0.4, answer_delay_max_s=3.0)
+    async with game_of(chase(Kind.ARDUPLANE, simulated=around), any_error=True) as game:
+        await under_way(game, 5.0)
+        for number in range(4):
+            await order(game, PURSUER, command(CommandKind.HOLD, f"h-{number}"))
+            await game.forward(1.2)
+            await order(game, PURSUER, command(CommandKind.RESUME, f"r-{number}"))
+            await game.forward(4.0)
+        assert not [e.text for e in game.events if e.kind in ("take_over", "handed_back")]
+
+
+@pytest.mark.xfail(
+    strict=True, reason="a take-off to 0°, 0° never climbs; PX4 at rest is taken for unhealthy"
+)
+@virtual
+async def test_px4_takes_off_from_the_ground() -> None:
+    """For whoever sends NAV_TAKEOFF and judges the estimate: NaN for an unknown place; rest is healthy."""
+    async with game_of(chase(Kind.PX4, ground_start=True), any_error=True) as game:
+        await under_way(game, 5.0)
+        assert -place(game, PURSUER).z > 20.0
+
+
+@pytest.mark.xfail(strict=True, reason="there is no adapter for PX4's fixed wing")
+@virtual
+async def test_px4_planes_play_a_game() -> None:
+    """For the adapter: a position target 300 m ahead along the wanted course at 20 Hz."""
+    async with game_of(duel(Kind.PX4_PLANE), any_error=True) as game:
+        await under_way(game, 2.0)
+        assert mode(game, PURSUER) == "OFFBOARD"
