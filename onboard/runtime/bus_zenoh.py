@@ -25,7 +25,14 @@ from onboard.runtime.membership import membership_of
 from onboard.runtime.patterns import intersects
 from onboard.runtime.protocols import Sample, Subscription
 from onboard.runtime.rate_limit import PAYLOAD_MAX, BusLimit
-from onboard.runtime.zenoh_config import Candidate, endpoint_of, first_sentence, of_zenoh, sessions_of
+from onboard.runtime.zenoh_config import (
+    Candidate,
+    counting,
+    endpoint_of,
+    first_sentence,
+    of_zenoh,
+    sessions_of,
+)
 from onboard.wire.bus.topics import TOPICS, Delivery
 
 EVENTS_KEPT = 256  # events a publisher keeps of each key
@@ -69,12 +76,8 @@ class _Declared:
         self.active = False
         self._bus._declared.remove(self)
         if self._entity is not None:
-            try:
+            with counting(self._bus._inbox.counts, "error"):  # the session may have gone first
                 self._entity.undeclare()
-            except BaseException as error:
-                if not of_zenoh(error):
-                    raise
-                self._bus._inbox.counts["error"] += 1
 
 
 class ZenohBus:
@@ -140,15 +143,11 @@ class ZenohBus:
         self._put(session, key, payload, delivery)
 
     def _put(self, session: Any, key: str, payload: bytes, delivery: Delivery) -> None:
-        try:
+        with counting(self._inbox.counts, "error"):
             publisher = self._publishers.get(key)
             if publisher is None:
                 publisher = self._publishers[key] = _publisher(session, key, delivery)
             publisher.put(payload)
-        except BaseException as error:
-            if not of_zenoh(error):
-                raise
-            self._inbox.counts["error"] += 1
 
     def subscribe(
         self, pattern: str, receiver: Callable[[Sample], None], *, every: bool = False
@@ -350,12 +349,8 @@ class ZenohBus:
             self._stop.wait(RETRY_S)
 
     def _close_in_thread(self, session: Any, closed: asyncio.Event | None = None) -> None:
-        try:
+        with counting(self._inbox.counts, "close_timeout"):  # over a bad network it may give up
             session.close()
-        except BaseException as error:  # over a bad network it may give up
-            if not of_zenoh(error):
-                raise
-            self._inbox.counts["close_timeout"] += 1
         if closed is not None:
             self._inbox.queue(closed.set)
 
