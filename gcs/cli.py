@@ -141,13 +141,17 @@ def game_run(
     start: Annotated[
         bool, typer.Option("--start/--wait", help="Start when all are ready, or wait for `start all`.")
     ] = True,
+    take_over: Annotated[
+        str, typer.Option("--take-over", metavar="NAME", help="Lead on the running game of a silent master.")
+    ] = "",
 ) -> int:
     """Stage, start, referee and end a game without the bridge; exit 0 when it has ended with a verdict."""
     from gcs import programs
     from onboard.game.scenario import load
 
     found, played = options.settings(), load(scenario)
-    return _play(programs.play(found, played, plain=bool(options.plain), auto_start=start))
+    plain = bool(options.plain)
+    return _play(programs.play(found, played, plain=plain, auto_start=start, takes_over=take_over))
 
 
 @keys_app.command("init")

@@ -98,6 +98,7 @@ class FieldMaster:
         *,
         auto_start: bool = True,
         nonce: int | None = None,
+        takes_over: str = "",
         say: Callable[[str], None] = lambda line: None,
     ) -> None:
         flight = scenario.flight
@@ -108,6 +109,7 @@ class FieldMaster:
             NAME,
             secrets.randbits(48) if nonce is None else nonce,
             timing,
+            takes_over,
         )
         self._station = station
         self._say = say

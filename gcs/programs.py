@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple, TextIO
 from gcs.console.plain_lines import PlainLines
 from gcs.console.plain_lines import status as status_lines
 from gcs.picture.alert_rules import Thresholds
-from gcs.picture.command_book import ENDS_A_FLIGHT
+from gcs.picture.command_book import ENDS_A_FLIGHT, SETS_OFF
 from gcs.picture.json_document import to_json
 from gcs.picture.terminal_text import printable
 from gcs.picture.values import Leg, LegState, Picture
@@ -152,7 +152,9 @@ def _told(session: Session, order: Order, told: dict[int, str], game: str) -> in
 async def _gather(session: Session, order: Order) -> None:
     """Listen until who is meant is known: with ids there is nothing to wait for but the bus."""
     for _ in range(round(GATHER_S / 0.05)):
-        if order.ids and session.bus.connected():
+        fleet, now_ns = session.station.reducer.fleet, session.station.now_ns()
+        met = order.kind not in SETS_OFF or all(fleet.quote(id, now_ns).agent for id in order.ids)
+        if order.ids and session.bus.connected() and met:
             return
         await asyncio.sleep(0.05)
 
@@ -171,7 +173,9 @@ async def _asked(order: Order, ids: tuple[int, ...]) -> bool:
     return answer.strip().lower() == "yes"
 
 
-async def play(settings: Settings, scenario: Scenario, *, plain: bool, auto_start: bool) -> int:
+async def play(
+    settings: Settings, scenario: Scenario, *, plain: bool, auto_start: bool, takes_over: str = ""
+) -> int:
     """Play a game with the ground station as its master; exit code 0 when it ended with a verdict."""
     from gcs.master import FieldMaster
 
@@ -182,7 +186,7 @@ async def play(settings: Settings, scenario: Scenario, *, plain: bool, auto_star
             raise ConfigError(
                 f"bus: found {session.lock.words}, expected keys, or open = true, for a game in the field"
             )
-        master = FieldMaster(session.station, scenario, auto_start=auto_start)
+        master = FieldMaster(session.station, scenario, auto_start=auto_start, takes_over=takes_over)
         session.extra = master.status
         async with asyncio.TaskGroup() as tasks:
             task = tasks.create_task(master.run(), name="master")

@@ -8,12 +8,15 @@ Repeating is harmless, because agents know a command by its id. After 38 tries (
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from types import MappingProxyType
 from typing import NamedTuple
+
+from msgspec.structs import replace
 
 from gcs.picture.values import CommandView, Leg, LegState
 from onboard.core.math.constants import NS_PER_S
-from onboard.wire.bus.messages import Command, CommandKind, CommandReply
+from onboard.wire.bus.messages import Command, CommandKind, CommandReply, Quote
 from onboard.wire.retry import CommandRetry, RetryPolicy
 
 RETRY_NS = 80_000_000
@@ -29,9 +32,10 @@ FINAL = frozenset({LegState.CONFIRMED, LegState.REFUSED, LegState.SUPERSEDED})
 
 
 class _Leg:
-    __slots__ = ("mode", "obeyed", "reason", "retry", "state", "took_ns")
+    __slots__ = ("command", "mode", "obeyed", "reason", "retry", "state", "took_ns")
 
-    def __init__(self) -> None:
+    def __init__(self, command: Command) -> None:
+        self.command = command  # with what had been heard of this vehicle when it was given
         self.state = LegState.SENT
         self.reason = ""
         self.mode = ""
@@ -43,10 +47,12 @@ class _Leg:
 class _Order:
     __slots__ = ("command", "issued_ns", "legs")
 
-    def __init__(self, command: Command, ids: Iterable[int], now_ns: int) -> None:
+    def __init__(
+        self, command: Command, ids: Iterable[int], now_ns: int, quotes: Mapping[int, Quote]
+    ) -> None:
         self.command = command
         self.issued_ns = now_ns
-        self.legs = {i: _Leg() for i in sorted(set(ids))}
+        self.legs = {i: _Leg(replace(command, quote=quotes.get(i, Quote()))) for i in sorted(set(ids))}
 
     def open(self, leg: _Leg, now_ns: int) -> bool:
         return leg.state not in FINAL and not self.expired(now_ns)
@@ -68,12 +74,20 @@ class CommandBook:
     def __init__(self) -> None:
         self._orders: dict[str, _Order] = {}
 
-    def issue(self, command: Command, ids: Iterable[int], now_ns: int) -> None:
-        """Enter a command to `ids`. It supersedes what is open to them, but for one thing: nothing that
-        sets a vehicle off supersedes an abort that is not confirmed yet."""
+    def issue(
+        self,
+        command: Command,
+        ids: Iterable[int],
+        now_ns: int,
+        quotes: Mapping[int, Quote] = MappingProxyType({}),
+    ) -> None:
+        """Enter a command to `ids`, with what each quotes: fixed now, however often it is sent.
+
+        It supersedes what is open to them, but for one thing: nothing that sets a vehicle off supersedes an
+        abort that is not confirmed yet."""
         if command.command_id in self._orders:
             return
-        order = _Order(command, ids, now_ns)
+        order = _Order(command, ids, now_ns, quotes)
         for other in self._orders.values():
             for vehicle_id, leg in other.legs.items():
                 if vehicle_id not in order.legs or not other.open(leg, now_ns):
@@ -113,7 +127,7 @@ class CommandBook:
         for order in self._orders.values():
             for vehicle_id, leg in order.legs.items():
                 if order.open(leg, now_ns) and leg.retry.due(now_ns):
-                    found.append(Due(vehicle_id, order.command))
+                    found.append(Due(vehicle_id, leg.command))
         return found
 
     def busy(self, now_ns: int) -> bool:

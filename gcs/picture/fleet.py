@@ -28,6 +28,7 @@ from onboard.wire.bus.messages import (
     Outcome,
     Phase,
     PhaseChange,
+    Quote,
     Setup,
     Severity,
     State,
@@ -196,6 +197,19 @@ class Fleet:
 
     def _on_brief(self, brief: EvaderBrief, now_ns: int) -> None:
         self._brief = brief
+
+    def quote(self, id: int, now_ns: int) -> Quote:
+        """What an order to a vehicle quotes, given now: its agent's state, and the newest word of the master,
+        or of the agent where the master's lease has ended."""
+        entry = self._entries.get(id)
+        health = entry.health if entry is not None else None
+        if health is None:
+            return Quote()
+        master = self._master
+        age = age_s(self._master_ns, now_ns)
+        if master is not None and age <= master.lease_s:
+            return Quote(master.nonce, master.number, health.nonce, health.stopped_by)
+        return Quote(health.nonce, health.number, health.nonce, health.stopped_by)
 
     def _on_master(self, master: Master, now_ns: int) -> None:
         if self._master is None or (master.name, master.nonce) != (self._master.name, self._master.nonce):

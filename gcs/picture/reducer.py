@@ -105,7 +105,8 @@ class PictureReducer:
         self.fleet.log.append(line)
 
     def _on_sent(self, sent: Sent, now_ns: int) -> None:
-        self.book.issue(sent.command, sent.ids, now_ns)
+        quotes = {id: self.fleet.quote(id, now_ns) for id in sent.ids}
+        self.book.issue(sent.command, sent.ids, now_ns, quotes)
         text = f"{sent.command.kind.value} to {', '.join(map(str, sent.ids))}, by {sent.command.sender}"
         line = LogLine(at_ns=now_ns, id=0, severity=Severity.INFO, kind="command", text=text)
         self.fleet.log.append(line)

@@ -3,7 +3,8 @@
 A plane gets no velocity targets: it reads one as an altitude of 0. The decision's air velocity plus the wind
 gives the course over ground; its error gives a turn rate, and that a bank angle. The autopilot keeps altitude
 and airspeed by its own loops (43001, 43000). Roll-only attitude lapses after 3 s, altitude and speed do not,
-and the plain variant's course (43002) never does: so to end is to command LOITER.
+and the plain variant's course (43002) never does: so the supervisor leaves a plane to LOITER where it would
+end a multicopter's stream.
 """
 
 from __future__ import annotations
@@ -87,7 +88,7 @@ class ArduPlaneEncoder:
 
     def __init__(self, to: Target, bank_max: float, *, plain: bool = False) -> None:
         name = "arduplane-plain" if plain else "arduplane"
-        self.traits = Traits(name, Kind.ARDUPLANE, "GUIDED", holds_airspeed=True, stops_in_silence=False)
+        self.traits = Traits(name, Kind.ARDUPLANE, "GUIDED", holds_airspeed=True)
         self._bank_max = bank_max  # [rad]
         self._plain = plain
         self._to = to

@@ -155,8 +155,7 @@ class Adapter(Protocol):
         ...
 
     def end(self, now: float) -> None:
-        """End the stream of setpoints for want of a decision: silence where the autopilot then stops by
-        itself, a command to loiter where it would fly on."""
+        """End the stream of setpoints for want of a decision. It changes no mode."""
         ...
 
     def arm(self, now: float) -> bool:

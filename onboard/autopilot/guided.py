@@ -30,7 +30,6 @@ class Traits(NamedTuple):
     guided_mode: str  # the mode in which setpoints count, in the autopilot's words
     hold_mode: str = ""  # the mode to hold in that is configured; "": as `release_modes` says
     holds_airspeed: bool = False  # a constant speed means airspeed
-    stops_in_silence: bool = True  # the autopilot stops by itself when setpoints end
 
 
 class SetpointEncoder(Protocol):
@@ -105,10 +104,8 @@ class GuidedAdapter:
         self._machine.leave(mode, chain(mode, now, self._telemetry, self._release))
 
     def end(self, now: float) -> None:
-        """End the stream: by silence where the autopilot then stops by itself, else by leaving to hold."""
+        """End the stream: the next setpoint begins a new one."""
         self._encoder.restart()
-        if not self._encoder.traits.stops_in_silence and self.stage is Stage.ACTIVE:
-            self.leave(now, ReleaseMode.HOLD)
 
     def arm(self, now: float) -> bool:
         """Ask for arming, if made with `may_arm`."""

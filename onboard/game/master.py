@@ -12,6 +12,8 @@ from collections.abc import Mapping
 from enum import Enum
 from typing import Any, NamedTuple
 
+from msgspec.structs import replace
+
 from onboard.core.game.referee import GameResult, Score, Step, judge, opening, passage
 from onboard.core.game.rules import Target
 from onboard.core.math.constants import NS_PER_S
@@ -89,9 +91,13 @@ class GameMaster:
     """Give it time and messages; take `outgoing()` to the bus and `news()` to the people.
 
     `target` is the evader's [m; NED], None in a game without one; of two masters the smaller `nonce` stays.
+    `takes_over` names the master, silent now, whose running game a person lets this one lead on.
     """
 
-    def __init__(self, setup: Setup, target: Vec | None, name: str, nonce: int, timing: Timing) -> None:
+    def __init__(
+        self, setup: Setup, target: Vec | None, name: str, nonce: int, timing: Timing, takes_over: str = ""
+    ) -> None:
+        self._takes_over = takes_over
         self.setup = setup
         self.name = name
         self.nonce = nonce
@@ -118,6 +124,7 @@ class GameMaster:
         self._outgoing: list[Publication] = []
         self._news: list[str] = []
         self._told: set[object] = set()
+        self._words = self._phases = 0  # said so far
 
     # ------------------------------------------------------------------ what it hears
 
@@ -172,13 +179,15 @@ class GameMaster:
             self.standing = Standing.HOLDING
             self._staged_ns = now_ns
             self._lease_ns = now_ns
-            self._put(SETUP, self.setup)
+            self._put(SETUP, replace(self.setup, master=self.name, nonce=self.nonce))
             self._put(EVADER_BRIEF, EvaderBrief(self._triple_target(), wall_ns))
             self._publish_phase(wall_ns, "")
         if self.standing is not Standing.HOLDING:
             return
         if now_ns >= self._lease_ns:
-            self._put(MASTER, Master(self.name, wall_ns, LEASE_S, self.nonce))
+            self._words += 1
+            word = Master(self.name, wall_ns, LEASE_S, self.nonce, self._words, self._takes_over)
+            self._put(MASTER, word)
             self._lease_ns = max(self._lease_ns + LEASE_EVERY_NS, now_ns)
         if self.phase is Phase.STAGING:
             self._stage(wall_ns, now_ns)
@@ -340,7 +349,12 @@ class GameMaster:
         self._say(f"{self.phase.value}{': ' + reason if reason else ''}")
 
     def _publish_phase(self, wall_ns: int, reason: str) -> None:
-        self._put(PHASE, PhaseChange(self.phase, self.t0_ns, wall_ns, self._resume, reason))
+        self._phases += 1
+        phase = PhaseChange(
+            phase=self.phase, t0_ns=self.t0_ns, stamp_ns=wall_ns, resume=self._resume, reason=reason,
+            master=self.name, nonce=self.nonce, number=self._phases,
+        )  # fmt: skip
+        self._put(PHASE, phase)
 
     def _triple_target(self) -> Triple | None:
         return None if self._target is None else (self._target.x, self._target.y, self._target.z)

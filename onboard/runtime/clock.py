@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import time
 
+from onboard.runtime.protocols import Clock
+
 
 class RealClock:
     """The machine's clocks: the only place that reads them."""
@@ -15,6 +17,22 @@ class RealClock:
     def monotonic_ns(self) -> int:
         """Monotonic time [ns]; its zero means nothing."""
         return time.monotonic_ns()
+
+
+class SteadyClock:
+    """Wall time as it was at first, carried on by monotonic time: setting the clock does not move it."""
+
+    def __init__(self, clock: Clock) -> None:
+        self._clock = clock
+        self._base_ns = clock.wall_ns() - clock.monotonic_ns()
+
+    def wall_ns(self) -> int:
+        """Wall instant [ns since the epoch], without any jump since this was made."""
+        return self._base_ns + self._clock.monotonic_ns()
+
+    def monotonic_ns(self) -> int:
+        """Monotonic time [ns]; its zero means nothing."""
+        return self._clock.monotonic_ns()
 
 
 class VirtualClock:

@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections import Counter
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
@@ -82,17 +79,6 @@ def _sessions_of_member(member: Membership, listen: bool, config_file: Path | No
     if listen:
         sessions.insert(0, Candidate("listening", _config(config_file, ALWAYS)))
     return sessions
-
-
-@contextmanager
-def counting(counts: Counter[str], cause: str) -> Iterator[None]:
-    """What Zenoh raises in the block is counted, and ends nothing."""
-    try:
-        yield
-    except BaseException as error:
-        if not of_zenoh(error):
-            raise
-        counts[cause] += 1
 
 
 def first_sentence(error: BaseException) -> str:

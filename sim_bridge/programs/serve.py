@@ -16,7 +16,7 @@ from onboard.config.strict import ConfigError
 from onboard.game.master import Standing
 from onboard.game.scenario import Scenario, load
 from onboard.runtime.bus_zenoh import ZenohBus, open_zenoh
-from onboard.runtime.clock import RealClock
+from onboard.runtime.clock import RealClock, SteadyClock
 from onboard.runtime.links import open_udp
 from onboard.runtime.protocols import Link
 from onboard.runtime.tasks import Pace, periodic
@@ -87,7 +87,8 @@ async def serve_scenario(
         bridge_options = BridgeOptions(
             secrets.randbits(48), options.game, options.seed, folder, options.referee
         )
-        bridge = Bridge(scenario, RealClock(), bus, links, bridge_options, say)
+        clock = SteadyClock(RealClock())  # a game outlives a clock that is set
+        bridge = Bridge(scenario, clock, bus, links, bridge_options, say)
         _introduce(scenario, options, ports, radios, bus, say)
         if started is not None:
             started(bridge, bus, ports)

@@ -232,8 +232,13 @@ class Stage:
 
     def _lease(self) -> None:
         now = self._clock.wall_ns()
-        self._put(topics.MASTER, topics.MASTER.encode(Master("bench", now, 2.0, self._nonce)))
-        phase = PhaseChange(Phase.RUNNING, self._begun_ns, now, resume=(PURSUER,))
+        self._words += 1
+        lease = Master("bench", now, 2.0, self._nonce, self._words)
+        self._put(topics.MASTER, topics.MASTER.encode(lease))
+        phase = PhaseChange(
+            Phase.RUNNING, self._begun_ns, now, resume=(PURSUER,), master="bench", nonce=self._nonce,
+            number=self._words,
+        )  # fmt: skip
         self._put(topics.PHASE, topics.PHASE.encode(phase))
 
     def _states(self) -> None:

@@ -31,7 +31,7 @@ from onboard.wire.bus.messages import Command, CommandKind, Phase  # noqa: E402
 from onboard.wire.bus.topics import COMMAND  # noqa: E402
 from tests.soak.faults import NAMES, OF_ALL, OF_ONE, Rng, Undo  # noqa: E402
 from tests.support.flown_autopilot import FLOWN  # noqa: E402
-from tests.support.whole_games import WholeGame, flies, game_of  # noqa: E402
+from tests.support.whole_games import WholeGame, flies, game_of, quoting  # noqa: E402
 
 GAME_S = 600.0
 LOOK_S = 0.1
@@ -185,6 +185,7 @@ class Soak:
                 self.totals["resumes"] += 1
                 shown = self.game.bridge.world.vehicles[id].autopilot.mode_name
                 order = Command(f"soak-{self._orders}", CommandKind.RESUME, "operator", 0, shown)
+                order = quoting(self.game, id, order)
                 where = COMMAND.key(self.game.game, id)
                 await self.game.bus.request(where, COMMAND.encode(order), 0.5)
 

@@ -11,6 +11,8 @@ from collections import Counter
 from collections.abc import Callable, Hashable
 from typing import Any
 
+from msgspec.structs import replace
+
 from onboard.agent.shell import Agent
 from onboard.autopilot.base import Stage
 from onboard.core.math.constants import NS_PER_S
@@ -26,6 +28,7 @@ from onboard.wire.bus.messages import (
     Event,
     OutcomeResult,
     Phase,
+    Quote,
     Severity,
 )
 from onboard.wire.bus.topics import COMMAND, everything
@@ -207,8 +210,16 @@ def command(kind: CommandKind, id: str = "c-1", sender: str = "tower") -> Comman
     return Command(id, kind, sender, 0)
 
 
+def quoting(game: Rehearsal, vehicle: int, what: Command) -> Command:
+    """The command with what a station quotes that has heard everything up to now."""
+    core = game.agents[vehicle].core
+    nonce, number = core.bus.masters.last or (core.facts.nonce, core.desk.number)
+    return replace(what, quote=Quote(nonce, number, core.facts.nonce, core.orders.stopped_by))
+
+
 async def order(game: Rehearsal, vehicle: int, what: Command, timeout_s: float = 0.5) -> CommandReply:
-    """Send a command once; the reply."""
+    """Send a command once, by somebody who has heard all there is to hear; the reply."""
+    what = quoting(game, vehicle, what)
     replies = await game.bus.request(COMMAND.key(game.game, vehicle), topics.COMMAND.encode(what), timeout_s)
     reply = topics.COMMAND.decode_reply(replies[0], Counter())
     assert reply is not None

@@ -7,12 +7,13 @@ the evader's brief only as the evader. Nothing that arrives raises; what is wron
 from __future__ import annotations
 
 from collections import Counter, OrderedDict
-from typing import Any
+from typing import Any, NamedTuple
 
 from onboard.agent.config import AgentConfig
 from onboard.agent.core.clocks import MasterClock
 from onboard.agent.core.events import Instant, Outbox, Subscribe, Unsubscribe
 from onboard.agent.core.journal import Journal
+from onboard.agent.core.masters import MASTERS_MAX, Hearing, Masters, Who
 from onboard.core.math.constants import NEVER
 from onboard.core.math.states import Mate, MateState, carried
 from onboard.core.math.vectors import Vec
@@ -22,6 +23,7 @@ from onboard.wire.bus.messages import (
     Health,
     Master,
     Outcome,
+    Phase,
     PhaseChange,
     Role,
     Setup,
@@ -29,8 +31,14 @@ from onboard.wire.bus.messages import (
     Track,
 )
 
-MASTERS_MAX = 8
 SAY_AGAIN_S = 30.0  # a trouble that goes on is said again after this
+
+
+class Waiting(NamedTuple):
+    """What was heard from one who is not the master: it counts once that one leads."""
+
+    setup: Setup | None
+    phase: PhaseChange | None
 
 
 class Heard:
@@ -60,8 +68,8 @@ class BusView:
         self.master_at = NEVER  # when the master was last heard [s, monotonic]
         self._game, self._id, self._role, self._nonce = config.game, config.id, config.role, nonce
         self._out, self._journal = out, journal
-        self._masters: OrderedDict[tuple[str, int], float] = OrderedDict()
-        self._obeyed: tuple[str, int] | None = None
+        self.masters = Masters()
+        self._waiting: OrderedDict[Who, Waiting] = OrderedDict()
         self._said: dict[str, float] = {}
         self._followed: list[int] = []
         self._own_track = topics.TRACK.key(self._game, self._id)
@@ -130,20 +138,38 @@ class BusView:
     def _take_setup(self, setup: Setup) -> None:
         if setup == self.setup:
             return
-        holder = self._obeyed
-        leased = holder is not None and self._masters.get(holder, NEVER) >= self._now.s
-        if holder is not None and leased and setup.master != holder[0]:
-            text = f"setup from {setup.master}, but {holder[0]} is the master: ignored"
-            self._trouble("two_masters", text)
+        who = (setup.master, setup.nonce)
+        if who != self.masters.leader:
+            text = f"setup from {setup.master}, but {self.masters.name} is the master: ignored"
+            self._wait(who, text, setup=setup)
             return
         self.setup = setup
         self.setup_number += 1
 
     def _take_phase(self, phase: PhaseChange) -> None:
-        if self.phase is not None and phase.stamp_ns < self.phase.stamp_ns:
-            self.drops["old_phase"] += 1
+        who = (phase.master, phase.nonce)
+        if who != self.masters.leader:
+            text = f"phase {phase.phase.value} from '{phase.master}', but {self.masters.name} is the master"
+            self._wait(who, text, phase=phase)
+            return
+        before = self.phase
+        if before is not None and who == (before.master, before.nonce) and phase.number <= before.number:
+            self.drops["old_phase"] += phase.number < before.number
             return
         self.phase = phase
+        self.masters.game_runs = phase.phase is Phase.RUNNING
+
+    def _wait(
+        self, who: Who, text: str, setup: Setup | None = None, phase: PhaseChange | None = None
+    ) -> None:
+        """Keep what another than the master says: it may come to lead."""
+        if self.masters.leader is not None and self.masters.holds(self._now.s):
+            self._trouble("two_masters", text)
+        kept = self._waiting.pop(who, Waiting(None, None))
+        newer = phase is not None and (kept.phase is None or phase.number > kept.phase.number)
+        self._waiting[who] = Waiting(setup or kept.setup, phase if newer else kept.phase)
+        if len(self._waiting) > MASTERS_MAX:
+            self._waiting.popitem(last=False)
 
     def _take_outcome(self, outcome: Outcome) -> None:
         self.outcome = outcome
@@ -165,21 +191,21 @@ class BusView:
     def _take_master(self, master: Master) -> None:
         now = self._now
         who = (master.name, master.nonce)
-        lease = min(max(master.lease_s, 0.1), 60.0)
-        for other in [other for other, until in self._masters.items() if until < now.s]:
-            del self._masters[other]
-        if who not in self._masters and len(self._masters) >= MASTERS_MAX:
-            self.drops["masters_overflow"] += 1
+        before = self.masters.leader
+        found = self.masters.hear(master, now.s)
+        if found is not Hearing.LEADS:
+            self.drops[found.name.lower()] += 1
+            if found is not Hearing.OVERFLOW:
+                self._trouble("two_masters", f"{master.name} {found.value} {self.masters.name}")
             return
-        first = next(iter(self._masters), who)
-        self._masters[who] = now.s + lease
-        if first != who:  # the one whose lease is older is obeyed; its clock counts
-            self._trouble("two_masters", f"{first[0]} and {master.name} both say they are the master")
-            return
-        if who != self._obeyed:
-            self._obeyed = who
+        if who != before:
             self.clock.restart()
             self._journal.info("master", f"{master.name} is the master")
+            kept = self._waiting.pop(who, Waiting(None, None))
+            if kept.setup is not None:
+                self._take_setup(kept.setup)
+            if kept.phase is not None:
+                self._take_phase(kept.phase)
         self.master_at = now.s
         if self.clock.hear(now.wall_ns, master.stamp_ns):
             offset = f"{self.clock.offset_s * 1e3:+.0f} ms against the master's clock"

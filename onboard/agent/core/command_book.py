@@ -1,4 +1,7 @@
-"""Commands from the ground: idempotent by id, and confirmed only by what the autopilot reports."""
+"""Commands from the ground: once each, in order, of an age, confirmed only by what the autopilot reports.
+
+docs/commands.md is the specification.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,11 @@ from onboard.autopilot.base import Stage
 from onboard.core.safety.policy import Action
 from onboard.wire.bus.messages import Command, CommandKind, CommandState
 
-KEPT = 64  # commands remembered
+KEPT = 64  # commands remembered with their state
+KNOWN = 1 << 16  # … and by id alone: none of these becomes new again
+SETS_OFF = frozenset({CommandKind.START, CommandKind.RESUME})
+
+Key = tuple[str, str, CommandKind]  # id, sender, kind: nobody's order hides behind another's id
 
 
 class Entry:
@@ -28,16 +35,42 @@ class Orders:
         self.granted = False  # a start or resume gave the agent control
         self.obeyed = ""
         self._abort = abort
-        self._known: OrderedDict[str, Entry] = OrderedDict()
+        self.stopped_by = ""  # id of the last order obeyed that stops
+        self.blocked = ""  # an order from before this agent had control, which a person has to clear
+        self._known: OrderedDict[Key, Entry] = OrderedDict()
+        self._ids: OrderedDict[Key, None] = OrderedDict()
         self._open: Entry | None = None
 
-    def give(self, command: Command, refusal: str) -> tuple[Entry, bool]:
-        """Take a command; `refusal` says why it cannot be obeyed now ('' if it can). True for a new one."""
-        known = self._known.get(command.command_id)
+    def unfit(self, command: Command, nonce: int, *, fresh: bool) -> str:
+        """Why a command that sets off does not count for this process (`nonce`); '' if it does.
+
+        `fresh`: it quotes what this agent heard, or said, a short time ago."""
+        quote = command.quote
+        if command.kind not in SETS_OFF:
+            return ""
+        if quote.agent != nonce:
+            return "meant for another process of this agent: look, and give it again"
+        if not fresh:
+            return "too old: it quotes nothing that was heard in the last 5 s"
+        if quote.after != self.stopped_by:
+            return f"given before {self.stopped_by} stopped this vehicle: look, and give it again"
+        return ""
+
+    def give(self, command: Command, refusal: str, *, historic: bool = False) -> tuple[Entry, bool]:
+        """Take a command; `refusal` says why it cannot be obeyed now ('' if it can). True for a new one.
+
+        `historic`: a stop from before the agent had control. It moves nothing; it blocks the start."""
+        key = (command.command_id, command.sender, command.kind)
+        known = self._known.get(key)
         if known is not None:
             return known, False
+        if key in self._ids:
+            return Entry(command, CommandState.SUPERSEDED, "an old order, known already"), False
+        self._ids[key] = None
+        if len(self._ids) > KNOWN:
+            self._ids.popitem(last=False)
         entry = Entry(command, CommandState.REFUSED if refusal else CommandState.PENDING, refusal)
-        self._known[command.command_id] = entry
+        self._known[key] = entry
         if len(self._known) > KEPT:
             self._known.popitem(last=False)
         if refusal:
@@ -48,9 +81,14 @@ class Orders:
         self._open = entry
         self.obeyed = command.sender
         kind = command.kind
-        if kind in (CommandKind.START, CommandKind.RESUME):
+        if kind in SETS_OFF:
             self.order = Action.PASS
-            self.granted = True
+            self.granted, self.blocked = True, ""
+            return entry, True
+        self.stopped_by = command.command_id
+        if historic:
+            self.blocked = f"{kind.value} from {command.sender}"
+            entry.state, entry.reason = CommandState.CONFIRMED, "not in control: the start is blocked"
         else:
             self.order = {
                 CommandKind.HOLD: Action.HOLD,
@@ -65,7 +103,7 @@ class Orders:
         entry = self._open
         if entry is None or entry.state is not CommandState.PENDING:
             return None
-        sets_off = entry.command.kind in (CommandKind.START, CommandKind.RESUME)
+        sets_off = entry.command.kind in SETS_OFF
         if stage is (Stage.ACTIVE if sets_off else Stage.LEFT):
             entry.state = CommandState.CONFIRMED
         elif stage is Stage.TAKEN:

@@ -15,7 +15,7 @@ from onboard.agent.core.journal import Journal
 from onboard.agent.core.part import Part, PartState
 from onboard.agent.core.takeoff import TakeOff
 from onboard.agent.core.vehicle_link import Control, VehicleLink
-from onboard.autopilot.base import ReleaseMode, Setpoint, Stage, Telemetry
+from onboard.autopilot.base import Adapter, ReleaseMode, Stage, Telemetry
 from onboard.config.printable import named
 from onboard.core.math.constants import NEVER
 from onboard.core.math.vectors import ZERO, Vec, along, sub
@@ -24,6 +24,7 @@ from onboard.core.safety.supervisor import (
     SupervisorOutput,
     SupervisorState,
     handed_back,
+    in_another_game,
     reordered,
     supervise,
 )
@@ -35,6 +36,7 @@ from onboard.wire.bus.messages import Severity
 
 SILENT_S = 1.0  # a link silent for longer explains that the autopilot changed to hold by itself
 REGAIN_S = 6.0  # … for so long afterwards
+GIVEN_S = 5.0  # so long after control was given back the agent sets off, if the supervisor lets it
 WIND_FRESH_S = 10.0
 CRITICAL = 5  # MAV_STATE of a vehicle in a failsafe, and of worse
 HOMEWARD = frozenset(("RTL", "SMART_RTL", "AUTO_RTL", "LAND", "AUTOLAND", "PRECLAND", "QRTL", "QLAND"))
@@ -76,7 +78,8 @@ class Flight:
         self.failures = 0  # of the strategy
         self.take_off = TakeOff(config.take_off_height)
         self.open: OpenStep | None = None
-        self._vehicle, self._bus, self._orders, self._journal = vehicle, bus, orders, journal
+        self.ending = False  # the process ends: the vehicle is left in the autopilot's mode to hold
+        self.vehicle, self.bus, self._orders, self._journal = vehicle, bus, orders, journal
         self._state = SupervisorState()
         self._policy = part.policy
         self._jumps = JumpWatch(config.safety.clock_jump_s)
@@ -86,6 +89,7 @@ class Flight:
         self._failing = False
         self._alive_at = NEVER  # the strategy's last sign of life [s]
         self._silent_at = NEVER  # when the link was last found silent [s]
+        self._given_at = NEVER  # when control was given back, and the guided mode is not asked for yet [s]
 
     # ------------------------------------------------------------------ the control step
 
@@ -93,15 +97,15 @@ class Flight:
         """Begin a control step. Where a strategy is to be asked, `answered` completes it."""
         jump = self._jumps.look(now)
         if jump != 0.0:
-            self._bus.clock.restart()
+            self.bus.clock.restart()
             self._journal.error("clock_jump", f"the wall clock jumped by {jump:+.3f} s")
         self.part.follow(now)  # it may fix the frame in which positions count
-        telemetry = self._vehicle.look(now.s)
+        telemetry = self.vehicle.look(now.s)
         state = self.part.state(now.wall_ns)
         self._resumed = state.resumed
         if self.part.policy is not self._policy:
-            if not _only_limits(self._policy, self.part.policy):  # another game: nothing is latched any more
-                self._state = SupervisorState()
+            if not _only_limits(self._policy, self.part.policy):  # what was latched in the last game is over
+                self._state = in_another_game(self._state)
             self._policy = self.part.policy
         heard_at = max(telemetry.heartbeat_at, telemetry.position_at)
         if telemetry.heartbeat_at != NEVER and now.s - heard_at > SILENT_S:
@@ -140,7 +144,7 @@ class Flight:
             self._complete(step, took, f"no answer within {took:.2f} s")
 
     def _ask(self, now: Instant, t: Telemetry) -> Think | None:
-        plane = self._vehicle.hovers is False
+        plane = self.vehicle.hovers is False
         wind = t.wind if plane and now.s - t.wind_at < WIND_FRESH_S else ZERO
         position = along(t.position, t.velocity, min(max(0.0, now.s - t.position_at), 0.5))
         self._number += 1
@@ -174,22 +178,28 @@ class Flight:
             track_sigma=decision.sigma if decision is not None else inf,
         )
         wanted = decision.velocity if decision is not None and decision.decides else ZERO
-        self._supervise(wanted, seen)
+        self._judge(wanted, seen)
 
     def obey(self, now: float) -> None:
         """Follow at once what the ground has ordered, or what it gives back."""
-        adapter = self._vehicle.adapter
+        adapter = self.vehicle.adapter
         if adapter is None:
             return
-        telemetry = self._vehicle.look(now)
+        telemetry = self.vehicle.look(now)
         if self._orders.order is Action.PASS:
+            self._given_at = now
             self.part.let_in()
             self.resumed()
-            adapter.enter(now)
-            self.drive(now, None)
+            self._judge(ZERO, self._input(now, telemetry), streams=False)
         else:
+            self._given_at = NEVER
             self._state = reordered(self._state)
-            self._supervise(ZERO, self._input(now, telemetry))
+            self._judge(ZERO, self._input(now, telemetry))
+
+    def leave(self, now: float) -> None:
+        """The process ends: leave the vehicle in a mode that the autopilot holds alone, or going home."""
+        self.ending, self.open = True, None
+        self._judge(ZERO, self._input(now, self.vehicle.look(now)))
 
     def _input(self, now: float, t: Telemetry) -> SupervisorInput:
         """What the supervisor looks at, but for what belongs to a decision."""
@@ -198,86 +208,109 @@ class Flight:
             id=self.config.id,
             position=t.position,
             velocity=t.velocity,
-            mates=self._bus.mates_at(now),
+            mates=self.bus.mates_at(now),
             telemetry_age=now - t.position_at if t.placed else inf,
             heartbeat_age=now - t.heartbeat_at,
-            ground_age=now - self._bus.master_at,
+            ground_age=now - self.bus.master_at,
             clock_jump_age=now - self._jumps.jumped_at,
             battery=t.battery,
             ekf_ok=t.ekf_ok or t.ekf_at == NEVER,
             gps_fix=t.gps_fix if t.gps_at != NEVER else 3,
-            pilot=self._vehicle.stage is Stage.TAKEN,
-            order=self._orders.order,
+            pilot=self.vehicle.stage is Stage.TAKEN and not self._given(now),
+            order=max(self._orders.order, Action.HOLD) if self.ending else self._orders.order,
         )
 
-    def _supervise(self, wanted: Vec, seen: SupervisorInput, *, streams: bool = True) -> None:
-        """Let the supervisor judge, do what it commands, and tell where that is something new.
+    @property
+    def latched(self) -> str:
+        """Why the vehicle is not flown until a person gives control back; '' where nothing is latched."""
+        return "" if self._state.floor is Action.PASS else CAUSES[self._state.floor_cause]
 
-        Without `streams` a velocity that it lets pass is not sent."""
-        output = supervise(wanted, seen, self.part.policy, self._state)
+    def _given(self, now: float) -> bool:
+        return now - self._given_at < GIVEN_S
+
+    def _thresholds(self) -> Policy:
+        """The part's, for the kind of vehicle that was found."""
+        policy, hovers = self.part.policy, self.vehicle.hovers is not False
+        if policy.envelope.hovers == hovers:
+            return policy
+        return policy._replace(envelope=policy.envelope._replace(hovers=hovers))
+
+    def _judge(
+        self, wanted: Vec, seen: SupervisorInput, *, streams: bool = True, enters: bool = True
+    ) -> SupervisorOutput:
+        """Let the supervisor judge this step, do what it commands, and tell where that is something new.
+
+        Without `streams` a velocity that it lets pass is not sent. With `enters` the guided mode is asked for
+        where a velocity may pass and the vehicle is not in it."""
+        output = supervise(wanted, seen, self._thresholds(), self._state)
         self._state, self.output = output.state, output
-        self._carry_out(seen.now, output, seen.wind, streams=streams)
+        self._carry_out(seen.now, output, streams=streams, enters=enters)
         if output.changed:
             self._say(output)
+        return output
 
-    def _carry_out(self, now: float, output: SupervisorOutput, wind: Vec, *, streams: bool) -> None:
-        """From the supervisor's output to what the adapter is asked for: the one exit of setpoints."""
-        adapter = self._vehicle.adapter
+    def _carry_out(self, now: float, output: SupervisorOutput, *, streams: bool, enters: bool) -> None:
+        """From the supervisor's verdict to what the adapter is asked for."""
+        adapter = self.vehicle.adapter
         if adapter is None:
             return
         ours = adapter.stage in (Stage.ACTIVE, Stage.ENTERING)
         command = output.command
-        setpoint: Setpoint | None = None
-        known = not self._vehicle.unread  # of what its limits are; until then no setpoint leaves
-        if command is Command.STREAM and streams and known:
-            if not ours and adapter.stage is not Stage.TAKEN and self.may_control:
-                adapter.enter(now)
-            setpoint = Setpoint(output.air, wind)
-            self.setpoint = output.ground
-        elif command is Command.HOVER and known:
-            setpoint = Setpoint(ZERO)
+        known = not self.vehicle.unread  # of what its limits are; until then no setpoint leaves
+        if command is Command.STREAM and known:
+            if enters:
+                free = adapter.stage is not Stage.TAKEN and self.may_control
+                if not ours and (free or self._given(now)):
+                    adapter.enter(now)
+                self._given_at = NEVER
+            if streams:
+                self.setpoint = output.ground
         elif command is Command.END_STREAM:
             adapter.end(now)
         elif command in RELEASES:
             # Without an order only what is ours is released, or what is on its way to a milder mode.
             leaving = adapter.stage is Stage.LEAVING and command is not Command.RELEASE_TO_HOLD
-            if ours or leaving or self._orders.order is not Action.PASS:
-                adapter.leave(now, RELEASES[command])
-        self.drive(now, setpoint)
+            if ours or leaving or self._orders.order is not Action.PASS or self.take_off.climbing:
+                ends = self.ending and self._orders.order is Action.PASS
+                departs = ends and command is Command.RELEASE_TO_HOLD
+                adapter.leave(now, ReleaseMode.DEPART if departs else RELEASES[command])
+        flown = streams and known and (command is Command.STREAM or ours)
+        self.drive(now, output if flown else None)
 
     # ------------------------------------------------------------------ before and after the part
 
     def _stand_by(self, now: float, t: Telemetry, state: PartState) -> None:
-        """Take control when the part is about to begin; what is under control is supervised from then on."""
-        adapter = self._vehicle.adapter
+        """Take control when the part is about to begin; what is or becomes ours is judged in each step."""
+        adapter = self.vehicle.adapter
         if adapter is None:
             return
-        ordered = self._orders.order is not Action.PASS
-        if not ordered and not state.over:
-            idle = adapter.stage in (Stage.IDLE, Stage.LEFT)
-            if state.engaged and state.near and idle and self.may_control:
-                adapter.enter(now)
-            if self._takes_off(now, state):
-                self.drive(now, None)
-                return
-        if not ordered and adapter.stage not in (Stage.ENTERING, Stage.ACTIVE):
-            self.drive(now, None)
+        held = self._orders.order is not Action.PASS
+        ours = adapter.stage in (Stage.ENTERING, Stage.ACTIVE, Stage.LEAVING)
+        wanted = not held and not state.over and self._wanted(now, adapter, state)
+        climbs = not held and not state.over and self._climbs(t, state)
+        if not (held or ours or wanted or climbs):
+            self.drive(now)
             return
+        before = self._state
         # A multicopter hovers; a plane flies on as it does: in its guided mode it circles by itself.
         hovers = not adapter.holds_airspeed
         seen = self._input(now, t)._replace(over=state.over, wind=ZERO if hovers else t.wind)
-        self._supervise(
-            ZERO if hovers else sub(t.velocity, t.wind),
-            seen,
-            streams=hovers and not (state.late and not self._orders.granted),
-        )
+        still = ZERO if hovers else sub(t.velocity, t.wind)
+        waits = climbs or (state.late and not self._orders.granted)
+        output = self._judge(still, seen, streams=hovers and not waits, enters=wanted)
+        if not (held or ours):  # what was not ours has latched nothing
+            self._state = self._state._replace(floor=before.floor, floor_cause=before.floor_cause)
+        if climbs and output.command is Command.STREAM and self.take_off.step(now, self.vehicle):
+            self.drive(now)
 
-    def _takes_off(self, now: float, state: PartState) -> bool:
-        """A ground start: whether the vehicle is on its way up, by this agent's doing."""
-        allowed = self.config.may_arm and state.engaged and self.may_control
-        if not allowed:
-            return False
-        return self.take_off.step(now, self._vehicle)
+    def _wanted(self, now: float, adapter: Adapter, state: PartState) -> bool:
+        """Whether control is to be taken, if the supervisor lets it."""
+        idle = adapter.stage in (Stage.IDLE, Stage.LEFT)
+        return self._given(now) or (state.engaged and state.near and idle and self.may_control)
+
+    def _climbs(self, t: Telemetry, state: PartState) -> bool:
+        """Whether a ground start is this agent's to do, and is not done."""
+        return self.config.may_arm and state.engaged and self.may_control and self.take_off.pending(t)
 
     # ------------------------------------------------------------------ whose hands fly
 
@@ -288,9 +321,9 @@ class Flight:
         By itself it ends neither a way home nor a failsafe, and where it was started while the game runs it
         enters nothing: then it flies a vehicle that it finds in the guided mode.
         """
-        t = self._vehicle.telemetry
+        t = self.vehicle.telemetry
         bound = t.mode in HOMEWARD or t.status >= CRITICAL
-        return self._orders.granted or (self._trusted and not bound)
+        return (self._orders.granted or (self._trusted and not bound)) and not self._orders.blocked
 
     def objection(self, command: messages.Command) -> str:
         """Why the hands that fly now stand against a command; "" where they do not.
@@ -298,9 +331,9 @@ class Flight:
         Who takes a vehicle out of a way home, a landing or a failsafe must have named it alone and seen its
         mode: one word to all does not do. What this agent was ordered itself it may be ordered out of.
         """
-        t = self._vehicle.telemetry
+        t = self.vehicle.telemetry
         if command.kind not in (messages.CommandKind.RESUME, messages.CommandKind.START):
-            return f"a pilot flies it, in {t.mode}" if self._vehicle.stage is Stage.TAKEN else ""
+            return f"a pilot flies it, in {t.mode}" if self.vehicle.stage is Stage.TAKEN else ""
         failsafe = t.status >= CRITICAL
         bound = failsafe or (t.mode in HOMEWARD and self._orders.order is Action.PASS)
         if not bound or command.mode == t.mode:
@@ -314,10 +347,10 @@ class Flight:
         """Whether the configuration lets this process take control of what it began with."""
         return self.config.take_control and not self._resumed
 
-    def drive(self, now: float, setpoint: Setpoint | None) -> None:
-        """Let the adapter do what is due, with the setpoint of this step or without one."""
-        change = self._vehicle.step(now, setpoint)
-        self._hold.look(now, self._vehicle, self.part.policy.envelope)
+    def drive(self, now: float, verdict: SupervisorOutput | None = None) -> None:
+        """Let the adapter do what is due, with the verdict on this step or without a setpoint."""
+        change = self.vehicle.step(now, verdict)
+        self._hold.look(now, self.vehicle, self.part.policy.envelope)
         if change is Control.TAKEN:
             self._taken(now)
         elif change is not Control.SAME:
@@ -329,12 +362,13 @@ class Flight:
         self._state = SupervisorState() if not self.playing else handed_back(self._state)
 
     def _taken(self, now: float) -> None:
-        t, adapter = self._vehicle.telemetry, self._vehicle.adapter
+        t = self.vehicle.telemetry
         fell_back = t.mode == "HOLD" and now - self._silent_at < REGAIN_S
-        if fell_back and (self._orders.granted or self._trusted) and adapter is not None:
+        if fell_back and (self._orders.granted or self._trusted):
             self._journal.warning("regain", f"{t.mode} while the link was silent: asking again")
-            adapter.enter(now)
+            self._given_at = now
         else:
+            self._given_at = NEVER
             self._orders.taken()
 
     # ------------------------------------------------------------------ inside

@@ -14,6 +14,8 @@ from typing import Any, NamedTuple
 from onboard.agent.config import AgentConfig, KnockOff
 from onboard.agent.core.bus_view import BusView
 from onboard.agent.core.command_book import Orders
+from onboard.agent.core.command_desk import CommandDesk
+from onboard.agent.core.ending import Ending
 from onboard.agent.core.events import (
     Announce,
     Answered,
@@ -33,7 +35,6 @@ from onboard.agent.core.events import (
     Loaded,
     Outbox,
     Publish,
-    Reply,
     Request,
     Serve,
     Started,
@@ -45,24 +46,15 @@ from onboard.agent.core.game_player import GamePlayer
 from onboard.agent.core.journal import Journal
 from onboard.agent.core.mavlink_radio import Radio
 from onboard.agent.core.part import Part
-from onboard.agent.core.readiness import why_no_order
 from onboard.agent.core.reports import Reports, Standing
 from onboard.agent.core.route_player import RoutePlayer
 from onboard.agent.core.schedule import EARLY_S, Grid
 from onboard.agent.core.vehicle_link import VehicleLink
-from onboard.autopilot.base import ReleaseMode, Stage
+from onboard.autopilot.base import Stage
 from onboard.core.math.constants import NEVER
 from onboard.core.safety.policy import Action
 from onboard.game.route_file import Route
-from onboard.wire.bus.messages import (
-    AgentStage,
-    Command,
-    CommandKind,
-    CommandReply,
-    CommandState,
-    Role,
-    Severity,
-)
+from onboard.wire.bus.messages import AgentStage, Role
 from onboard.wire.bus.topics import ALIVE, COMMAND, DECISION, HEALTH, STATE, Topic
 from onboard.wire.mavlink.frames import Packet
 from onboard.wire.mavlink.signing import Signing
@@ -71,8 +63,6 @@ STATE_EVERY_S = 0.045  # 20 Hz at the control rate
 DECISION_EVERY_S = 0.095
 LATE = 1.3  # periods after a step without a position: then the timer causes the next
 ADAPTER_EVERY_S = 0.075  # the adapter's own retries want 80 ms
-LEAVE_S = 1.4  # to leave the vehicle in a mode it can hold alone
-LEAVE_STEP_S = 0.05
 
 
 class Facts(NamedTuple):
@@ -109,6 +99,8 @@ class AgentCore:
             part = self.game = GamePlayer(config, self.vehicle, self.bus, self.out, self.journal)
         self.part = part
         self.flight = Flight(config, self.vehicle, self.bus, self.orders, self.journal, part)
+        self.desk = CommandDesk(config, facts.nonce, self.orders, self.flight, self.out, self.journal)
+        self.ending = Ending(self.vehicle, self.flight, self.journal, mute=config.dry_run)
         self.reports = Reports(config, facts.nonce, facts.version, self.vehicle, self.bus, self.flight)
         self.stage = AgentStage.WAITING
         self.lacks: tuple[str, ...] = ()
@@ -118,8 +110,6 @@ class AgentCore:
         self._step_at = inf  # a control step by the timer is due [s]
         self._stepped = self._state_at = self._decision_at = NEVER
         self._by_timer = False
-        self._leaving: Grid | None = None
-        self._leave_until = NEVER
         self._stepped_wall: Instant | None = None  # of a control step that is not yet published
         self._messages: list[tuple[Topic[Any], bytes]] = []
         self._keys = {topic: topic.key(config.game, config.id) for topic in (STATE, DECISION, HEALTH)}
@@ -127,7 +117,7 @@ class AgentCore:
             Started: self._start,
             LinkBytes: self._take_bytes,
             BusMessage: self._take_message,
-            Request: self._answer_request,
+            Request: lambda event, now: self.desk.answer(event.token, event.payload, now),
             BusState: self._bus_changed,
             ChildSaid: lambda event, now: self.vehicle.child_said(event.line),
             ChildExited: lambda event, now: self.vehicle.child_exited(),
@@ -149,8 +139,8 @@ class AgentCore:
 
     def next_deadline(self) -> float:
         """When to call `handle` with a `Tick` at the latest [s, monotonic]; inf = not by itself."""
-        if self._leaving is not None:
-            return self._leaving.at
+        if self.ending.begun:
+            return self.ending.at
         return min(self._step_at, self._chores.at, self._heartbeat.at, self._health.at, self._answer_by)
 
     @property
@@ -194,9 +184,10 @@ class AgentCore:
 
     def _tick(self, event: Tick, now: Instant) -> None:
         """Do what is due."""
-        if self._leaving is not None:
-            if self._leaving.due(now.s):
-                self._leave_on(now)
+        if self.ending.begun:
+            if not self.ending.complete:
+                self.ending.due(now.s)
+                self._close()
             return
         asked = self.flight.open
         if asked is not None and now.s >= self._answer_by - EARLY_S:
@@ -216,42 +207,22 @@ class AgentCore:
             return  # the report tells of this moment; what else is due comes with the next tick, at once
         if self._chores.due(now.s):
             if self.vehicle.since_step(now.s) >= ADAPTER_EVERY_S:
-                self.flight.drive(now.s, None)
+                self.flight.drive(now.s)
             self.vehicle.chores(now.s)
 
     def _stop(self, event: Stop, now: Instant) -> None:
         """Leave the vehicle in a mode that the autopilot can hold alone, as far as it is ours to leave."""
-        if self._leaving is not None:
+        if self.ending.begun:
             return
-        self._leaving = Grid(LEAVE_STEP_S)
         for grid in (self._chores, self._heartbeat, self._health):
             grid.stop()
-        adapter = self.vehicle.adapter
-        if adapter is None or self.config.dry_run or adapter.stage not in (Stage.ACTIVE, Stage.ENTERING):
-            self.journal.info("stopped", "the vehicle was not under this agent's control")
-            self._end(now)
-            return
-        self._leave_until = now.s + LEAVE_S
-        adapter.leave(now.s, ReleaseMode.DEPART)
-        self._leaving.start(now.s)
-        self._leaving.due(now.s)
-        self._leave_on(now)
+        self.ending.begin(now.s)
+        self._close()
 
-    def _leave_on(self, now: Instant) -> None:
-        if now.s < self._leave_until - EARLY_S and self.vehicle.stage is Stage.LEAVING:
-            self.vehicle.look(now.s)
-            self.vehicle.step(now.s, None)
-            return
-        left = self.vehicle.stage is Stage.LEFT
-        text = f"vehicle left in {self.vehicle.telemetry.mode}" + ("" if left else ", unconfirmed")
-        self.journal.say(Severity.INFO if left else Severity.ERROR, "stopped", text)
-        self._end(now)
-
-    def _end(self, now: Instant) -> None:
-        assert self._leaving is not None
-        self._leaving.stop()
-        self.stage = AgentStage.ENDED
-        self.out.put(Count())  # the last health report, and then `End`
+    def _close(self) -> None:
+        if self.ending.complete:
+            self.stage = AgentStage.ENDED
+            self.out.put(Count())  # the last health report, and then `End`
 
     # ------------------------------------------------------------------ what arrives
 
@@ -268,7 +239,7 @@ class AgentCore:
         new = self.vehicle.hear(packet, now.s)
         # After a step by the timer the next position counts sooner, or steps would stay with the timer.
         wait = (0.4 if self._by_timer else 0.8) * self._period
-        if new and self._leaving is None and now.s - self._stepped >= wait:
+        if new and not self.ending.begun and now.s - self._stepped >= wait:
             self._by_timer = False
             self._expect(now.s)
             self._step(now)
@@ -300,46 +271,6 @@ class AgentCore:
         if self.game is not None:
             self.game.loaded(event.strategy, event.error)
 
-    def _answer_request(self, event: Request, now: Instant) -> None:
-        """Answer a request on `vehicles/<id>/command`; repeating one changes nothing."""
-        command = COMMAND.decode(event.payload, self.bus.drops)
-        if command is None:
-            bad = CommandReply("", self.config.id, CommandState.REFUSED, "undecodable", "", now.wall_ns)
-            self.out.put(Reply(event.token, COMMAND.encode_reply(bad)))
-            return
-        entry, new = self.orders.give(command, self._refusal(command))
-        if new:
-            text = f"{command.kind.value} from {command.sender}"
-            if entry.reason:
-                self.journal.warning("command_refused", f"{text}: {entry.reason}")
-            else:
-                self.journal.info("command", text)
-                self.flight.obey(now.s)
-        self._review_orders()
-        reply = CommandReply(
-            command_id=command.command_id,
-            id=self.config.id,
-            state=entry.state,
-            reason=entry.reason,
-            obeyed=self.orders.obeyed,
-            stamp_ns=now.wall_ns,
-            mode=self.vehicle.telemetry.mode,
-        )
-        self.out.put(Reply(event.token, COMMAND.encode_reply(reply)))
-
-    def _refusal(self, command: Command) -> str:
-        """Why a command cannot be obeyed; '' if it can."""
-        if self.config.dry_run:
-            return "dry run: this agent sends nothing"
-        takes = command.kind in (CommandKind.RESUME, CommandKind.START)
-        return why_no_order(self.vehicle, takes=takes) or self.flight.objection(command)
-
-    def _review_orders(self) -> None:
-        entry = self.orders.review(self.vehicle.stage)
-        if entry is not None:
-            text = f"{entry.command.kind.value} from {entry.command.sender}"
-            self.journal.info(f"command_{entry.state.value}", text)
-
     # ------------------------------------------------------------------ the control step
 
     def _step(self, now: Instant) -> None:
@@ -363,7 +294,7 @@ class AgentCore:
         self.steps += 1
         self.radio.flush(now)
         self.out.put(Beat())
-        self._review_orders()
+        self.desk.review()
         self._stepped_wall = begun
 
     # ------------------------------------------------------------------ what it says
@@ -384,11 +315,13 @@ class AgentCore:
 
     def _report(self, event: Counted, now: Instant) -> None:
         """Health, and what is looked at twice a second; with the last report, the end."""
-        if self.stage is not AgentStage.ENDED or self._leaving is None:
+        if not self.ending.complete:
             self._judge(now)
-        health = self.reports.health(Standing(self.stage, self.lacks, self.counters(event)), now)
+        number = self.desk.speak(now.s)
+        standing = Standing(self.stage, self.lacks, self.counters(event), number, self.orders.stopped_by)
+        health = self.reports.health(standing, now)
         self._messages.append((HEALTH, HEALTH.encode(health)))
-        if self._leaving is not None:
+        if self.ending.complete:
             self.out.put(End())
 
     def _judge(self, now: Instant) -> None:
@@ -396,6 +329,10 @@ class AgentCore:
         lacks = self.part.lacks(now)
         if self.flight.take_off.climbing:
             lacks = (*lacks, f"its height of {self.flight.take_off.height:g} m")
+        if self.flight.latched:
+            lacks = (*lacks, f"a person's resume after: {self.flight.latched}")
+        if self.orders.blocked:
+            lacks = (*lacks, f"a person's resume after: {self.orders.blocked}")
         self.lacks = (*lacks, "the master's resume") if state.late else lacks
         stage = self._stage(over=state.over)
         if stage != self.stage:

@@ -33,6 +33,8 @@ class Standing(NamedTuple):
     stage: AgentStage
     lacks: tuple[str, ...]  # what is missing before it can play
     counters: dict[str, int]
+    number: int  # of this report
+    stopped_by: str  # id of the last order obeyed that stops
 
 
 class Reports:
@@ -124,6 +126,8 @@ class Reports:
             telemetry_age_s=min(now.s - t.position_at, 1e6),
             heartbeat_age_s=min(now.s - t.heartbeat_at, 1e6),
             nonce=self._nonce,
+            number=standing.number,
+            stopped_by=standing.stopped_by,
         )
 
 

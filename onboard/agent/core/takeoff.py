@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from onboard.agent.core.vehicle_link import VehicleLink
-from onboard.autopilot.base import Stage
+from onboard.autopilot.base import Stage, Telemetry
 from onboard.wire.mavlink import commands
 from onboard.wire.mavlink.commands import CommandLong
 from onboard.wire.mavlink.modes import Kind, custom_mode
@@ -21,6 +21,10 @@ class TakeOff:
         self.height = height
         self.climbing = False
         self._retry = CommandRetry(RETRY)
+
+    def pending(self, t: Telemetry) -> bool:
+        """Whether the vehicle is on the ground still, or on its way up."""
+        return self.climbing or t.landed_state == ON_GROUND
 
     def step(self, now: float, vehicle: VehicleLink) -> bool:
         """Do what is due at `now` [s]; True while the vehicle is on its way up (send it no setpoints)."""

@@ -17,6 +17,9 @@ from onboard.autopilot.choose import AdapterOptions, adapter_for
 from onboard.autopilot.flight_limits import FlightLimits, read_limits, unread
 from onboard.autopilot.telemetry_state import Observer
 from onboard.core.math.constants import NEVER, NS_PER_S
+from onboard.core.math.vectors import ZERO
+from onboard.core.safety.policy import Command
+from onboard.core.safety.supervisor import SupervisorOutput
 from onboard.wire.bus.messages import Severity
 from onboard.wire.mavlink.commands import OwnHeartbeat, Target
 from onboard.wire.mavlink.frames import Packet
@@ -62,6 +65,13 @@ def _change(before: Stage, after: Stage) -> Control:
     return Control.SAME
 
 
+def _let_through(verdict: SupervisorOutput) -> Setpoint | None:
+    """The setpoint of a verdict; None where it lets none pass."""
+    if verdict.command is Command.STREAM:
+        return Setpoint(verdict.air, verdict.wind)
+    return Setpoint(ZERO) if verdict.command is Command.HOVER else None
+
+
 class Rate:
     """How often something happened lately [Hz]."""
 
@@ -98,6 +108,7 @@ class VehicleLink:
         self.heard_systems: dict[int, float] = {}
         self.position_rate, self.setpoint_rate = Rate(), Rate()
         self.sent_at = NEVER  # of the last setpoint [s]
+        self.flown = False  # the vehicle was under this process's control once
         self.version: Version | None = None  # of the autopilot, once it has said so
         self.to = Target(config.id)
         self._journal = journal
@@ -224,14 +235,22 @@ class VehicleLink:
             self._doubt = doubt
             self._journal.warning(doubt, DOUBTS[doubt])
 
-    def step(self, now: float, setpoint: Setpoint | None) -> Control:
-        """Send what the adapter wants sent, and note what it says; gives whether control changed hands."""
+    def step(self, now: float, verdict: SupervisorOutput | None = None) -> Control:
+        """Send what the adapter wants sent, and note what it says; gives whether control changed hands.
+
+        A setpoint leaves here and nowhere else, and only as the supervisor's verdict on this very step:
+        one on another step is counted, and nothing of it is sent."""
         adapter = self.adapter
         if adapter is None:
             return Control.SAME
         before = adapter.stage
+        if verdict is not None and verdict.at != now:
+            self.foreign["verdict_of_another_step"] += 1
+            verdict = None
+        setpoint = None if verdict is None else _let_through(verdict)
         step = adapter.step(now, self.telemetry, setpoint)
         self._stepped_at = now
+        self.flown = self.flown or adapter.stage is Stage.ACTIVE
         for message in step.messages:
             self.radio.send(message)
         if setpoint is not None and adapter.stage is Stage.ACTIVE:

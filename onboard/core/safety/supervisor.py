@@ -52,6 +52,8 @@ class SupervisorOutput(NamedTuple):
     air: Vec  # the same relative to the air [m/s]
     state: SupervisorState
     changed: bool  # a transition happened: publish it
+    at: float  # the step that was judged [s, monotonic]: the verdict is good for no other one
+    wind: Vec  # that the setpoint reckons with [m/s]
 
 
 class Allowed(NamedTuple):
@@ -78,11 +80,14 @@ def supervise(wanted: Vec, seen: SupervisorInput, policy: Policy, state: Supervi
     if after.action >= Action.HOLD:
         after = after._replace(demand=ZERO, stamp=NEVER)
         command = commanded(after.action, after.cause, seen.order, policy.envelope.hovers)
-        return SupervisorOutput(after.action, after.cause, command, False, ZERO, ZERO, after, changed)
+        return SupervisorOutput(
+            after.action, after.cause, command, False, ZERO, ZERO, after, changed, seen.now, wind
+        )
     after = after._replace(demand=allowed.air, stamp=seen.now)
     ground = add(allowed.air, wind)
+    command = Command.STREAM
     return SupervisorOutput(
-        after.action, after.cause, Command.STREAM, True, ground, allowed.air, after, changed
+        after.action, after.cause, command, True, ground, allowed.air, after, changed, seen.now, wind
     )
 
 
@@ -91,6 +96,7 @@ def commanded(action: Action, cause: Cause, order: Action, hovers: bool) -> Comm
 
     Against a pilot's hands nothing is asked for. An order from the ground leaves the guided mode even where a
     fault ends the stream: of an order and a graver rule that also leaves it, the graver one is followed.
+    A multicopter's autopilot stops by itself when the stream ends; a plane's flies on: it is left to loiter.
     """
     if cause == Cause.PILOT:
         return Command.HANDS_OFF
@@ -102,12 +108,17 @@ def commanded(action: Action, cause: Cause, order: Action, hovers: bool) -> Comm
     if release == Action.HOLD:
         released = order >= Action.HOLD or cause == Cause.OVER or not hovers
         return Command.RELEASE_TO_HOLD if released else Command.HOVER
-    return Command.END_STREAM
+    return Command.END_STREAM if hovers else Command.RELEASE_TO_HOLD
 
 
 def reordered(state: SupervisorState) -> SupervisorState:
     """The state once another order is given: it need not wait until the last one has settled."""
     return state._replace(urged=NEVER)
+
+
+def in_another_game(state: SupervisorState) -> SupervisorState:
+    """The state once a game with other thresholds begins: what is latched stays, all else begins anew."""
+    return SupervisorState(floor=state.floor, floor_cause=state.floor_cause)
 
 
 def handed_back(state: SupervisorState) -> SupervisorState:

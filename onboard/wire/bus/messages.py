@@ -150,6 +150,7 @@ class Setup(Message, frozen=True):
     track_sigma: float = 0.0  # stated position error of the tracks, one sigma an axis [m]
     seed: int = 0
     field_profile: bool = False  # altitude layers, capture judged horizontally
+    nonce: int = 0  # of the master's process, as in `Master`
 
     @property
     def flat(self) -> bool:
@@ -165,6 +166,9 @@ class PhaseChange(Message, frozen=True):
     stamp_ns: int
     resume: tuple[int, ...] = ()  # ids of restarted agents that may act again
     reason: str = ""
+    master: str = ""  # who says so
+    nonce: int = 0  # of the master's process, as in `Master`
+    number: int = 0  # counts the master's phases: the greater one is the later one, whatever clocks say
 
 
 class Outcome(Message, frozen=True):
@@ -185,6 +189,8 @@ class Master(Message, frozen=True):
     stamp_ns: int
     lease_s: float = 2.0
     nonce: int = 0  # tells two masters of one name apart
+    number: int = 0  # counts up with each word: what an order quotes
+    takes_over: str = ""  # name of the master whose running game a person took over
 
 
 class EvaderBrief(Message, frozen=True):
@@ -259,6 +265,8 @@ class Health(Message, frozen=True):
     telemetry_age_s: float = 0.0
     heartbeat_age_s: float = 0.0
     nonce: int = 0
+    number: int = 0  # counts up in each process: what an order quotes where there is no master
+    stopped_by: str = ""  # id of the last order obeyed that stops; '' = none by this process
 
 
 class Severity(Enum):
@@ -294,14 +302,24 @@ class CommandKind(Enum):
     ABORT = "abort"
 
 
+class Quote(Message, frozen=True):
+    """What the sender of an order had heard when it was given: its age and place in order."""
+
+    nonce: int = 0  # of the master's process (of the agent's, where there is no master)
+    number: int = 0  # of its newest word: `Master.number`, or `Health.number`
+    agent: int = 0  # `Health.nonce` of the agent's process that the order is for
+    after: str = ""  # `Health.stopped_by`
+
+
 class Command(Message, frozen=True):
-    """Request on `vehicles/<id>/command`: idempotent by `command_id`."""
+    """Request on `vehicles/<id>/command`: once by id, sender and kind; docs/commands.md says the rest."""
 
     command_id: str
     kind: CommandKind
     sender: str
-    stamp_ns: int
+    stamp_ns: int  # for people: no age is taken from it
     mode: str = ""  # the autopilot's, as a person saw it who named this vehicle alone; "": not confirmed
+    quote: Quote = Quote()
 
 
 class CommandState(Enum):

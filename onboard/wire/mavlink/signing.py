@@ -115,11 +115,11 @@ class Signing:
             return SignatureCheck.WRONG
         stream = (frame[-13], system, component)
         stamp = int.from_bytes(frame[-12:-6], "little")
-        now = max(ticks(wall_ns), self._own)
+        now = ticks(wall_ns)  # own stamps may lead it: they never run back, a clock that is set right does
         last = self._streams.get(stream)
         if last is not None and stamp <= last:
             return SignatureCheck.REPLAYED
-        if stamp > now + WINDOW:
+        if stamp > max(now, self._own, last or 0) + WINDOW:
             return SignatureCheck.FUTURE
         if last is None:
             if stamp + WINDOW < now:

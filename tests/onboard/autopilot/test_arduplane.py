@@ -122,14 +122,12 @@ def test_a_right_turn_is_a_right_bank_and_the_limit_holds() -> None:
     assert bank_for(radians(30), ZERO, radians(30), radians(45)) == 0.0  # no way over ground: the nose counts
 
 
-def test_to_end_is_to_loiter() -> None:
+def test_to_end_changes_no_mode_that_is_the_supervisors() -> None:
     play = plane()
     fly(play, 3.0, Vec(22.0, 0.0, 0.0))
     play.adapter.end(play.now)
-    sent = play.fly(3.0, None)
-    assert [type(message) for message in sent] == [CommandLong]
-    assert play.telemetry.mode == "LOITER"
-    assert play.adapter.stage is Stage.LEFT
+    assert play.fly(3.0, None) == []
+    assert play.adapter.stage is Stage.ACTIVE
 
 
 def test_pilot_takes_over() -> None:
