@@ -199,8 +199,8 @@ async def test_a_panic_of_zenoh_does_not_end_the_opener(monkeypatch: pytest.Monk
             raise PanicException("Failed to init net\x1b[2J")
         return opened(config)
 
-    monkeypatch.setattr("onboard.runtime.bus_zenoh.zenoh.open", failing)
-    monkeypatch.setattr("onboard.runtime.bus_zenoh.RETRY_S", 0.1)
+    monkeypatch.setattr("onboard.runtime.zenoh_session.zenoh.open", failing)
+    monkeypatch.setattr("onboard.runtime.zenoh_session.RETRY_S", 0.1)
     bus = await open_zenoh(f"tcp/127.0.0.1:{free_port()}", listen=True)
     try:
         await until(lambda: bus.how in ("listening", "joined"))
