@@ -9,7 +9,7 @@ export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
-.PHONY: help install demo test check check-long bench bench-games bench-predictor check-aarch64 golden fuzz soak mavproxy clean lock
+.PHONY: help install demo test check check-long bench bench-games bench-predictor check-aarch64 golden fuzz soak mutants mavproxy clean lock
 
 help:
 	@echo "make install   the environment only"
@@ -22,6 +22,7 @@ help:
 	@echo "make golden    what whole games, agents and campaigns do, against what was recorded of them"
 	@echo "make fuzz      ten million frames and more into the parsers; resumable"
 	@echo "make soak      hours of simulated flight with random faults; resumable"
+	@echo "make mutants   small changes to the code: do the tests notice? cosmic-ray in an environment of its own"
 	@echo "make mavproxy  MAVProxy in an environment of its own (1.2 GB), for its client test"
 	@echo "make lock      resolve the dependencies again (needs uv)"
 
@@ -94,6 +95,17 @@ fuzz: install
 
 soak: install
 	$(BIN)/python -m tests.soak.run --hours 4 --seed 1 --resume .soak.json
+
+# cosmic-ray, in an environment of its own that sees this one's packages.
+MUTANTS := .venv-mutants
+$(MUTANTS)/.installed: locks/mutants.in $(STAMP)
+	@$(BIN)/python -m venv $(MUTANTS)
+	@$(MUTANTS)/bin/python -m pip --disable-pip-version-check --quiet --no-input install -r locks/mutants.in
+	@$(BIN)/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))' > "$$($(MUTANTS)/bin/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/apollonius.pth"
+	@touch $@
+
+mutants: install $(MUTANTS)/.installed
+	$(MUTANTS)/bin/python -m tests.mutants
 
 mavproxy: .venv-mavproxy/bin/mavproxy.py
 

@@ -77,6 +77,7 @@ class Session:
 async def on_air(settings: Settings, *, listen: bool, record: bool) -> AsyncIterator[Session]:
     """A station on the bus, recording if asked; all of it ends with the block. Raises ConfigError."""
     from gcs.recording.shell import StationRecorder
+    from onboard.runtime.file_writer import FileWriter
     from onboard.runtime.links import open_link
     from onboard.runtime.run_folder import new_run
 
@@ -96,7 +97,7 @@ async def on_air(settings: Settings, *, listen: bool, record: bool) -> AsyncIter
                 stack.callback(link.close)
                 links.append(link)
             folder = new_run(Path(settings.recording.folder), settings.game, station.now_ns())
-            recorder = StationRecorder(station, folder, links)
+            recorder = StationRecorder(station, folder, links, writer=FileWriter())
             stack.callback(recorder.close)
             station.remark(Severity.INFO, "recording", f"recording into {folder}")
         if bus.how == "joined":

@@ -11,6 +11,7 @@ for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 
 import typer  # noqa: E402  (threads are set before anything imports NumPy)
 
+from onboard.config.printable import printable  # noqa: E402
 from onboard.config.strict import ConfigError  # noqa: E402
 from onboard.runtime.program import run  # noqa: E402
 
@@ -48,9 +49,7 @@ def planar(
         typer.Option(help="Pursuers' strategy; may be repeated. Default: 'paper' and 'earlier' [37]."),
     ] = None,
     dt: Annotated[float | None, typer.Option(help="Time step [s], in place of the scenario's.")] = None,
-    horizon: Annotated[
-        float | None, typer.Option(help="When a game ends [s], in place of the scenario's.")
-    ] = None,
+    horizon: Annotated[float | None, typer.Option(help="Longest game [s], likewise.")] = None,
     json: Annotated[bool, typer.Option("--json", help="One JSON object a game, nothing else.")] = False,
     figures: Annotated[
         Path | None, typer.Option(help="Folder for pictures of the initial and final stage (PNG and SVG).")
@@ -63,11 +62,7 @@ def planar(
 
     if dt is not None and not 0.0 < dt <= 1.0:
         raise ConfigError(f"--dt: found {dt}, expected a time step in (0, 1] s")
-    if horizon is not None and not 0.0 < horizon <= 1e5:
-        raise ConfigError(f"--horizon: found {horizon}, expected a time in (0, 100000] s")
-    games = room.load_plane(scenarios or room.table1())
-    if horizon is not None:
-        games = [room.within_horizon(game, horizon) for game in games]
+    games = room.within_horizon(room.load_plane(scenarios or room.table1()), horizon)
     names = strategy or [room.THIS_PAPER, room.EARLIER]
     for name in names:
         pursuer_strategy(name)
@@ -129,7 +124,7 @@ def serve(
     options = Options(
         game=game, bus=bus, listen=listen, zenoh=zenoh, referee=referee, once=once, seed=seed, ports=ports
     )
-    run_server(scenario_file(scenario), options, lambda line: print(line, flush=True))
+    run_server(scenario_file(scenario), options, lambda line: print(printable(line), flush=True))
 
 
 @app.command(epilog="Examples: sim-bridge fly demo | sim-bridge fly --fast --seed 3 my.toml --runs /tmp/runs")
@@ -146,7 +141,7 @@ def fly(
     from sim_bridge.programs import fly as room
 
     options = room.Options(fast, seed, runs, bus, report, quiet)
-    flown = room.fly(room.scenario_file(scenario), options, lambda line: print(line, flush=True))
+    flown = room.fly(room.scenario_file(scenario), options, lambda line: print(printable(line), flush=True))
     print(room.story(flown))
     if flown.summary.verdict not in ("captured", "arrived", "escaped"):
         raise typer.Exit(1)

@@ -178,21 +178,24 @@ class Rehearsal:
     def start_agent(self, id: int) -> Agent:
         """Start (or start again) the agent of a vehicle."""
         config = self.configuration()[id]
+        bus = self.broker.connect(f"agent-{id}")
+        agent = Agent(config, self.clock, [self.links[id]], bus, self.equipment(id, config))
+        self.agents[id] = agent
+        self._tasks[id] = asyncio.create_task(_live(agent, bus), name=f"agent-{id}")  # ended by kill_agent
+        return agent
+
+    def equipment(self, id: int, config: AgentConfig) -> Equipment:
+        """What the agent of a vehicle is given besides its configuration; it writes at once."""
         record = None
         if id in self._tlogs:
             record = self._tlogs[id][1].write
-        bus = self.broker.connect(f"agent-{id}")
         events = None
         if self._options.folder is not None:
             sink = FileSink(unused(self._options.folder / f"vehicle-{id}.events"))
             events = EventFile(sink, round(config.events_max_mb * 1e6))
-        equipment = Equipment(
+        return Equipment(
             nonce=self._nonce(), version=self._options.version, log=self._tell, record=record, events=events
         )
-        agent = Agent(config, self.clock, [self.links[id]], bus, equipment)
-        self.agents[id] = agent
-        self._tasks[id] = asyncio.create_task(_live(agent, bus), name=f"agent-{id}")  # ended by kill_agent
-        return agent
 
     def configuration(self) -> dict[int, AgentConfig]:
         """What each agent is told."""

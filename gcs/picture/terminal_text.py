@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
+from onboard.config.printable import printable
 
-def printable(text: str) -> str:
-    """The text with everything replaced that could steer a terminal or forge a line of a log."""
-    if text.isprintable():
-        return text
-    return "".join(sign if sign.isprintable() else "·" for sign in text)
+__all__ = ["printable"]

@@ -2,7 +2,7 @@
 
 An MCAP file ends in a footer and a magic number; without them most readers refuse it. Each write here
 appends data and, in the same call, the end of an unindexed file; the next write overwrites that end. A
-write that the disk refuses is undone to the last whole state, kept, and tried again.
+write that the disk refuses is undone to the last whole state, kept, and tried again. A thread may do it.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import Protocol
 
@@ -68,16 +69,40 @@ class OsFile:
 OpenDisk = Callable[[Path], Disk]
 
 
-class WholeFile:
-    """The stream that an MCAP writer writes into: buffers, and puts whole pieces on the disk.
+Run = Callable[[Callable[[], None]], bool]  # has a job done, at once or by a thread; False: it will not be
+SILENT = "the disk does not answer"
+SILENT_CALLS = 4  # of `settle` while one piece is on its way
 
-    `write`, `tell` and `flush` are the writer's; `settle` puts the buffered bytes on the disk.
+
+def at_once(job: Callable[[], None]) -> bool:
+    """Do a job here and now."""
+    job()
+    return True
+
+
+class _Attempt:
+    """One piece on its way to the disk. The thread that does it sets `trouble` and, last, `done`."""
+
+    def __init__(self, size: int) -> None:
+        self.size = size  # [bytes] of the piece
+        self.trouble = ""
+        self.done = False
+        self.looks = 0  # calls of `settle` that found it under way
+
+
+class WholeFile:
+    """The stream that an MCAP writer writes into: buffers, and has whole pieces put on the disk by `run`.
+
+    `write`, `tell` and `flush` are the writer's; `settle` has the buffered bytes put on the disk. With a
+    `run` that hands jobs to a thread nothing here waits for the disk.
     """
 
-    def __init__(self, disk: Disk) -> None:
+    def __init__(self, disk: Disk, run: Run = at_once) -> None:
         self._disk = disk
+        self._run = run
         self._size = 0  # bytes on the disk, without the end
         self._waiting: list[bytes] = []
+        self._attempt: _Attempt | None = None  # the first of what waits is on its way
         self.waiting_bytes = 0
         self.trouble = ""  # why the last attempt failed, "" = all is on the disk
 
@@ -85,6 +110,12 @@ class WholeFile:
     def size(self) -> int:
         """Bytes on the disk, without the file's end."""
         return self._size
+
+    @property
+    def busy(self) -> bool:
+        """Whether a piece is on its way to the disk."""
+        self._reap()
+        return self._attempt is not None
 
     def write(self, data: bytes) -> int:
         """Buffer."""
@@ -99,30 +130,57 @@ class WholeFile:
     def flush(self) -> None:
         """Nothing: `settle` says when."""
 
-    def settle(self, *, final: bool = False) -> bool:
-        """Put everything buffered on the disk; with `final` the data brings the file's end itself.
+    def settle(self, *, final: bool = False) -> None:
+        """Have everything buffered put on the disk; with `final` the data brings the file's end itself.
 
-        False (and `trouble` says why) where the disk refused: the file is then as it was before,
-        and the bytes wait for the next call.
+        `trouble` says why where the disk refused or does not answer: the file is then as it was before, and
+        the bytes wait for the next call.
         """
+        self._reap()
+        if self._attempt is not None:
+            self._attempt.looks += 1
+            if self._attempt.looks >= SILENT_CALLS:
+                self.trouble = SILENT
+            return
         if not self._waiting:
-            return True
+            return
         data = b"".join(self._waiting)
-        try:
-            self._all(data if final else data + END, self._size)
-            if final:
-                self._disk.truncate(self._size + len(data))
-        except OSError as error:
-            self.trouble = (error.strerror or str(error)).lower()
-            self._waiting = [data]
-            self._restore()
-            return False
-        self._size += len(data)
-        self._waiting, self.waiting_bytes, self.trouble = [], 0, ""
-        return True
+        self._waiting = [data]
+        attempt = self._attempt = _Attempt(len(data))
+        if not self._run(partial(self._put, attempt, data, self._size, final)):
+            attempt.trouble, attempt.done = SILENT, True
+        self._reap()
 
     def close(self) -> None:
-        """Release the file."""
+        """Release the file, once what is on its way is there."""
+        self._run(self._close)
+
+    def _reap(self) -> None:
+        """Take in how an attempt went."""
+        attempt = self._attempt
+        if attempt is None or not attempt.done:
+            return
+        self._attempt = None
+        self.trouble = attempt.trouble
+        if not attempt.trouble:
+            self._size += attempt.size
+            self.waiting_bytes -= attempt.size
+            del self._waiting[0]
+
+    # ------------------------------------------------------------------ at the disk
+
+    def _put(self, attempt: _Attempt, data: bytes, size: int, final: bool) -> None:
+        try:
+            self._all(data if final else data + END, size)
+            if final:
+                self._disk.truncate(size + len(data))
+        except OSError as error:
+            attempt.trouble = (error.strerror or str(error)).lower() or "the disk refused"
+            self._restore(size)
+        finally:
+            attempt.done = True
+
+    def _close(self) -> None:
         with suppress(OSError):
             self._disk.close()
 
@@ -135,12 +193,12 @@ class WholeFile:
             offset += written
             view = view[written:]
 
-    def _restore(self) -> None:
+    def _restore(self, size: int) -> None:
         """Back to the last whole state: its blocks exist already, so this needs no space."""
         with suppress(OSError):
-            if self._size:
-                self._all(END, self._size)
-                self._disk.truncate(self._size + len(END))
+            if size:
+                self._all(END, size)
+                self._disk.truncate(size + len(END))
             else:
                 self._disk.truncate(0)
 

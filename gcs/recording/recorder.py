@@ -15,11 +15,12 @@ from pathlib import Path
 import msgspec
 
 from gcs.picture.station_journal import HEARD_HERE, Remark
-from gcs.recording.file import McapWriter, OpenDisk, OsFile, WholeFile
+from gcs.recording.file import McapWriter, OpenDisk, OsFile, WholeFile, at_once
 from gcs.recording.schemas import Layout, layout_of
 from gcs.recording.views import Views
 from onboard.config.strict import ConfigError
 from onboard.core.math.constants import NS_PER_S
+from onboard.runtime.file_writer import FileWriter
 from onboard.wire.bus.messages import SCHEMA, Severity
 
 FORMAT = 1  # of the recording: raised when an old reader would misread it
@@ -30,6 +31,7 @@ LIBRARY = "apollonius"
 FLUSH_NS = NS_PER_S // 2
 CHUNK_BYTES = 1 << 22
 MOST_WAITING = 16 << 20  # [bytes] kept in memory while the disk refuses; what comes after that is lost
+CLOSE_S = 1.0  # for what is on its way to the disk, twice, when a recording is closed
 MOST_CHANNELS = 4096  # MCAP numbers channels with 16 bits, and keys come from the network
 OTHER = "apollonius/other"  # what has no channel of its own: MessagePack of [key, payload]
 
@@ -48,8 +50,9 @@ class RecorderStatus(msgspec.Struct, frozen=True):
 class Recorder:
     """Feed it with `record`, let time pass with `tick`, end with `close`.
 
-    `path` must not exist. Raises ConfigError where it cannot be made; after that nothing raises: a
-    full disk shows in `status()`, and recording goes on when there is room again.
+    With a `writer` its thread does all that is done at the disk, and `close` alone waits for it, twice
+    `CLOSE_S` at most. `path` must not exist. Raises ConfigError where it cannot be made; after that nothing
+    raises: a full disk shows in `status()`, and recording goes on when there is room again.
     """
 
     def __init__(
@@ -58,17 +61,17 @@ class Recorder:
         game: str,
         *,
         opener: OpenDisk = OsFile,
-        flush_ns: int = FLUSH_NS,
         views: bool = True,
         most_waiting: int = MOST_WAITING,
+        writer: FileWriter | None = None,
     ) -> None:
         try:
-            self._file = WholeFile(opener(path))
+            self._file = WholeFile(opener(path), at_once if writer is None else writer.submit)
         except OSError as error:
             raise ConfigError(f"{path}: {(error.strerror or str(error)).lower()}") from None
         self.path = path
-        self._flush_ns = flush_ns
         self._most_waiting = most_waiting
+        self._disk_thread = writer
         self._views = Views() if views else None
         self._writer = McapWriter(self._file, LIBRARY, CHUNK_BYTES)
         self._writer.metadata(METADATA, {"format": str(FORMAT), "schema": str(SCHEMA), "game": game})
@@ -108,7 +111,7 @@ class Recorder:
         if self._views is not None and not self._full:
             for at_ns, view in self._views.due(self._last_ns):
                 self._put(view.topic, view.layout, view.payload, at_ns)
-        if self._last_ns - self._flushed_ns >= self._flush_ns:
+        if self._last_ns - self._flushed_ns >= FLUSH_NS:
             self.flush()
 
     def flush(self) -> None:
@@ -126,9 +129,11 @@ class Recorder:
         whole without one."""
         if self._closed:
             return
+        self._wait()
         self.flush()
         self._closed = True
-        if not self._file.trouble:
+        self._wait()
+        if not self._file.busy and not self._file.trouble:
             self._writer.finish()
             self._file.settle(final=True)
         self._file.close()
@@ -142,7 +147,12 @@ class Recorder:
 
     @property
     def _full(self) -> bool:
-        return bool(self._file.trouble) and self._file.waiting_bytes > self._most_waiting
+        held_up = bool(self._file.trouble) or self._file.busy
+        return held_up and self._file.waiting_bytes > self._most_waiting
+
+    def _wait(self) -> None:
+        if self._disk_thread is not None:
+            self._disk_thread.flush(CLOSE_S)
 
     def _open_channel(self, key: str) -> int:
         place = HEARD_HERE.find(key)

@@ -6,10 +6,11 @@ import asyncio
 from collections.abc import Sequence
 from pathlib import Path
 
-from gcs.recording.file import OpenDisk, OsFile
-from gcs.recording.recorder import Recorder, RecorderStatus, remark_of
+from gcs.recording.file import OpenDisk, OsFile, at_once
+from gcs.recording.recorder import CLOSE_S, Recorder, RecorderStatus, remark_of
 from gcs.recording.tlog import TlogRecorder
 from gcs.station import Station
+from onboard.runtime.file_writer import FileWriter
 from onboard.runtime.protocols import Link
 
 RECORDING = "recording.mcap"
@@ -19,16 +20,19 @@ TICK_S = 0.2
 class StationRecorder:
     """Records what a station hears into a folder; `run` it as a task beside the station's.
 
-    Raises ConfigError where the recording cannot be made. `links` are MAVLink links to log; the
-    caller owns them.
+    With a `writer`, which it closes, its thread does all that is done at the disk, so that a disk that hangs
+    holds nobody up. Raises ConfigError where the recording cannot be made. `links` are MAVLink links to log;
+    the caller owns them.
     """
 
     def __init__(
-        self, station: Station, folder: Path, links: Sequence[Link] = (), *, opener: OpenDisk = OsFile
-    ) -> None:
+        self, station: Station, folder: Path, links: Sequence[Link] = (), *, opener: OpenDisk = OsFile,
+        writer: FileWriter | None = None,
+    ) -> None:  # fmt: skip
         self._station = station
-        self.recorder = Recorder(folder / RECORDING, station.game, opener=opener)
-        self.tlogs = TlogRecorder(folder)
+        self._writer = writer
+        self.recorder = Recorder(folder / RECORDING, station.game, opener=opener, writer=writer)
+        self.tlogs = TlogRecorder(folder, run=at_once if writer is None else writer.submit)
         for link in links:
             self.tlogs.hear(link, station.now_ns)
         self._before = self.status()
@@ -67,3 +71,5 @@ class StationRecorder:
         """End the recording; idempotent."""
         self.recorder.close()
         self.tlogs.close()
+        if self._writer is not None:
+            self._writer.close(CLOSE_S)

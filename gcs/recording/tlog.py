@@ -8,11 +8,14 @@ beginning that the rest continues when there is room again.
 from __future__ import annotations
 
 import os
+import threading
 from collections import Counter
 from collections.abc import Callable, Hashable
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 
+from gcs.recording.file import SILENT, SILENT_CALLS, Run, at_once
 from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.protocols import Link
 from onboard.wire.mavlink.frames import Framer, Packet
@@ -27,25 +30,41 @@ Write = Callable[[int, bytes], int]  # descriptor, data → how many bytes fit; 
 
 
 class _Log:
-    """One growing file."""
+    """One growing file. `settle`, `close` and what they use belong to whoever is at the disk."""
 
-    def __init__(self, descriptor: int, write: Write) -> None:
-        self._descriptor = descriptor
+    def __init__(self, folder: Path, system: int, write: Write) -> None:
+        self.waiting = bytearray()  # belongs to the station
+        self.taken = 0  # bytes of it that the disk took in the attempt that is done
+        self.trouble = ""  # of that attempt
+        self._folder, self._system = folder, system
+        self._descriptor = -1
         self._write = write
-        self.waiting = bytearray()
 
-    def settle(self) -> None:
-        """Put what waits on the disk. Raises OSError; what did not fit stays."""
-        while self.waiting:
-            done = self._write(self._descriptor, bytes(self.waiting))
-            if done <= 0:
-                raise OSError("nothing was written")
-            del self.waiting[:done]
+    def settle(self, data: bytes) -> None:
+        """Put bytes on the disk; `taken` and `trouble` tell how that went."""
+        self.trouble = ""
+        try:
+            if self._descriptor < 0:
+                self._descriptor = self._open()
+            while self.taken < len(data):
+                done = self._write(self._descriptor, data[self.taken :])
+                if done <= 0:
+                    raise OSError("nothing was written")
+                self.taken += done
+        except OSError as error:
+            self.trouble = (error.strerror or str(error)).lower()
 
     def close(self) -> None:
-        with suppress(OSError):
-            self.settle()
-        os.close(self._descriptor)
+        """Release the file."""
+        if self._descriptor >= 0:
+            os.close(self._descriptor)
+
+    def _open(self) -> int:
+        flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC
+        for number in ("", *(f"-{n}" for n in range(2, 10))):  # never write into somebody's log
+            with suppress(FileExistsError):
+                return os.open(self._folder / f"vehicle-{self._system}{number}.tlog", flags, 0o644)
+        raise OSError(f"too many logs of vehicle {self._system}")
 
 
 class TlogRecorder:
@@ -54,11 +73,14 @@ class TlogRecorder:
     Nothing raises; `trouble` says why the disk refused, "" = all is well.
     """
 
-    def __init__(self, folder: Path, *, write: Write = os.write) -> None:
+    def __init__(self, folder: Path, *, write: Write = os.write, run: Run = at_once) -> None:
         self.folder = folder
         self.trouble = ""
         self.causes: Counter[str] = Counter()  # bad frames by cause; `lost` = no room, `peers` = too many
         self._write = write
+        self._run = run
+        self._attempt: threading.Event | None = None  # set when what is on its way to the disk is there
+        self._looks = 0  # flushes that found it under way
         self._framers: dict[Hashable, Framer] = {}
         self._logs: dict[int, _Log] = {}
         self._flushed_ns = 0
@@ -81,8 +103,10 @@ class TlogRecorder:
 
     def packet(self, packet: Packet, now_ns: int) -> None:
         """Take in one good frame."""
-        log = self._logs.get(packet.system) or self._open(packet.system)
-        if log is None or len(log.waiting) > MOST_WAITING:
+        log = self._logs.get(packet.system)
+        if log is None:
+            log = self._logs[packet.system] = _Log(self.folder, packet.system, self._write)
+        if len(log.waiting) > MOST_WAITING:
             self.causes["lost"] += 1
             return
         log.waiting += STAMP.pack(now_ns // 1000) + packet.raw
@@ -94,36 +118,46 @@ class TlogRecorder:
             self.flush()
 
     def flush(self) -> None:
-        """Put everything on the disk now."""
-        trouble = ""
-        for log in self._logs.values():
-            try:
-                log.settle()
-            except OSError as error:
-                trouble = _why(error)
-        self.trouble = trouble
+        """Have everything put on the disk, unless it is still busy with what came before."""
+        if not self._reaped():
+            self._looks += 1
+            if self._looks >= SILENT_CALLS:
+                self.trouble = SILENT
+            return
+        self._looks = 0
+        pieces = [(log, bytes(log.waiting)) for log in self._logs.values() if log.waiting]
+        attempt = self._attempt = threading.Event()
+        if not pieces or not self._run(partial(_settle, pieces, attempt)):
+            attempt.set()
+        self._reaped()
 
     def close(self) -> None:
-        """Release the files; idempotent."""
-        for log in self._logs.values():
-            log.close()
+        """Release the files, once what waits is there; idempotent."""
+        self.flush()
+        self._run(partial(_close, list(self._logs.values())))
         self._logs = {}
 
-    def _open(self, system: int) -> _Log | None:
-        flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC
-        for suffix in ("", *(f"-{n}" for n in range(2, 10))):  # never write into somebody's log
-            try:
-                descriptor = os.open(self.folder / f"vehicle-{system}{suffix}.tlog", flags, 0o644)
-            except FileExistsError:
-                continue
-            except OSError as error:
-                self.trouble = _why(error)
-                return None
-            log = self._logs[system] = _Log(descriptor, self._write)
-            return log
-        self.trouble = f"too many logs of vehicle {system}"
-        return None
+    def _reaped(self) -> bool:
+        """Whether nothing is on its way; takes in how that went."""
+        if self._attempt is not None and self._attempt.is_set():
+            self._attempt = None
+            self.trouble = ""
+            for log in self._logs.values():
+                del log.waiting[: log.taken]
+                log.taken = 0
+                self.trouble = log.trouble or self.trouble
+        return self._attempt is None
 
 
-def _why(error: OSError) -> str:
-    return (error.strerror or str(error)).lower()
+def _settle(pieces: list[tuple[_Log, bytes]], done: threading.Event) -> None:
+    try:
+        for log, data in pieces:
+            log.settle(data)
+    finally:
+        done.set()
+
+
+def _close(logs: list[_Log]) -> None:
+    for log in logs:
+        with suppress(OSError):
+            log.close()

@@ -9,11 +9,10 @@ makes both again of the same events.
 from __future__ import annotations
 
 import contextlib
-import queue
-import threading
 from collections.abc import Iterator, Sequence
+from io import FileIO
 from pathlib import Path
-from typing import BinaryIO, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 import msgspec
 
@@ -44,12 +43,12 @@ from onboard.agent.core.events import (
 from onboard.agent.core.machine import Facts
 from onboard.config.strict import ConfigError
 from onboard.pilot.setup import Side
+from onboard.runtime.file_writer import FileWriter
 
 SCHEMA = 1
 SUFFIX = ".events"
 CHUNK = 64 * 1024  # bytes collected before they are handed to the disk
 FLUSH_S = 1.0  # and for how long at most
-QUEUE = 64  # chunks that may wait for the disk
 RECORD_MAX = 16 * 1024 * 1024
 
 
@@ -134,9 +133,9 @@ def unused(path: Path) -> Path:
     return free
 
 
-def _opened(path: Path) -> BinaryIO:
+def _opened(path: Path) -> FileIO:
     try:
-        return path.open("wb")
+        return path.open("wb", buffering=0)
     except OSError as error:
         raise ConfigError(f"events: {path}: {(error.strerror or str(error)).lower()}") from None
 
@@ -161,34 +160,19 @@ class FileSink:
             self._file.close()
 
 
-class ThreadSink:
-    """Writes by a thread behind a bounded queue: a slow disk never holds a flight up. Raises ConfigError."""
+class WriterSink:
+    """Writes by a `FileWriter`'s thread: a slow disk never holds a flight up. Raises ConfigError."""
 
-    def __init__(self, path: Path) -> None:
-        self._file = _opened(path)
-        self._queue: queue.Queue[bytes | None] = queue.Queue(QUEUE)
-        self._thread = threading.Thread(target=self._run, name="events", daemon=True)
-        self._thread.start()
+    def __init__(self, path: Path, writer: FileWriter) -> None:
+        self._file = writer.open(path, sink=_opened(path))
 
     def put(self, chunk: bytes) -> bool:
         """Queue a chunk; False where the disk is too slow."""
-        try:
-            self._queue.put_nowait(chunk)
-        except queue.Full:
-            return False
-        return True
+        return self._file.write(chunk)
 
-    def close(self, timeout_s: float = 1.0) -> None:
-        """Write what is queued, as far as that goes within `timeout_s`."""
-        with contextlib.suppress(queue.Full):
-            self._queue.put_nowait(None)
-            self._thread.join(timeout_s)
-
-    def _run(self) -> None:
-        with contextlib.suppress(OSError), self._file as file:
-            while (chunk := self._queue.get()) is not None:
-                file.write(chunk)
-                file.flush()
+    def close(self) -> None:
+        """Close the file once what is queued is written; whoever closes the writer waits for that."""
+        self._file.close()
 
 
 class EventFile:

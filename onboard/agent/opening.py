@@ -11,6 +11,7 @@ from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.bus_security import BusSecurity, Lock, security_of
 from onboard.runtime.bus_zenoh import ZenohBus, open_zenoh
 from onboard.runtime.clock import RealClock
+from onboard.runtime.file_writer import FileWriter
 from onboard.runtime.links import open_link
 from onboard.runtime.protocols import Bus, Link
 from onboard.runtime.signing_keys import StampFile, read_key
@@ -19,13 +20,19 @@ from onboard.wire.mavlink.signing import Signing
 CLOSE_S = 0.5  # for the bus to close; the process ends within 2 s of a signal
 
 
-def signing_of(config: AgentConfig) -> Signing | None:
-    """Signing as configured. Raises ConfigError for a key that is missing or that others may read."""
+def stamps_of(config: AgentConfig, writer: FileWriter | None = None) -> StampFile | None:
+    """Where the stamps of the configured key are kept, written by `writer`; None without a key."""
     if config.signing is None:
         return None
-    path = Path(config.signing.key)
-    stamps = Path(config.signing.stamps or f"{config.signing.key}.stamps")
-    return Signing(read_key(path), StampFile(stamps))
+    return StampFile(Path(config.signing.stamps or f"{config.signing.key}.stamps"), writer)
+
+
+def signing_of(config: AgentConfig, stamps: StampFile | None = None) -> Signing | None:
+    """Signing as configured. Raises ConfigError for a key that is missing or that others may read."""
+    store = stamps or stamps_of(config)
+    if config.signing is None or store is None:
+        return None
+    return Signing(read_key(Path(config.signing.key)), store)
 
 
 async def open_links(config: AgentConfig) -> list[Link]:

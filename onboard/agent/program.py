@@ -9,24 +9,21 @@ import json
 import os
 import secrets
 import signal
-from collections.abc import Sequence
+import threading
 from pathlib import Path
 
 from onboard.agent.config import AgentConfig
-from onboard.agent.event_file import EventFile, ThreadSink, unused
 from onboard.agent.opening import close_bus, open_bus, open_links, signing_of
 from onboard.agent.shell import Agent, Equipment
 from onboard.agent.version import version
-from onboard.config.strict import ConfigError
-from onboard.core.math.constants import NS_PER_S
+from onboard.agent.written_files import WrittenFiles
 from onboard.game.route_file import load_route
 from onboard.runtime.clock import RealClock
 from onboard.runtime.protocols import Link
 from onboard.runtime.systemd import Notifier
 from onboard.wire.bus.messages import Role
-from onboard.wire.mavlink.tlog import TlogWriter
 
-FLUSH_NS = NS_PER_S
+END_S = 5.0  # from the first signal to the end of the process, at the latest
 
 
 def fly(config: AgentConfig, timing: Path | None = None) -> int:
@@ -34,55 +31,28 @@ def fly(config: AgentConfig, timing: Path | None = None) -> int:
     return asyncio.run(_fly(config, timing))
 
 
-class LogFile:
-    """A .tlog that is flushed once a second."""
-
-    def __init__(self, path: Path) -> None:
-        try:
-            self._file = path.open("ab")
-        except OSError as error:
-            raise ConfigError(f"log: {path}: {(error.strerror or str(error)).lower()}") from None
-        self._writer = TlogWriter(self._file)
-        self._flushed_ns = 0
-        self.failures = 0
-
-    def record(self, wall_ns: int, frame: bytes) -> None:
-        """Write one frame; a full disk must not stop a flight."""
-        try:
-            self._writer.write(wall_ns, frame)
-            if abs(wall_ns - self._flushed_ns) >= FLUSH_NS:
-                self._flushed_ns = wall_ns
-                self._file.flush()
-        except OSError:
-            self.failures += 1
-
-    def close(self) -> None:
-        """Flush and close."""
-        with contextlib.suppress(OSError):
-            self._file.close()
-
-
 async def _fly(config: AgentConfig, timing: Path | None) -> int:
     clock = RealClock()
-    signing = signing_of(config)
-    route = load_route(Path(config.route)) if config.role is Role.TRACKER else None
-    log = LogFile(Path(config.log)) if config.log else None
-    links = await open_links(config)
+    files = WrittenFiles(config)
+    links: list[Link] = []
+    closed = True
     try:
-        events = None
-        if config.events:
-            sink = ThreadSink(unused(Path(config.events)))
-            events = EventFile(sink, round(config.events_max_mb * 1e6))
+        signing = signing_of(config, files.stamps)
+        route = load_route(Path(config.route)) if config.role is Role.TRACKER else None
+        links = await open_links(config)
         bus = await open_bus(config)
         notifier = Notifier(clock)
         equipment = Equipment(
             nonce=secrets.randbits(48),
             version=version(),
-            record=log.record if log is not None else None,
-            events=events,
+            log=files.line,
+            record=files.record if files.logs else None,
+            events=files.events,
             signing=signing,
             beat=notifier.alive,
             route=route,
+            counters=files.counters,
+            apart=True,
         )
         agent = Agent(config, clock, links, bus, equipment)
         _catch_signals(agent)
@@ -96,21 +66,16 @@ async def _fly(config: AgentConfig, timing: Path | None) -> int:
             _write_timing(timing, agent)
         closed = await close_bus(bus)
     finally:
-        _release(links, log)
-    if not closed:  # a bus that does not answer must not keep the process: everything else is done
+        for link in links:
+            link.close()
+        written = files.close()
+    if not (closed and written):  # what does not answer must not keep the process: everything else is done
         os._exit(0)
     return 0
 
 
-def _release(links: Sequence[Link], log: LogFile | None) -> None:
-    for link in links:
-        link.close()
-    if log is not None:
-        log.close()
-
-
 def _catch_signals(agent: Agent) -> None:
-    """The first signal lands softly, the second ends at once."""
+    """The first signal lands softly, the second ends at once; a loop that does not turn is not waited for."""
     loop = asyncio.get_running_loop()
     asked = False
 
@@ -121,8 +86,15 @@ def _catch_signals(agent: Agent) -> None:
         asked = True
         agent.stop()
 
+    def bound(number: int, frame: object) -> None:
+        """Runs between two instructions, even of an endless loop: the process ends, whatever holds it."""
+        timer = threading.Timer(END_S, os._exit, (1,))
+        timer.daemon = True
+        timer.start()
+
     for number in (signal.SIGINT, signal.SIGTERM):
         loop.add_signal_handler(number, ask)
+        signal.signal(number, bound)  # beside the loop's own way of hearing of it, which stays
 
 
 def _write_timing(path: Path, agent: Agent) -> None:

@@ -49,9 +49,11 @@ from onboard.agent.core.events import (
 )
 from onboard.agent.core.machine import AgentCore, Facts
 from onboard.agent.event_file import EventFile
+from onboard.agent.strategy_child import ApartThinker
 from onboard.agent.thinker import Thinker
 from onboard.agent.timing import Timing
 from onboard.autopilot.mavsdk import Child
+from onboard.config.printable import printable
 from onboard.core.math.constants import NS_PER_S
 from onboard.game.route_file import Route
 from onboard.runtime.protocols import Bus, Clock, Link, Sample, Subscription
@@ -62,8 +64,8 @@ PEERS_MAX = 64  # of one link that are numbered; who was heard longest ago is fo
 
 
 def to_stderr(line: str) -> None:
-    """One line to standard error: the journal's place under systemd."""
-    print(line, file=sys.stderr, flush=True)
+    """One line to standard error, at once: it may wait for whoever reads there."""
+    print(printable(line), file=sys.stderr, flush=True)
 
 
 class Equipment(NamedTuple):
@@ -77,6 +79,8 @@ class Equipment(NamedTuple):
     signing: Signing | None = None
     beat: Callable[[], None] | None = None  # called with each control step: a service's watchdog
     route: Route | None = None  # of a tracker
+    counters: Callable[[], dict[str, int]] = dict  # of the files that are written, for health reports
+    apart: bool = False  # strategies of other distributions answer from child processes: on real time
 
 
 class _Port:
@@ -128,6 +132,7 @@ class Agent:
         self.bus = bus
         self.timing = Timing(1.0 / config.control_rate_hz)
         self.thinker = Thinker(clock)
+        self.apart = ApartThinker(self.thinker, self.feed, clock) if equipment.apart else None
         facts = Facts(
             equipment.nonce,
             tuple(LinkFacts(link.name, link.name.startswith("serial:")) for link in links),
@@ -157,8 +162,8 @@ class Agent:
         self._stopping = False
         self._effects: dict[type, Callable[[Any], None]] = {
             Send: lambda effect: self._ports[effect.link].send(effect.peer, effect.frame),
-            Think: lambda effect: self._put(self.thinker.answer(effect)),
-            Load: lambda effect: self._put(self.thinker.load(effect)),
+            Think: self._think,
+            Load: self._load,
             Count: self._count,
             Publish: lambda effect: self.bus.publish(effect.key, effect.payload, effect.delivery),
             Reply: lambda effect: self._replies.__setitem__(effect.token, effect.payload),
@@ -195,6 +200,8 @@ class Agent:
             if self._timer is not None:
                 self._timer.cancel()
             self._close_child()
+            if self.apart is not None:
+                self.apart.close()
             for subscription in (*self._subscriptions.values(), *self._held):
                 subscription.close()
             if self._equipment.events is not None:
@@ -296,7 +303,7 @@ class Agent:
                 links[cause] = links.get(cause, 0) + number
         for kind, number in self._link_limit.limited.items():
             links[f"limited_{kind}"] = number
-        shell = self.timing.counters()
+        shell = self.timing.counters() | self._equipment.counters()
         if self._equipment.events is not None:
             shell |= self._equipment.events.counters()
         self._put(Counted(links, self.bus.counters(), shell))
@@ -314,6 +321,20 @@ class Agent:
     def _end(self) -> None:
         if self._ended is not None and not self._ended.done():
             self._ended.set_result(None)
+
+    # ------------------------------------------------------------------ strategies
+
+    def _think(self, effect: Think) -> None:
+        if self.apart is None:
+            self._put(self.thinker.answer(effect))
+        else:
+            self.apart.answer(effect)
+
+    def _load(self, effect: Load) -> None:
+        if self.apart is None:
+            self._put(self.thinker.load(effect))
+        else:
+            self.apart.load(effect)
 
     # ------------------------------------------------------------------ the adapter's child process
 

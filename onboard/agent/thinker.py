@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from onboard.agent.core.events import Answered, Load, Loaded, Think
+from onboard.config.printable import named
 from onboard.config.strict import ConfigError
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec
@@ -32,8 +33,7 @@ class Thinker:
             strategy: Strategy = find(wanted.strategy)
         except ConfigError as error:
             return Loaded(wanted.strategy, str(error))
-        known = EVADERS if wanted.side is Side.EVADER else PURSUERS
-        if wanted.strategy not in ("", *known):
+        if not is_own(wanted.side, wanted.strategy):
             strategy = _foreign(strategy)
         self.strategies[wanted.side, wanted.strategy] = strategy
         return Loaded(wanted.strategy, "")
@@ -45,9 +45,16 @@ class Thinker:
         error = ""
         try:
             decision = self.strategies[question.side, question.strategy](question.view)
-        except Exception as trouble:
-            error = f"{type(trouble).__name__}: {trouble}"
+        except KeyboardInterrupt:
+            raise
+        except BaseException as trouble:  # SystemExit, too: it is the strategy that leaves, not the agent
+            error = named(trouble)
         return Answered(question.number, decision, error, (self._clock.monotonic_ns() - begun) / NS_PER_S)
+
+
+def is_own(side: Side, strategy: str) -> bool:
+    """Whether a strategy is one of the core's own ("" = the default)."""
+    return strategy in ("", *(EVADERS if side is Side.EVADER else PURSUERS))
 
 
 def _foreign(strategy: Strategy) -> Strategy:

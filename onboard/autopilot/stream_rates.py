@@ -37,20 +37,21 @@ class Need(NamedTuple):
     least: float  # [Hz] without which it is no use
 
 
-# In the order of importance: what is cut is cut from the end.
+# In the order of importance: what is cut is cut from the end. Of GPS and estimator two reports decide: at
+# 5 Hz that is sooner than half a second without a position.
 _COMMON = (
     Need("HEARTBEAT", 1.0, 1.0),
     Need("GLOBAL_POSITION_INT", 20.0, 5.0),
     Need("ATTITUDE", 20.0, 5.0),
     Need("SYS_STATUS", 2.0, 0.5),
-    Need("GPS_RAW_INT", 2.0, 0.5),
+    Need("GPS_RAW_INT", 5.0, 0.5),
 )
 _HUD = Need("VFR_HUD", 5.0, 1.0)
 _EXTENDED = (Need("EXTENDED_SYS_STATE", 1.0, 0.2),)
-_EKF = (Need("EKF_STATUS_REPORT", 2.0, 0.5),)
+_EKF = (Need("EKF_STATUS_REPORT", 5.0, 0.5),)
 _STICKS = (Need("RC_CHANNELS", 2.0, 1.0),)  # whether LOITER would hold: `release_modes`
 NEEDS: dict[Kind, tuple[Need, ...]] = {
-    Kind.PX4_MULTICOPTER: (*_COMMON, Need("ESTIMATOR_STATUS", 2.0, 0.5), _HUD, *_EXTENDED),
+    Kind.PX4_MULTICOPTER: (*_COMMON, Need("ESTIMATOR_STATUS", 5.0, 0.5), _HUD, *_EXTENDED),
     Kind.ARDUCOPTER: (*_COMMON, *_EKF, *_STICKS, _HUD, *_EXTENDED),
     Kind.ARDUPLANE: (*_COMMON, Need("VFR_HUD", 20.0, 5.0), Need("WIND", 5.0, 1.0), *_EKF, *_EXTENDED),
 }

@@ -1,14 +1,18 @@
 """What is known of one autopilot: each packet is taken in, `snapshot` is read when a decision is due.
 
 Only packets of the autopilot's own component count, so that the heartbeat of a ground station that a router
-passes on cannot change the vehicle's mode. A frame that a link delivers late does not replace a newer one.
+passes on cannot change the vehicle's mode. A frame that a link delivers late does not replace a newer one,
+and one odd sample decides nothing: see `plausibility`.
 """
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import TypeVar, cast
 
 from onboard.autopilot.base import Telemetry
+from onboard.autopilot.batteries import Batteries
+from onboard.autopilot.plausibility import FALL, LEAST, ClockWatch, EstimatorWatch, PlaceWatch, Recent, Stamp
 from onboard.core.math.constants import NEVER
 from onboard.core.math.vectors import ZERO, Vec
 from onboard.wire.geodesy import Frame
@@ -33,7 +37,6 @@ from onboard.wire.mavlink.values import (
 )
 
 OLD = 0.5  # [s] within which a lower sequence number means a late frame rather than a restart
-REBOOT = 3.0  # [s] by which the autopilot's clock must fall back to count as a restart
 NO_NUMBER = -1  # of a frame that came over another link
 QUALITY = 0.005  # weight of one frame in the running link quality: about the last 200
 
@@ -44,7 +47,6 @@ BLANK: dict[type, Value] = {
     AirData: AirData(0.0, 0.0, 0.0, 0.0, 0.0),
     Wind: Wind(Vec(0.0, 0.0, 0.0)),
     SysStatus: SysStatus(UNKNOWN, UNKNOWN, False, False, 0, 0.0, 0.0),
-    Battery: Battery(0, UNKNOWN, UNKNOWN, UNKNOWN),
     GpsFix: GpsFix(0, -1, UNKNOWN, UNKNOWN),
     EkfStatus: EkfStatus(0, False, 0.0),
     ExtendedState: ExtendedState(0, 0),
@@ -63,8 +65,10 @@ class Observer:
         self.home: Home | None = None
         self._latest: dict[type, tuple[float, int, Value]] = {}  # kind → (arrival, sequence, value)
         self._link = 0
-        self._boot_s = 0.0
+        self.odd: Counter[str] = Counter()  # samples that did not count, by cause
         self._reboots = 0
+        self._clock = ClockWatch()
+        self._forget()
         self._quality = 1.0
         self._sequence = -1
         self._heard_at = NEVER
@@ -92,14 +96,63 @@ class Observer:
             return None
         if isinstance(value, Home):
             self.home = value
-        if isinstance(value, (GlobalPosition, Attitude)):
-            if value.time_boot_s < self._boot_s - REBOOT:
-                self._reboots += 1
-                self._latest.clear()  # what was heard before the restart no longer holds
-                self._boot_s = value.time_boot_s
-            self._boot_s = max(self._boot_s, value.time_boot_s)
+        if isinstance(value, (GlobalPosition, Attitude)) and not self._timely(now, value):
+            return None
+        if isinstance(value, GlobalPosition):
+            doubt = self._places.judge(value)
+            if doubt:
+                self.odd[doubt] += 1
+                self._age(now, doubt)
+                return None
+        self._weigh(now, value)
         self._latest[type(value)] = (now, packet.sequence, value)
         return value
+
+    @property
+    def doubt(self) -> str:
+        """Why positions do not count now, as `odd` counts them; "" while they do."""
+        return self._places.doubt
+
+    def two_clocks(self, now: float) -> bool:
+        """Whether two autopilots seem to speak under this system id."""
+        return self._clock.two_clocks(now)
+
+    def _forget(self) -> None:
+        """Forget what was heard: of an autopilot that has started again nothing of it holds."""
+        self._latest.clear()
+        self._places = PlaceWatch()
+        self._estimator, self._fix, self._batteries = EstimatorWatch(), Recent(), Batteries()
+
+    def _timely(self, now: float, value: GlobalPosition | Attitude) -> bool:
+        """Whether a stamped value is not older than the newest of its kind; notices a restart."""
+        stamp = self._clock.judge(now, value.time_boot_s)
+        if stamp is Stamp.RESTART:
+            self._reboots += 1
+            self._forget()
+        kept = self._latest.get(type(value))
+        newest = kept[2].time_boot_s if kept and isinstance(kept[2], (GlobalPosition, Attitude)) else NEVER
+        late = value.time_boot_s < newest <= value.time_boot_s + FALL
+        if late or stamp is Stamp.ODD:
+            self.odd["late" if late else stamp.value] += 1
+            return False
+        return True
+
+    def _age(self, now: float, doubt: str) -> None:
+        """A place found frozen now has not been known since it froze."""
+        at, sequence, value = self._latest.get(GlobalPosition, (NEVER, 0, BLANK[GlobalPosition]))
+        if doubt == "position_frozen":
+            self._latest[GlobalPosition] = (min(at, now - LEAST), sequence, value)
+
+    def _weigh(self, now: float, value: Value) -> None:
+        """Take in a report of which the last few are judged together."""
+        if isinstance(value, EkfStatus):
+            self._estimator.take(now, value)
+        elif isinstance(value, GpsFix):
+            self._fix.take(value.fix)
+        elif isinstance(value, Battery):
+            self._batteries.take(now, value)
+        elif isinstance(value, SysStatus):
+            self._batteries.take_status(value)
 
     def snapshot(self) -> Telemetry:
         """Return what is known now."""
@@ -109,9 +162,9 @@ class Observer:
         air_at, air = self._of(AirData)
         wind_at, wind = self._of(Wind)
         status_at, status = self._of(SysStatus)
-        pack_at, pack = self._of(Battery)
+        pack_at = self._latest[Battery][0] if Battery in self._latest else NEVER
         gps_at, gps = self._of(GpsFix)
-        ekf_at, ekf = self._of(EkfStatus)
+        ekf_at = self._of(EkfStatus)[0]
         landed_at, landed = self._of(ExtendedState)
         sticks_at, sticks = self._of(RcChannels)
         where = (place.latitude_deg, place.longitude_deg, place.altitude_m)
@@ -122,7 +175,7 @@ class Observer:
             armed=heart.armed,
             heartbeat_at=heart_at,
             status=heart.status,
-            time_boot_s=self._boot_s,
+            time_boot_s=self._clock.boot_s,
             latitude_deg=place.latitude_deg,
             longitude_deg=place.longitude_deg,
             altitude_m=place.altitude_m,
@@ -139,17 +192,17 @@ class Observer:
             airspeed_at=air_at,
             wind=wind.velocity,
             wind_at=wind_at,
-            battery=pack.remaining if pack.remaining >= 0.0 else status.battery,
-            voltage=pack.voltage if pack.voltage >= 0.0 else status.voltage,
+            battery=self._batteries.share,
+            voltage=self._batteries.voltage,
             battery_at=max(pack_at, status_at),
             pre_arm_ok=status.pre_arm_ok,
             unhealthy=status.unhealthy,
             status_at=status_at,
-            gps_fix=gps.fix,
+            gps_fix=0 if gps_at == NEVER else round(self._fix.value),
             satellites=gps.satellites,
             accuracy_m=gps.accuracy_m,
             gps_at=gps_at,
-            ekf_ok=ekf.ok,
+            ekf_ok=ekf_at != NEVER and self._estimator.ok,
             ekf_at=ekf_at,
             channels=sticks.pulses,
             channels_at=sticks_at,

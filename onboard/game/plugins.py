@@ -11,6 +11,7 @@ from __future__ import annotations
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any
 
+from onboard.config.printable import words_of
 from onboard.config.strict import ConfigError
 from onboard.core.game.advance import EvaderStrategy, PursuerStrategy
 from onboard.core.strategy.registry import DEFAULT, EVADERS, PURSUERS
@@ -57,6 +58,8 @@ def _plugin(name: str, role: str, known: list[str]) -> Any:
 def _load(point: EntryPoint) -> Any:
     try:
         return point.load()
-    except Exception as error:  # a foreign module may fail in any way
-        why = " ".join(str(error).split()) or type(error).__name__
-        raise ConfigError(f"strategy: '{point.name}' ({point.value}) does not load: {why}") from None
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:  # a foreign module may fail in any way, `sys.exit` among them
+        why = f"strategy: '{point.name}' ({point.value}) does not load: {words_of(error)}"
+        raise ConfigError(why) from None

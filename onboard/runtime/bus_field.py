@@ -14,7 +14,6 @@ from collections.abc import Callable
 from typing import Any
 
 from onboard.config.strict import ConfigError
-from onboard.runtime.bus_zenoh import ZenohBus
 from onboard.runtime.datagram_path import BEAT_S, DatagramPath, Hooks
 from onboard.runtime.links import UdpLink, open_udp
 from onboard.runtime.membership import Membership
@@ -22,6 +21,7 @@ from onboard.runtime.patterns import matches
 from onboard.runtime.protocols import Sample, Subscription
 from onboard.runtime.rate_limit import BusLimit
 from onboard.runtime.zenoh_config import Candidate
+from onboard.runtime.zenoh_session import ZenohBus
 from onboard.wire.bus.topics import Delivery, echo_key
 
 REPEAT_S = 0.1  # between two datagrams that ask the same

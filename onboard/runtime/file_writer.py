@@ -5,6 +5,7 @@ A disk that stalls fills the queue; then records are lost, counted, and what was
 
 from __future__ import annotations
 
+import contextlib
 import threading
 from collections import deque
 from collections.abc import Callable
@@ -28,9 +29,10 @@ class Sink(Protocol):
 
 
 class _Item(NamedTuple):
-    file: WrittenFile
+    file: WrittenFile | None  # None: a job
     data: bytes
     last: bool  # the file is closed after it
+    job: Callable[[], None] | None = None
 
 
 class WrittenFile:
@@ -103,13 +105,27 @@ class FileWriter:
         self._thread = threading.Thread(target=self._run, name="file-writer", daemon=True)
         self._thread.start()
 
-    def open(self, path: Path, *, size_max: int | None = None, full_mark: bytes = b"") -> WrittenFile:
+    def open(
+        self, path: Path, *, size_max: int | None = None, full_mark: bytes = b"", sink: Sink | None = None
+    ) -> WrittenFile:
         """A new file at `path`, whose first record makes it; an older file there is replaced.
 
+        With `sink` the caller has opened it already, and gives it away; `path` is then only its name.
         With `size_max` [bytes] it grows no larger: the first record that does not fit becomes `full_mark`,
         which those who read the file know, and all later ones are left out and counted.
         """
-        return WrittenFile(self, path, size_max, full_mark)
+        file = WrittenFile(self, path, size_max, full_mark)
+        if sink is not None:
+            with self._changed:
+                self._sinks[file] = sink
+        return file
+
+    def submit(self, job: Callable[[], None]) -> bool:
+        """Have the thread do something else with a disk, in its turn; False where the writer is closed.
+
+        The caller bounds how many of its jobs wait. What a job raises is its own to tell: it is dropped here.
+        """
+        return self._put(_Item(None, b"", False, job), must=True)
 
     def flush(self, deadline_s: float) -> bool:
         """Wait until everything taken is on its way to the disk, at most `deadline_s`; False: it is not.
@@ -132,7 +148,8 @@ class FileWriter:
             return True
         with self._changed:
             for item in self._queue:
-                item.file._refused += bool(item.data)
+                if item.file is not None:
+                    item.file._refused += bool(item.data)
             self._queue.clear()
         return False
 
@@ -158,9 +175,14 @@ class FileWriter:
                 batch = self._next_batch()
                 self._busy = True
             data = b"".join(item.data for item in batch)
-            self._append(batch[0].file, data, sum(1 for item in batch if item.data))
-            if batch[-1].last:
-                self._close(batch[-1].file)
+            file, job = batch[0].file, batch[0].job
+            if file is not None:
+                self._append(file, data, sum(1 for item in batch if item.data))
+                if batch[-1].last:
+                    self._close(file)
+            elif job is not None:
+                with contextlib.suppress(Exception):
+                    job()
             with self._changed:
                 self._waiting -= len(data)
         for file in list(self._sinks):
@@ -170,6 +192,8 @@ class FileWriter:
         """What stands first in the queue, and what follows it for the same file."""
         batch = [self._queue.popleft()]
         size = len(batch[0].data)
+        if batch[0].file is None:
+            return batch
         while self._queue and self._queue[0].file is batch[0].file and size < BATCH_BYTES:
             batch.append(self._queue.popleft())
             size += len(batch[-1].data)

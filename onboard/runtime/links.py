@@ -15,9 +15,11 @@ import re
 import socket
 from collections import Counter
 from collections.abc import Hashable
+from functools import partial
 from typing import Any
 
 from onboard.config.strict import ConfigError
+from onboard.runtime.off_loop import off_loop
 from onboard.runtime.protocols import Link, Receiver
 from onboard.runtime.serial_link import SerialLink
 
@@ -155,7 +157,7 @@ async def open_link(url: str, timeout_s: float = 5.0) -> Link:
     """
     serial = re.fullmatch(r"serial://(/.+?)(?::(\d+))?", url)
     if serial:
-        return SerialLink.open(url, serial.group(1), int(serial.group(2) or 57600))
+        return await SerialLink.open(url, serial.group(1), int(serial.group(2) or 57600), timeout_s)
     udp = re.fullmatch(r"(udp|udpin|udpout)://(\[[0-9a-fA-F:]+\]|[^:/\[\]]+):(\d+)/?", url)
     if udp is None:
         raise ConfigError(f"link: found {url!r}, expected {_FORMS}")
@@ -171,9 +173,9 @@ async def open_udp(
     """Bind to (host, port), port 0 = a free one; or, where `out`, send there. Raises ConfigError."""
     name = name or f"{'udpout' if out else 'udpin'}://{host}:{port}"
     loop = asyncio.get_running_loop()
-    address = (host, port)
     try:
         async with asyncio.timeout(timeout_s):
+            address = await _resolved(host, port)
             _, link = await loop.create_datagram_endpoint(
                 lambda: UdpLink(name, out),
                 local_addr=None if out else address,
@@ -186,6 +188,13 @@ async def open_udp(
     except OSError as error:
         raise ConfigError(f"link: {name}: {_reason(error)}") from None
     return link
+
+
+async def _resolved(host: str, port: int) -> tuple[str, int]:
+    """The address of a host by name. The resolver's thread is left behind where it does not answer."""
+    found = await off_loop(partial(socket.getaddrinfo, host, port, type=socket.SOCK_DGRAM))
+    where: Any = found[0][4]
+    return str(where[0]), port
 
 
 def _reason(error: OSError) -> str:

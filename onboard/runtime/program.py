@@ -13,6 +13,7 @@ import sys
 from collections.abc import Callable, Iterator
 from typing import Any, NoReturn, TextIO
 
+from onboard.config.printable import printable
 from onboard.config.strict import ConfigError
 
 MISTAKE = 2
@@ -97,7 +98,7 @@ def _called_by_typer(app: Callable[..., Any], name: str, typer: Any) -> Any:
 
 def _end(name: str, text: str, code: int) -> NoReturn:
     with contextlib.suppress(OSError):  # standard error may be full, or its reader gone
-        print(f"{name}: {text}", file=sys.stderr, flush=True)
+        print(printable(f"{name}: {text}"), file=sys.stderr, flush=True)
     sys.exit(code)
 
 

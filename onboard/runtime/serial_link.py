@@ -1,15 +1,20 @@
-"""A serial port as a link: opened non-blocking, read by the event loop, reopened when unplugged."""
+"""A serial port as a link: opened and closed by threads, read by the event loop, reopened when unplugged.
+
+To open or close a device whose driver hangs may take half a minute.
+"""
 
 from __future__ import annotations
 
 import asyncio
 import errno
 import os
+import threading
 from collections import Counter, deque
 from collections.abc import Hashable
 from typing import Any
 
 from onboard.config.strict import ConfigError
+from onboard.runtime.off_loop import off_loop
 from onboard.runtime.protocols import Receiver
 
 BACKLOG_MAX = 16384  # bytes that wait for the port before the next message is dropped
@@ -30,15 +35,19 @@ class SerialLink:
         self._fd = -1
         self._backlog: deque[bytes] = deque()
         self._backlog_bytes = 0
-        self._reopen: asyncio.TimerHandle | None = None
+        self._reopen: asyncio.Task[None] | None = None
         self._closed = False
 
     @classmethod
-    def open(cls, name: str, device: str, baud: int) -> SerialLink:
-        """Open a device now. Raises ConfigError: no such device, in use, no permission, a wrong baud rate."""
+    async def open(cls, name: str, device: str, baud: int, timeout_s: float = 5.0) -> SerialLink:
+        """Open a device. Raises ConfigError: no such device, in use, no permission, a wrong baud rate, or a
+        device that does not answer within `timeout_s`."""
         link = cls(name, device, baud)
         try:
-            link._open()
+            async with asyncio.timeout(timeout_s):
+                await link._open()
+        except TimeoutError:
+            raise ConfigError(f"link: {name}: {device} does not open within {timeout_s:g} s") from None
         except OSError as error:
             raise ConfigError(f"link: {name}: {_reason(error, device)}") from None
         except ValueError:
@@ -80,17 +89,25 @@ class SerialLink:
             self._reopen.cancel()
         self._release()
 
-    def _open(self) -> None:
+    async def _open(self) -> None:
+        self._attach(await off_loop(self._opened, _close))
+
+    def _opened(self) -> Any:
+        """The port. For any thread; raises OSError or ValueError."""
         import serial
 
         try:
-            self._port = serial.Serial(
-                self._device, self._baud, timeout=0, write_timeout=0, exclusive=True
-            )
+            port = serial.Serial(self._device, self._baud, timeout=0, write_timeout=0, exclusive=True)
         except serial.SerialException as error:
             raise OSError(error.errno or errno.EIO, str(error)) from None
-        self._fd = self._port.fileno()
-        os.set_blocking(self._fd, False)
+        os.set_blocking(port.fileno(), False)
+        return port
+
+    def _attach(self, port: Any) -> None:
+        if self._closed:
+            _close(port)
+            return
+        self._port, self._fd = port, port.fileno()
         asyncio.get_running_loop().add_reader(self._fd, self._readable)
 
     def _release(self) -> None:
@@ -99,7 +116,7 @@ class SerialLink:
             loop.remove_reader(self._fd)
             loop.remove_writer(self._fd)
             self._fd = -1
-            self._port.close()
+            _close(self._port)
         self._backlog.clear()
         self._backlog_bytes = 0
 
@@ -145,15 +162,22 @@ class SerialLink:
 
     def _try_later(self) -> None:
         if not self._closed:
-            self._reopen = asyncio.get_running_loop().call_later(REOPEN_S, self._try_again)
+            self._reopen = asyncio.get_running_loop().create_task(self._try_again())  # ended by close
 
-    def _try_again(self) -> None:
-        try:
-            self._open()
-        except (OSError, ValueError):
-            self._try_later()
-        else:
+    async def _try_again(self) -> None:
+        while not self._closed:
+            await asyncio.sleep(REOPEN_S)
+            try:
+                await self._open()
+            except (OSError, ValueError):
+                continue
             self._counts["reopened"] += 1
+            return
+
+
+def _close(port: Any) -> None:
+    """Close a port on a thread: a driver may wait until what was written has gone out."""
+    threading.Thread(target=port.close, name="serial-close", daemon=True).start()
 
 
 def _reason(error: OSError, device: str) -> str:

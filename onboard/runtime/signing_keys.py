@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import threading
 from pathlib import Path
 
 import msgspec
 
 from onboard.config.strict import ConfigError
+from onboard.runtime.file_writer import FileWriter
 from onboard.runtime.secret_files import read_secret, write_secret
 from onboard.wire.mavlink.signing import Stamps
 
@@ -39,13 +41,17 @@ class _Saved(msgspec.Struct, frozen=True):
 class StampFile:
     """The stamps of one key in a file beside it: replaced in one piece, mode 0600.
 
-    A file that cannot be read or written is a ConfigError at start (`load`) and a count afterwards
-    (`failures`): flying on without a record is safer than falling silent.
+    With a `writer` its thread does that, and the latest stamps go before all that waited. A file that cannot
+    be read or written is a ConfigError at start (`load`) and a count afterwards (`failures`): flying on
+    without a record is safer than falling silent.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, writer: FileWriter | None = None) -> None:
         self.path = path
         self.failures = 0
+        self._writer = writer
+        self._latest: Stamps | None = None  # what is to be written; None = nothing waits
+        self._lock = threading.Lock()
 
     def load(self) -> Stamps:
         """What was saved last; nothing at the first start."""
@@ -63,7 +69,19 @@ class StampFile:
         return Stamps(saved.own, {(link, system, comp): stamp for link, system, comp, stamp in saved.streams})
 
     def save(self, stamps: Stamps) -> None:
-        """Replace the file."""
+        """Replace the file; with a writer, soon."""
+        with self._lock:
+            waits, self._latest = self._latest is not None, stamps
+        if self._writer is None:
+            self._write()
+        elif not waits and not self._writer.submit(self._write):
+            self.failures += 1
+
+    def _write(self) -> None:
+        with self._lock:
+            stamps, self._latest = self._latest, None
+        if stamps is None:
+            return
         saved = _Saved(stamps.own, [(*stream, stamp) for stream, stamp in stamps.streams.items()])
         try:
             write_secret(self.path, msgspec.json.encode(saved), durable=False)

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import zenoh
 
+from onboard.config.printable import words_of
 from onboard.config.strict import ConfigError
 from onboard.runtime.membership import Membership, membership_of
 from onboard.runtime.secret_files import read_secret
@@ -48,6 +49,12 @@ def sessions_of(endpoint: str | None, listen: bool, config_file: Path | None) ->
     return sessions
 
 
+def of_zenoh(error: BaseException) -> bool:
+    """Whether an exception that a call of Zenoh raised is its own: an error, or the panic of its Rust code,
+    which is no `Exception`: for example where the process has no descriptor left."""
+    return isinstance(error, Exception) or type(error).__name__ == "PanicException"
+
+
 def endpoint_of(endpoint: str | None, config_file: Path | None) -> str:
     """Where the bus is, for people, and for who asks it why it does not open. Raises ConfigError."""
     if endpoint is not None:
@@ -74,9 +81,9 @@ def _sessions_of_member(member: Membership, listen: bool, config_file: Path | No
     return sessions
 
 
-def first_sentence(error: Exception) -> str:
+def first_sentence(error: BaseException) -> str:
     """An error of Zenoh's for people: without the line of its source, which follows ` at /`."""
-    return str(error).split(" at /")[0].strip()
+    return words_of(error).split(" at /")[0].strip()
 
 
 def _config(file: Path | None, settings: dict[str, object]) -> zenoh.Config:

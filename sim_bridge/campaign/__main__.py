@@ -99,6 +99,27 @@ def games(
 
 
 @app.command()
+def encircled(
+    games: Annotated[int, typer.Option(help="Plane games of each kind.", min=1)] = 400,
+    seed: Annotated[int, typer.Option(help="Seed of the places.", min=0)] = 1,
+    out: Out = RESULTS,
+) -> None:
+    """How often an encircled evader is captured (outcome 1 of 3.4.2 says: always)."""
+    from sim_bridge.campaign import encircled as room
+    from sim_bridge.campaign.spatial_campaign import output
+
+    found = room.table(room.shares(games, seed))
+    command = f"python -m sim_bridge.campaign encircled --games {games} --seed {seed}"
+    text = preface("Encircled, and then?", command)
+    text += (
+        f"\nPlane games at {room.PURSUER_SPEED:g} against {room.EVADER_SPEED:g} m/s, R = {room.R:g} m,"
+        f" ρ = {room.RHO:g} m, pursuers {room.NEAR:g} to {room.FAR:g} m away, at most {room.HORIZON:g} s.\n\n"
+    )
+    print(found)
+    print(f"written: {output(out, 'encircled.md', text + found + chr(10))}")
+
+
+@app.command()
 def flown(
     seeds: Annotated[int, typer.Option(help="Games a way, from seed 1.", min=1)] = 10,
     scenario: Annotated[Path | None, typer.Option(help="Scenario file; default: five pursuers.")] = None,

@@ -8,6 +8,7 @@ from onboard.agent.core.events import Count, Instant, Outbox, Reply
 from onboard.agent.core.flight import Flight
 from onboard.agent.core.journal import Journal
 from onboard.agent.core.masters import Words
+from onboard.agent.core.readiness import why_no_order
 from onboard.wire.bus.messages import Command, CommandReply, CommandState
 from onboard.wire.bus.topics import COMMAND
 
@@ -85,6 +86,5 @@ class CommandDesk:
         unfit = self._orders.unfit(command, self._nonce, fresh=fresh)
         if unfit or historic:
             return unfit
-        if self._vehicle.adapter is None:
-            return self._vehicle.refusal or "no autopilot"
-        return self._flight.objection(command)
+        takes = command.kind in SETS_OFF
+        return why_no_order(self._vehicle, takes=takes) or self._flight.objection(command)

@@ -88,7 +88,7 @@ class Answered(Event, frozen=True, tag=8):
     number: int
     decision: Decision | None  # None: it failed, and `error` says how
     error: str
-    took_s: float  # how long the strategy took [s]
+    took_s: float  # how long the strategy took [s]; inf = it will not answer any more
 
 
 class Loaded(Event, frozen=True, tag=9):

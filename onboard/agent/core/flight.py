@@ -16,6 +16,7 @@ from onboard.agent.core.part import Part, PartState
 from onboard.agent.core.takeoff import TakeOff
 from onboard.agent.core.vehicle_link import Control, VehicleLink
 from onboard.autopilot.base import Adapter, ReleaseMode, Stage, Telemetry
+from onboard.config.printable import named
 from onboard.core.math.constants import NEVER
 from onboard.core.math.vectors import ZERO, Vec, along, sub
 from onboard.core.safety.policy import Action, Cause, Command, Policy, SupervisorInput
@@ -44,6 +45,11 @@ RELEASES = {
     Command.RELEASE_TO_RETURN: ReleaseMode.RETURN,
     Command.RELEASE_TO_LAND: ReleaseMode.LAND,
 }
+
+
+def _only_limits(before: Policy, after: Policy) -> bool:
+    """Whether a policy differs from another in the vehicle's own limits alone."""
+    return before.envelope != after.envelope and before._replace(envelope=after.envelope) == after
 
 
 class OpenStep(NamedTuple):
@@ -93,13 +99,14 @@ class Flight:
         if jump != 0.0:
             self.bus.clock.restart()
             self._journal.error("clock_jump", f"the wall clock jumped by {jump:+.3f} s")
+        self.part.follow(now)  # it may fix the frame in which positions count
         telemetry = self.vehicle.look(now.s)
-        self.part.follow(now)
         state = self.part.state(now.wall_ns)
         self._resumed = state.resumed
-        if self.part.policy is not self._policy:  # another game: what was latched in the last one is over
-            self._policy, self._state = self.part.policy, in_another_game(self._state)
-            telemetry = self.vehicle.look(now.s)  # its game frame is another, too
+        if self.part.policy is not self._policy:
+            if not _only_limits(self._policy, self.part.policy):  # another game: what is latched stays
+                self._state = in_another_game(self._state)
+            self._policy = self.part.policy
         heard_at = max(telemetry.heartbeat_at, telemetry.position_at)
         if telemetry.heartbeat_at != NEVER and now.s - heard_at > SILENT_S:
             self._silent_at = now.s
@@ -119,11 +126,13 @@ class Flight:
             return False
         self.open = None
         error = answer.error
+        if answer.decision is None and not error:
+            error = "no decision"
         if answer.decision is not None and step.question is not None:
             try:
                 self.decision = self.part.conclude(step.question, answer.decision)
             except Exception as trouble:  # a strategy of another distribution may answer anything
-                error = f"{type(trouble).__name__}: {trouble}"
+                error = named(trouble)
         self._complete(step, answer.took_s, error)
         return True
 
@@ -135,15 +144,15 @@ class Flight:
             self._complete(step, took, f"no answer within {took:.2f} s")
 
     def _ask(self, now: Instant, t: Telemetry) -> Think | None:
-        hovers = self.vehicle.hovers is not False
-        wind = t.wind if not hovers and now.s - t.wind_at < WIND_FRESH_S else ZERO
+        plane = self.vehicle.hovers is False
+        wind = t.wind if plane and now.s - t.wind_at < WIND_FRESH_S else ZERO
         position = along(t.position, t.velocity, min(max(0.0, now.s - t.position_at), 0.5))
         self._number += 1
         step = OpenStep(self._number, now, t, wind, None)
         try:
             asked = self.part.ask(now, Own(position, t.velocity, wind))
         except Exception as trouble:  # an error of thinking must not end the flight: the supervisor acts
-            self._complete(step, 0.0, f"{type(trouble).__name__}: {trouble}")
+            self._complete(step, 0.0, named(trouble))
             return None
         if isinstance(asked, PilotDecision):
             self.decision = asked
@@ -247,13 +256,14 @@ class Flight:
             return
         ours = adapter.stage in (Stage.ACTIVE, Stage.ENTERING)
         command = output.command
+        known = not self.vehicle.unread  # of what its limits are; until then no setpoint leaves
         if command is Command.STREAM:
-            if enters:
+            if enters and known:
                 free = adapter.stage is not Stage.TAKEN and self.may_control
                 if not ours and (free or self._given(now)):
                     adapter.enter(now)
                 self._given_at = NEVER
-            if streams:
+            if streams and known:
                 self.setpoint = output.ground
         elif command is Command.END_STREAM:
             adapter.end(now)
@@ -264,7 +274,7 @@ class Flight:
                 ends = self.ending and self._orders.order is Action.PASS
                 departs = ends and command is Command.RELEASE_TO_HOLD
                 adapter.leave(now, ReleaseMode.DEPART if departs else RELEASES[command])
-        flown = streams and (command is Command.STREAM or ours)
+        flown = known and streams and (command is Command.STREAM or ours)
         self.drive(now, output if flown else None)
 
     # ------------------------------------------------------------------ before and after the part
@@ -275,7 +285,8 @@ class Flight:
         if adapter is None:
             return
         held = self._orders.order is not Action.PASS
-        ours = adapter.stage in (Stage.ENTERING, Stage.ACTIVE, Stage.LEAVING)
+        unasked = state.late and not self._orders.granted  # found guided, and not this process's yet
+        ours = not unasked and adapter.stage in (Stage.ENTERING, Stage.ACTIVE, Stage.LEAVING)
         wanted = not held and not state.over and self._wanted(now, adapter, state)
         climbs = not held and not state.over and self._climbs(t, state)
         if not (held or ours or wanted or climbs):
@@ -286,8 +297,7 @@ class Flight:
         hovers = not adapter.holds_airspeed
         seen = self._input(now, t)._replace(over=state.over, wind=ZERO if hovers else t.wind)
         still = ZERO if hovers else sub(t.velocity, t.wind)
-        waits = climbs or (state.late and not self._orders.granted)
-        output = self._judge(still, seen, streams=hovers and not waits, enters=wanted)
+        output = self._judge(still, seen, streams=hovers and not (climbs or unasked), enters=wanted)
         if not (held or ours):  # what was not ours has latched nothing
             self._state = self._state._replace(floor=before.floor, floor_cause=before.floor_cause)
         if climbs and output.command is Command.STREAM and self.take_off.step(now, self.vehicle):

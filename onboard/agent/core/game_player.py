@@ -13,6 +13,7 @@ from onboard.agent.core.part import PartState
 from onboard.agent.core.participation import Participation
 from onboard.agent.core.readiness import lacking
 from onboard.agent.core.vehicle_link import VehicleLink
+from onboard.autopilot.flight_limits import FlightLimits
 from onboard.core.game.rules import Target
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec
@@ -49,7 +50,8 @@ class GamePlayer:
         self._vehicle, self._bus, self._out, self._journal = vehicle, bus, out, journal
         self._memory = Memory(config.prediction)
         self._base_ns = 0  # where the pilot's seconds begin
-        self._setup_seen = 0
+        # Setup, kind of vehicle and limits as they were judged last.
+        self._judged: tuple[int, bool | None, FlightLimits] = (0, None, FlightLimits())
         self._phase_seen: PhaseChange | None = None
         self._loaded: dict[str, str] = {}  # strategies looked up → why they cannot be used, '' = they can
         self._asked_for: set[str] = set()
@@ -85,14 +87,33 @@ class GamePlayer:
 
     def follow(self, now: Instant) -> None:
         """Consider a new setup, and follow the master's phases."""
-        bus = self._bus
-        retry = self.flying is None and bool(self.why_not) and self._vehicle.hovers is not None
-        if bus.setup is not None and (bus.setup_number != self._setup_seen or retry):
-            name = self._strategy_of(bus.setup)
-            if name in self._loaded:
-                self._setup_seen = bus.setup_number
-                self._consider(bus.setup, self._loaded[name])
+        bus, vehicle = self._bus, self._vehicle
+        facts = (bus.setup_number, vehicle.hovers, vehicle.limits)
+        if facts != self._judged:
+            same_setup = facts[0] == self._judged[0]
+            name = "" if bus.setup is None else self._strategy_of(bus.setup)
+            if bus.setup is None:
+                self._judged = facts
+                if vehicle.hovers is not None:
+                    self.policy = limits.policy_of(self.config, None, vehicle.hovers, vehicle.limits)
+            elif name in self._loaded:
+                self._judged = facts
+                if not (same_setup and self._relimit(bus.setup)):
+                    self._consider(bus.setup, self._loaded[name])
         self._follow_phase(now.wall_ns)
+
+    def _relimit(self, setup: Setup) -> bool:
+        """Fly on in the game at hand within limits that have changed; False where it must be judged anew."""
+        flying, vehicle = self.flying, self._vehicle
+        hovers, own = vehicle.hovers, vehicle.limits
+        if flying is None or hovers is None or hovers is not self.policy.envelope.hovers:
+            return False
+        if limits.contradiction(self.config, setup, hovers, own):
+            return False
+        self.policy = limits.policy_of(self.config, setup, hovers, own)
+        game = limits.game_setup(self.config, setup, self._bus.target, hovers, own)
+        self.flying = flying._replace(game=game)
+        return True
 
     def state(self, wall_ns: int) -> PartState:
         """Where the game stands for this vehicle."""
@@ -163,20 +184,22 @@ class GamePlayer:
             self._participation.leave()
             self._phase_seen = None
             self.flying = None
-        why = limits.contradiction(self.config, setup, self._vehicle.hovers) or strategy_error
+        hovers, own = self._vehicle.hovers, self._vehicle.limits
+        why = limits.contradiction(self.config, setup, hovers, own) or strategy_error
         if why:
             if why != self.why_not:
                 self._journal.error("setup_refused", why)
             self.why_not = why
             return
         self.why_not = ""
-        hovers = self._vehicle.hovers is not False
+        if hovers is None or self._vehicle.unread:
+            return  # unknown is no default: it is judged again once kind and limits are known
         origin = setup.origin
         self._vehicle.observer.frame = Frame(origin.latitude_deg, origin.longitude_deg, origin.altitude_m)
-        self.policy = limits.policy_of(self.config, setup, hovers)
+        self.policy = limits.policy_of(self.config, setup, hovers, own)
         mates = (m.id for m in setup.roster if m.role is self.config.role and m.id != self.config.id)
         self._bus.follow(tuple(mates))
-        game = limits.game_setup(self.config, setup, self._bus.target, hovers)
+        game = limits.game_setup(self.config, setup, self._bus.target, hovers, own)
         opponents = [player.id for player in game.opponents(self.side)]
         self._memory = Memory(self.config.prediction, opponents)
         self.strategy = self._strategy_of(setup)

@@ -228,11 +228,10 @@ class AgentCore:
 
     def _take_bytes(self, event: LinkBytes, now: Instant) -> None:
         received = self.radio.take(event.link, event.peer, event.data, now)
-        if received.second:
-            text = "a second autopilot with this vehicle's id is on the link: it is not flown, and not heard"
-            self.journal.error("second_autopilot", text)
         if received.took_over:
             self.vehicle.other_link()
+        if received.second:
+            self.vehicle.second_autopilot(now.s, "setpoints stay with the first")
         for packet in received.packets:
             self._hear(packet, now)
 

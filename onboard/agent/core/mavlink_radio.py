@@ -1,10 +1,9 @@
 """The own MAVLink links: frames in from one or two of them, messages out by the one that works.
 
-One framing state per peer. The autopilot is the peer its component was heard from first; another with the
-same id counts only after that one was silent for `SILENT_S`, so that it can draw neither the answers nor the
-setpoints to itself. With two links to one
-autopilot each frame counts once, and the second takes over when the first falls silent; setpoints
-go out on the one that counts, everything else on both.
+One framing state per peer; the autopilot's peer is the first its component was heard from (`one_sender`),
+so that another sender on the same port cannot draw the answers to itself, be it a second autopilot.
+With two links to one autopilot each frame counts once, and the second takes over when the first falls silent;
+setpoints go out on the one that counts, everything else on both.
 """
 
 from __future__ import annotations
@@ -15,14 +14,13 @@ from typing import NamedTuple
 
 from onboard.agent.core.events import ANY_PEER, Instant, Keep, LinkFacts, Outbox, Send
 from onboard.autopilot.link_redundancy import Redundant
-from onboard.core.math.constants import NEVER
+from onboard.autopilot.one_sender import OneSender
+from onboard.autopilot.one_sender import Sender as Sent
 from onboard.wire.mavlink.commands import Outgoing, SetpointMessage
 from onboard.wire.mavlink.frames import Framer, Packet, Sender
 from onboard.wire.mavlink.ids import AUTOPILOT, COMPANION
 from onboard.wire.mavlink.signing import Signing
 
-SILENT_S = 1.5  # an autopilot that comes from another peer is believed after the first was silent so long
-SECOND_SAID_S = 10.0  # a second autopilot is said again after this
 PEERS_MAX = 16  # framing states of one link
 
 
@@ -32,8 +30,12 @@ class _Line:
     def __init__(self, facts: LinkFacts) -> None:
         self.facts = facts
         self.framers: OrderedDict[int, Framer] = OrderedDict()
-        self.peer: int | None = None
-        self.peer_at = NEVER  # when the autopilot was heard last [s]
+        self.sender = OneSender()
+
+    @property
+    def peer(self) -> int | None:
+        """The autopilot's."""
+        return self.sender.peer
 
 
 class Received(NamedTuple):
@@ -41,7 +43,7 @@ class Received(NamedTuple):
 
     packets: tuple[Packet, ...]  # good frames of anybody's, each once
     took_over: bool  # the other link is used for sending from now on
-    second: bool = False  # another autopilot with the same id was heard; told once in `SECOND_SAID_S`
+    second: bool = False  # another autopilot speaks under the same system id
 
 
 class Radio:
@@ -68,7 +70,6 @@ class Radio:
         self._lines = [_Line(link) for link in links]
         self._redundant = Redundant(len(links))
         self._due: list[Outgoing] = []
-        self._second_said = NEVER
 
     @property
     def active(self) -> str:
@@ -84,11 +85,11 @@ class Radio:
         took_over = second = False
         for packet in framer.feed(data, now.wall_ns):
             if packet.system == self._system and packet.component == AUTOPILOT:
-                if line.peer not in (None, peer) and now.s - line.peer_at < SILENT_S:
-                    self.causes["second_autopilot"] += 1
-                    second = True
+                sender = line.sender.judge(now.s, peer, packet)
+                if sender in (Sent.OTHER, Sent.SECOND):
+                    second = second or sender is Sent.SECOND
+                    self.causes[f"{sender.value}_autopilot"] += 1
                     continue
-                line.peer, line.peer_at = peer, now.s
                 if len(self._lines) > 1:
                     heard = self._redundant.take(now.s, index, packet)
                     took_over = took_over or heard.took_over
@@ -97,10 +98,6 @@ class Radio:
                         continue
             self._out.put(Keep(now.wall_ns, packet.raw))
             packets.append(packet)
-        if second and now.s - self._second_said >= SECOND_SAID_S:
-            self._second_said = now.s
-        else:
-            second = False
         return Received(tuple(packets), took_over, second)
 
     def send(self, message: Outgoing) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import asin, pi, radians, sin, tan
 
 from onboard.agent.config import POLICY_ALONE, POLICY_KEYS, AgentConfig
+from onboard.autopilot.flight_limits import FlightLimits
 from onboard.config.derive import core_from
 from onboard.core.game.rules import NO_TARGET, Control, Target
 from onboard.core.math.constants import STANDARD_GRAVITY
@@ -17,19 +18,28 @@ from onboard.pilot.setup import GameSetup, Player, Side
 from onboard.wire.bus.messages import Member, Role, Setup
 
 _DEFAULT = Policy()
+UNKNOWN_LIMITS = FlightLimits()  # of an autopilot that has not said any
 
 
-def envelope_of(config: AgentConfig, member: Member | None, hovers: bool) -> Envelope:
-    """What the vehicle may be asked to do: the configuration's word, else the setup's, else caution."""
+def envelope_of(
+    config: AgentConfig, member: Member | None, hovers: bool, own: FlightLimits = UNKNOWN_LIMITS
+) -> Envelope:
+    """What the vehicle may be asked to do: the configuration's word, else the setup's, else caution.
+
+    Where the autopilot's own limits are tighter, they count.
+    """
     e = config.envelope
     declared_max = member.speed if member is not None and member.speed > 0.0 else 10.0
     speed_max = e.speed_max if e.speed_max is not None else declared_max
     limits = member.limits if member is not None else VehicleLimits(pitch_min=-pi / 6, pitch_max=pi / 6)
     speed_min = e.speed_min if e.speed_min is not None else limits.speed_min
+    speed_max = _least(speed_max, own.speed_max)
+    speed_min = speed_min if own.speed_min is None else max(speed_min, own.speed_min)
     up, down = limits.pitch_max, -limits.pitch_min
     climb = e.climb_max if e.climb_max is not None else max(0.5, speed_max * sin(max(0.0, up)))
     sink = e.sink_max if e.sink_max is not None else max(0.5, speed_max * sin(max(0.0, down)))
-    bank = radians(e.bank_max_deg)
+    climb, sink = _least(climb, own.climb_max), _least(sink, own.sink_max)
+    bank = _least(radians(e.bank_max_deg), own.bank_max)
     turn = radians(e.turn_rate_deg) if e.turn_rate_deg is not None else 0.0
     if turn == 0.0:
         turn = limits.turn_rate
@@ -50,7 +60,13 @@ def envelope_of(config: AgentConfig, member: Member | None, hovers: bool) -> Env
     )
 
 
-def policy_of(config: AgentConfig, setup: Setup | None, hovers: bool) -> Policy:
+def _least(value: float, own: float | None) -> float:
+    return value if own is None else min(value, own)
+
+
+def policy_of(
+    config: AgentConfig, setup: Setup | None, hovers: bool, own: FlightLimits = UNKNOWN_LIMITS
+) -> Policy:
     """The supervisor's policy in a game (or with none)."""
     s = config.safety
     member = member_of(setup, config.id)
@@ -63,7 +79,7 @@ def policy_of(config: AgentConfig, setup: Setup | None, hovers: bool) -> Policy:
     if s.separation is not None:
         separation = s.separation
     given = {name: getattr(_DEFAULT, name) for name in POLICY_ALONE} | {
-        "envelope": envelope_of(config, member, hovers),
+        "envelope": envelope_of(config, member, hovers, own),
         "fences": tuple(fences),
         "separation": separation,
         "heartbeat_alone": max(s.heartbeat_age_s, s.heartbeat_alone_s),
@@ -73,8 +89,8 @@ def policy_of(config: AgentConfig, setup: Setup | None, hovers: bool) -> Policy:
     policy = core_from(s, Policy, POLICY_KEYS, **given)
     if setup is not None and setup.field_profile and member is not None:
         heights = layers(tuple(-one.start[2] for one in setup.roster))
-        own = next(index for index, one in enumerate(setup.roster) if one.id == config.id)
-        policy = field_policy(policy, heights[own])
+        place = next(index for index, one in enumerate(setup.roster) if one.id == config.id)
+        policy = field_policy(policy, heights[place])
     return policy
 
 
@@ -83,7 +99,9 @@ def member_of(setup: Setup | None, id: int) -> Member | None:
     return next((one for one in setup.roster if one.id == id), None) if setup is not None else None
 
 
-def contradiction(config: AgentConfig, setup: Setup, hovers: bool | None) -> str:
+def contradiction(
+    config: AgentConfig, setup: Setup, hovers: bool | None, own: FlightLimits = UNKNOWN_LIMITS
+) -> str:
     """Why this agent cannot play a setup, in words; '' if it can. `hovers` None: no autopilot known yet."""
     if setup.game != config.game:
         return f"the setup is of game '{setup.game}', this agent plays '{config.game}'"
@@ -107,22 +125,28 @@ def contradiction(config: AgentConfig, setup: Setup, hovers: bool | None) -> str
         return f"the setup wants {member.speed:g} m/s, this vehicle is configured for {most:g} m/s"
     if least is not None and member.speed < least:
         return f"the setup wants {member.speed:g} m/s, this vehicle flies at least {least:g} m/s"
+    if hovers is False and own.speed_min is not None and member.speed < own.speed_min:
+        return f"the setup wants {member.speed:g} m/s, the autopilot flies at least {own.speed_min:g} m/s"
+    if hovers is False and own.speed_max is not None and member.speed > own.speed_max:
+        return f"the setup wants {member.speed:g} m/s, the autopilot flies at most {own.speed_max:g} m/s"
     if config.field and not setup.flat and capture_in_space_refused(rules.R, setup.track_sigma):
         return (
             f"capture in space with R = {rules.R:g} m and a stated position error of "
             f"{setup.track_sigma:g} m: R must be five times as large, or the setup use the field profile"
         )
     if hovers is False:
-        policy = policy_of(config, setup, False)
+        policy = policy_of(config, setup, False, own)
         e = policy.envelope
         if not all(fits(fence, e, policy.fence_margin, 0.2 * e.speed_max) for fence in policy.fences):
             return f"the fence leaves no room to turn with a radius of {e.turn_radius:.0f} m"
     return ""
 
 
-def game_setup(config: AgentConfig, setup: Setup, target: Vec | None, hovers: bool) -> GameSetup:
+def game_setup(
+    config: AgentConfig, setup: Setup, target: Vec | None, hovers: bool, own: FlightLimits = UNKNOWN_LIMITS
+) -> GameSetup:
     """The game as the pilot is told it. Climb limits of the own vehicle narrow its pitch band."""
-    envelope = envelope_of(config, member_of(setup, config.id), hovers)
+    envelope = envelope_of(config, member_of(setup, config.id), hovers, own)
     players: list[Player] = []
     for member in setup.roster:
         if member.role is Role.TRACKER:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from onboard.agent.core.bus_view import BusView
 from onboard.agent.core.vehicle_link import VehicleLink
+from onboard.autopilot.base import Stage
 from onboard.autopilot.health import Thresholds, read
 from onboard.core.math.constants import NEVER
 from onboard.core.safety.policy import Policy
@@ -28,9 +29,27 @@ def vehicle_lacks(now: float, vehicle: VehicleLink, policy: Policy) -> list[str]
     )
     health = read(now, t, limits)
     lacks += [*health.lacks, *health.faults]
+    if vehicle.unread:
+        lacks.append(unread_words(vehicle.unread))
     if not t.armed:
         lacks.append("an armed vehicle")
     return lacks
+
+
+def unread_words(names: tuple[str, ...]) -> str:
+    """What is missing while the autopilot's limits are not known, and what a person can do."""
+    return f"the autopilot's limits: {', '.join(names)} not read (or set [envelope] in the configuration)"
+
+
+def why_no_order(vehicle: VehicleLink, *, takes: bool) -> str:
+    """Why an order from the ground cannot be obeyed, in words; "" if it can. `takes`: it takes control."""
+    if vehicle.adapter is None:
+        return vehicle.refusal or "no autopilot"
+    if vehicle.stage is Stage.TAKEN and not takes:
+        return f"a pilot flies it, in {vehicle.telemetry.mode}"
+    if vehicle.unread and takes:
+        return f"lacks {unread_words(vehicle.unread)}"
+    return ""
 
 
 def lacking(

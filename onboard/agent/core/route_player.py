@@ -14,9 +14,11 @@ from onboard.agent.core.part import PartState
 from onboard.agent.core.readiness import vehicle_lacks
 from onboard.agent.core.vehicle_link import VehicleLink
 from onboard.autopilot.base import Stage
+from onboard.autopilot.flight_limits import FlightLimits
 from onboard.config.strict import ConfigError
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.route.choice import TrackMemory
+from onboard.core.safety.policy import Policy
 from onboard.core.strategy.knowledge import Decision
 from onboard.game.route_file import Route
 from onboard.pilot.pilot import PilotDecision, Question
@@ -46,13 +48,18 @@ class RoutePlayer:
         )
         self._track: TrackMemory | None = None
         self._begun_ns = -1
+        self._limits = FlightLimits()  # the autopilot's, that the policy keeps
         self._placed = False  # the vehicle knows where its route lies
         self._done = False
 
     def follow(self, now: Instant) -> None:
         """Find the origin, once; begin when the vehicle is under control."""
-        if not self._placed and self._vehicle.hovers is not None:
-            self._place(self._vehicle.hovers)
+        hovers = self._vehicle.hovers
+        if hovers is not None and not self._vehicle.unread:
+            if not self._placed:
+                self._place(hovers)
+            elif self._vehicle.limits != self._limits:
+                self.policy = self._policy_of(hovers)
         ready = self._placed and not self._done
         if ready and self._begun_ns < 0 and self._vehicle.stage is Stage.ACTIVE:
             self._begun_ns = now.wall_ns
@@ -109,13 +116,18 @@ class RoutePlayer:
             vehicle.observer.frame = Frame(home.latitude_deg, home.longitude_deg, home.altitude_m)
         else:
             return
-        e = self.route.limits
+        self.policy = self._policy_of(hovers)
+        self._placed = True
+        last, count = self.route.waypoints[-1], len(self.route.waypoints)
+        self._journal.info("route", f"{self.route.name}: {count} waypoints in {last.time:.0f} s")
+
+    def _policy_of(self, hovers: bool) -> Policy:
+        """The supervisor's policy with the limits of route, configuration and autopilot."""
+        e, own = self.route.limits, self._vehicle.limits
+        self._limits = own
         member = Member(
             id=self.config.id, role=self.config.role, speed=e.speed_max, start=(0.0, 0.0, 0.0),
             limits=LimitsMessage(*e),
         )  # fmt: skip
-        envelope = limits.envelope_of(self.config, member, hovers)
-        self.policy = limits.policy_of(self.config, setup, hovers)._replace(envelope=envelope)
-        self._placed = True
-        last, count = self.route.waypoints[-1], len(self.route.waypoints)
-        self._journal.info("route", f"{self.route.name}: {count} waypoints in {last.time:.0f} s")
+        envelope = limits.envelope_of(self.config, member, hovers, own)
+        return limits.policy_of(self.config, self._bus.setup, hovers, own)._replace(envelope=envelope)

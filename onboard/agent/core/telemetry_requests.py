@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 
+from onboard.autopilot.flight_limits import still_wanted
 from onboard.autopilot.parameters import WANTED
 from onboard.autopilot.stream_rates import NEEDS, Need, StreamRates, capacity_of
 from onboard.autopilot.timesync import TimesyncEstimator
@@ -16,7 +17,9 @@ from onboard.wire.mavlink.values import ParamValue
 from onboard.wire.retry import CommandRetry, RetryPolicy
 
 REVIEW_S = 1.0  # between two looks at the rates
-PARAM_RETRY = RetryPolicy(0.5, most=6)  # [s]
+PARAM_RETRY = RetryPolicy(
+    0.5, patience=6, slow=5.0
+)  # [s] without end: the limits must come
 CLOCK_EVERY_S = 2.0
 FAST = ("GLOBAL_POSITION_INT", "ATTITUDE")  # follow the control rate above 20 Hz
 
@@ -55,6 +58,8 @@ class Requests:
         self._px4 = kind is Kind.PX4_MULTICOPTER
         self._arrived: Counter[str] = Counter()
         self._reviewed = self._clock_at = NEVER
+        self._kind = kind
+        self._wanted = frozenset(WANTED.get(kind, ()))
         self._missing = list(WANTED.get(kind, ()))
         self._params = CommandRetry(PARAM_RETRY)
         self._buffer_free = 1.0
@@ -69,9 +74,12 @@ class Requests:
 
     def parameter(self, value: ParamValue) -> None:
         """Keep a parameter's value."""
+        if value.name not in self._wanted:
+            return
+        self.parameters[value.name] = value.bytewise if self._px4 else value.value
         if value.name in self._missing:
             self._missing.remove(value.name)
-            self.parameters[value.name] = value.bytewise if self._px4 else value.value
+            self._missing = still_wanted(self._kind, self.parameters, self._missing)
 
     def again(self) -> None:
         """Ask for everything anew: the autopilot has started again, or another link is used."""

@@ -14,6 +14,7 @@ from onboard.agent.core.mavlink_radio import Radio
 from onboard.agent.core.telemetry_requests import Requests
 from onboard.autopilot.base import Adapter, Refusal, Setpoint, Stage, Telemetry
 from onboard.autopilot.choose import AdapterOptions, adapter_for
+from onboard.autopilot.flight_limits import FlightLimits, read_limits, unread
 from onboard.autopilot.telemetry_state import Observer
 from onboard.core.math.constants import NEVER, NS_PER_S
 from onboard.core.math.vectors import ZERO
@@ -22,7 +23,7 @@ from onboard.core.safety.supervisor import SupervisorOutput
 from onboard.wire.bus.messages import Severity
 from onboard.wire.mavlink.commands import OwnHeartbeat, Target
 from onboard.wire.mavlink.frames import Packet
-from onboard.wire.mavlink.ids import AUTOPILOT
+from onboard.wire.mavlink.ids import AUTOPILOT, COMPANION
 from onboard.wire.mavlink.values import (
     CommandAck,
     GlobalPosition,
@@ -34,6 +35,13 @@ from onboard.wire.mavlink.values import (
     Version,
 )
 
+DOUBTS = {  # why positions do not count, in words
+    "position_jump": "the autopilot's position jumped away from its velocity: not flown on",
+    "position_frozen": "the autopilot's position stands still against its velocity: not flown on",
+}
+DOUBT_S = 0.5  # a doubt that lasts for longer is told [s]
+SECOND_S = 10.0  # without a second autopilot, until one is news again [s]
+COMPONENTS_MAX = 8
 RATE_WINDOW_S = 2.0  # over which rates are measured
 _SEVERITIES = {"info": Severity.INFO, "warning": Severity.WARNING, "error": Severity.ERROR}
 
@@ -108,6 +116,10 @@ class VehicleLink:
         self._heartbeat: Heartbeat | None = None
         self._asking: Requests | None = None
         self._reboots = 0
+        self.components: list[int] = []  # others that beat under the vehicle's own system id
+        self._second_at = NEVER  # when a second autopilot was last heard [s]
+        self._doubt = ""  # told last
+        self._undoubted_at = NEVER  # when positions counted last [s]
         self._stepped_at = NEVER
 
     @property
@@ -125,6 +137,21 @@ class VehicleLink:
         """The autopilot's parameters, as far as read."""
         return {} if self._asking is None else self._asking.parameters
 
+    @property
+    def limits(self) -> FlightLimits:
+        """What the autopilot itself lets the vehicle do, as far as it has said."""
+        return FlightLimits() if self.adapter is None else read_limits(self.adapter.kind, self.parameters)
+
+    @property
+    def unread(self) -> tuple[str, ...]:
+        """Parameters that must be read, or limits configured, before a setpoint may leave."""
+        if self.adapter is None or self.config.dry_run:  # a dry run asks for none, and sends none
+            return ()
+        e = self.config.envelope
+        said = {"speed_min": e.speed_min, "speed_max": e.speed_max, "climb_max": e.climb_max,
+                "sink_max": e.sink_max}  # fmt: skip
+        return unread(self.adapter.kind, self.limits, said)
+
     def hear(self, packet: Packet, now: float) -> bool:
         """Take one packet; True for a new position of the own vehicle."""
         if packet.system != self.config.id:
@@ -134,6 +161,7 @@ class VehicleLink:
             return False
         if packet.component != AUTOPILOT:
             self.foreign["foreign_component"] += 1
+            self._hear_component(packet)
             return False
         value = self.observer.take(now, packet)
         if self._asking is not None:
@@ -156,10 +184,31 @@ class VehicleLink:
         elif isinstance(value, RadioStatus) and self._asking is not None:
             self._asking.radio(value.buffer_free)
         elif isinstance(value, Version):
-            self.version = value
+            if self.version is not None and 0 != value.uid != self.version.uid != 0:
+                self.second_autopilot(now, f"their uids are {self.version.uid:x} and {value.uid:x}")
+            else:
+                self.version = value
         elif isinstance(value, StatusText) and value.severity <= 4:
             self._journal.warning("autopilot", value.text)
         return False
+
+    def second_autopilot(self, now: float, what: str) -> None:
+        """Two autopilots speak under this vehicle's system id: tell it, again where it comes back."""
+        if now - self._second_at > SECOND_S:
+            text = f"two autopilots with system id {self.config.id}: {what}; give each an id of its own"
+            self._journal.error("second_autopilot", text)
+        self._second_at = now
+
+    def _hear_component(self, packet: Packet) -> None:
+        """Name, once, a component that beats under the vehicle's own system id."""
+        known = packet.component in (COMPANION, *self.components)
+        if packet.name == "HEARTBEAT" and not known and len(self.components) < COMPONENTS_MAX:
+            self.components.append(packet.component)
+            self._journal.warning(
+                "component",
+                f"component {packet.component} beats as system {self.config.id}: while it does, an "
+                "ArduPilot's GCS failsafe that watches this id does not notice when this agent dies",
+            )
 
     def look(self, now: float) -> Telemetry:
         """What is known of the vehicle at `now`; also notices an autopilot that started again."""
@@ -169,7 +218,22 @@ class VehicleLink:
             self._journal.error("reboot", "the autopilot has started again")
             if self._asking is not None:
                 self._asking.again()
+        if self.observer.two_clocks(now):
+            self.second_autopilot(now, "on one link, where setpoints reach both")
+        self._tell_doubt(now)
         return self.telemetry
+
+    def _tell_doubt(self, now: float) -> None:
+        """Say that positions do not count, once that has lasted, and that they count again."""
+        doubt = self.observer.doubt
+        if not doubt:
+            self._undoubted_at = now
+            if self._doubt:
+                self._journal.info("position", "the autopilot's position fits its velocity again")
+            self._doubt = ""
+        elif doubt != self._doubt and now - self._undoubted_at > DOUBT_S:
+            self._doubt = doubt
+            self._journal.warning(doubt, DOUBTS[doubt])
 
     def step(self, now: float, verdict: SupervisorOutput | None = None) -> Control:
         """Send what the adapter wants sent, and note what it says; gives whether control changed hands.
@@ -216,7 +280,7 @@ class VehicleLink:
 
     def counters(self) -> dict[str, int]:
         """Foreign packets by cause, and how well the autopilot's clock is known."""
-        counts = dict(self.foreign)
+        counts = {**self.foreign, **self.observer.odd}
         if self._asking is not None:
             counts["timesync_round_trip_us"] = self._asking.clock.offset().round_trip_ns // 1000
         return counts

@@ -249,9 +249,8 @@ TRACK = Topic(
     "tracks/{id}", Track, Delivery.LATEST, (Party.SENSOR,), _GAME, "an opponent as a sensor reports it", 20.0
 )
 
-TOPICS = Table(
-    (SETUP, PHASE, OUTCOME, MASTER, EVADER_BRIEF, STATE, DECISION, HEALTH, EVENTS, COMMAND, ALIVE, TRACK)
-)
+# Every row above, in the order of the page: a row that is written is in the table.
+TOPICS = Table(tuple(row for row in tuple(globals().values()) if isinstance(row, Topic)))
 
 
 class Dispatcher:

@@ -6,8 +6,9 @@ signature first, in constant time; only then the stamp, and only a frame that pa
 state. So a forged stamp from the far future cannot lock the true sender out.
 
 Stamps are kept per stream (link id, system, component) and persisted with a reserve: what is stored lies
-`SAVE_EVERY` ahead, so that after a crash nothing that was once accepted, or sent, comes again. The price is
-that a sender may go unheard for that one second after a restart.
+`RESERVE` ahead and is stored again when `SAVE_EVERY` of it is used, so that after a crash nothing that was
+once accepted, or sent, comes again, also where the disk takes a second to store it. The price is that a
+sender may go unheard for those two seconds after a restart.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ TICK_NS = 10_000  # 10 µs
 SECOND = 100_000  # ticks
 WINDOW = 60 * SECOND  # a new stream may lag our clock by this (the standard), any may lead it by this
 SAVE_EVERY = 1 * SECOND
+RESERVE = 2 * SECOND
 STREAMS = 1024  # bound on streams kept
 LAST_STAMP = (1 << 48) - 1
 
@@ -132,4 +134,6 @@ class Signing:
     def _save(self) -> None:
         self._own_reserved = self._own + SAVE_EVERY
         self._reserved = {stream: stamp + SAVE_EVERY for stream, stamp in self._streams.items()}
-        self._store.save(Stamps(self._own_reserved, dict(self._reserved)))
+        ahead = RESERVE - SAVE_EVERY
+        kept = {stream: stamp + ahead for stream, stamp in self._reserved.items()}
+        self._store.save(Stamps(self._own_reserved + ahead, kept))

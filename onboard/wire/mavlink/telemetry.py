@@ -118,6 +118,7 @@ def _battery(m: Any) -> Battery:
         remaining=m.battery_remaining * 0.01 if 0 <= m.battery_remaining <= 100 else UNKNOWN,
         voltage=sum(cells) * 1e-3 if cells else UNKNOWN,
         time_left_s=float(m.time_remaining) if m.time_remaining > 0 else UNKNOWN,
+        function=m.battery_function,
     )
 
 
@@ -139,21 +140,26 @@ _NEEDED = (
 # The two reports agree on what is estimated and part ways on what is wrong.
 _FAULTS = dialect.ESTIMATOR_CONST_POS_MODE | dialect.ESTIMATOR_GPS_GLITCH | dialect.ESTIMATOR_ACCEL_ERROR
 _EKF_FAULTS = dialect.EKF_CONST_POS_MODE | dialect.EKF_UNINITIALIZED | dialect.EKF_GPS_GLITCHING
+# A measurement that disagrees sets these for as long as it does, be it one sample.
+_REJECTING = dialect.ESTIMATOR_GPS_GLITCH | dialect.ESTIMATOR_ACCEL_ERROR
+_EKF_REJECTING = dialect.EKF_GPS_GLITCHING
 
 
-def _ekf(flags: int, faults: int, ratios: tuple[float, ...]) -> EkfStatus:
+def _ekf(flags: int, faults: int, rejecting: int, ratios: tuple[float, ...]) -> EkfStatus:
     """A ratio that is not a number is one that the estimator does not compute."""
     worst = max((abs(ratio) for ratio in ratios if isfinite(ratio)), default=0.0)
-    return EkfStatus(flags, flags & _NEEDED == _NEEDED and not flags & faults and worst <= 1.0, worst)
+    estimated = flags & _NEEDED == _NEEDED and not flags & faults & ~rejecting
+    return EkfStatus(flags, estimated and not flags & faults and worst <= 1.0, worst, estimated)
 
 
 def _ekf_status_report(m: Any) -> EkfStatus:
     ratios = (m.velocity_variance, m.pos_horiz_variance, m.pos_vert_variance, m.compass_variance)
-    return _ekf(m.flags, _EKF_FAULTS, ratios)
+    return _ekf(m.flags, _EKF_FAULTS, _EKF_REJECTING, ratios)
 
 
 def _estimator_status(m: Any) -> EkfStatus:
-    return _ekf(m.flags, _FAULTS, (m.vel_ratio, m.pos_horiz_ratio, m.pos_vert_ratio, m.mag_ratio))
+    ratios = (m.vel_ratio, m.pos_horiz_ratio, m.pos_vert_ratio, m.mag_ratio)
+    return _ekf(m.flags, _FAULTS, _REJECTING, ratios)
 
 
 def _extended_state(m: Any) -> ExtendedState:

@@ -78,6 +78,7 @@ class Battery(NamedTuple):
     remaining: float  # 0…1, −1 = unknown
     voltage: float  # [V] of the pack, −1 = unknown
     time_left_s: float  # −1 = unknown
+    function: int = 0  # MAV_BATTERY_FUNCTION: 0 unknown, 1 all, 2 propulsion, 3 avionics, 4 payload
 
 
 class GpsFix(NamedTuple):
@@ -95,6 +96,12 @@ class EkfStatus(NamedTuple):
     flags: int  # up to 512 the same in both
     ok: bool  # attitude, velocity, absolute position estimated, no fault set, no test ratio above 1
     worst: float  # the largest of the test ratios
+    estimated: bool = True  # attitude, velocity and absolute position, and not at rest by assumption
+
+    @property
+    def rejecting(self) -> bool:
+        """Whether only a rejected measurement makes it not good: one such report says little."""
+        return self.estimated and not self.ok
 
 
 class ExtendedState(NamedTuple):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from collections import Counter
 from contextlib import asynccontextmanager
 
 import numpy as np
@@ -16,6 +17,7 @@ from onboard.runtime.bus_memory import MemoryBroker
 from onboard.runtime.impairment import Impairment
 from onboard.runtime.loop import virtual_clock
 from onboard.wire.bus.messages import Command, CommandKind, CommandReply, CommandState
+from onboard.wire.bus.topics import COMMAND
 from tests.support.answering_agents import AnsweringAgent
 from tests.support.sample_messages import GAME, START_NS
 from tests.support.virtual_time import virtual
@@ -203,3 +205,26 @@ def test_an_abort_gets_through_a_bus_that_loses_every_third_message(seed):
             assert all(len(crew.obeyed) == 1 for crew in crews)
 
     fly()
+
+
+@virtual
+async def test_a_reply_in_the_name_of_another_vehicle_counts_for_nobody() -> None:
+    broker = MemoryBroker()
+    station = Station(broker.connect(), virtual_clock(), StationSetup(GAME))
+    liar = broker.connect()
+    liar.serve(COMMAND.key(GAME, 3), lambda _: b"")
+
+    def lies(payload: bytes) -> bytes:
+        command = COMMAND.decode(payload, Counter())
+        assert command is not None
+        return COMMAND.encode_reply(reply(CommandState.CONFIRMED, 3, command.command_id))
+
+    liar.serve(COMMAND.key(GAME, 2), lies)
+    running = asyncio.create_task(station.run())
+    await asyncio.sleep(0.1)
+    station.command(CommandKind.ABORT, (2, 3))
+    await asyncio.sleep(1.0)
+    (shown,) = station.picture().commands
+    assert {leg.id: leg.state for leg in shown.legs} == dict.fromkeys((2, 3), LegState.SENT)
+    running.cancel()
+    await asyncio.gather(running, return_exceptions=True)

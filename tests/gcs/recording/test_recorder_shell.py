@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import threading
 from collections import Counter
 from pathlib import Path
 
@@ -17,6 +18,7 @@ from gcs.station import Station, StationSetup
 from onboard.config.strict import ConfigError
 from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.bus_memory import MemoryBroker
+from onboard.runtime.file_writer import FileWriter
 from onboard.runtime.links import memory_pair
 from onboard.runtime.loop import virtual_clock
 from onboard.runtime.run_folder import new_run
@@ -163,3 +165,48 @@ def test_run_folders_never_collide_and_bad_places_are_named(tmp_path: Path) -> N
     (tmp_path / "file").write_text("")
     with pytest.raises(ConfigError, match="not a directory"):
         new_run(tmp_path / "file", "g", EPOCH_NS)
+
+
+@virtual
+async def test_a_frozen_disk_is_an_alert_holds_nobody_up_and_loses_nothing(tmp_path: Path) -> None:
+    clock = virtual_clock()
+    loop_thread, thawed = threading.get_ident(), threading.Event()
+
+    class Frozen(OsFile):
+        """While it is frozen the loop's thread would lose 5 s in it, and any other waits."""
+
+        def write_at(self, data: memoryview, offset: int) -> int:
+            if threading.get_ident() == loop_thread:
+                clock.advance_to(clock.monotonic_ns() + 5 * NS_PER_S)
+            else:
+                assert thawed.wait(60.0)
+            return super().write_at(data, offset)
+
+    broker = MemoryBroker()
+    station = Station(broker.connect(), clock, StationSetup("field"))
+    station.open()
+    writer = FileWriter()
+    recorder = StationRecorder(station, tmp_path, opener=Frozen, writer=writer)
+    agent = broker.connect()
+    states = list(chase(5.0, state_only=True))
+    late = 0.0
+    for turn in range(50):
+        due = clock.monotonic_ns() + NS_PER_S // 10
+        for item in states[turn * len(states) // 50 : (turn + 1) * len(states) // 50]:
+            agent.publish(item.key, item.payload, Delivery.LATEST)
+        await asyncio.sleep(0.1)
+        recorder.tick()
+        late = max(late, (clock.monotonic_ns() - due) / NS_PER_S)
+    assert late < 0.01
+    assert recorder.status().trouble == "the disk does not answer"
+    assert "recorder" in {alert.name for alert in station.picture().alerts}
+    thawed.set()
+    for _ in range(5):
+        assert writer.flush(60.0)
+        await asyncio.sleep(0.2)
+        recorder.tick()
+    assert recorder.status().trouble == ""
+    recorder.close()
+    kept = [e for e in Recording(tmp_path / "recording.mcap").entries() if e.key.endswith("state")]
+    assert len(kept) == len(states)
+    station.close()

@@ -11,6 +11,7 @@ import threading
 from pathlib import Path
 
 import pytest
+import zenoh
 
 from onboard.config.strict import ConfigError
 from onboard.runtime.bus_zenoh import open_zenoh
@@ -181,3 +182,28 @@ asyncio.run(main())
             child.kill()
         await child.wait()
         await station.close()
+
+
+@pytest.mark.real
+async def test_a_panic_of_zenoh_does_not_end_the_opener(monkeypatch: pytest.MonkeyPatch) -> None:
+    class PanicException(BaseException):
+        """As PyO3's: no Exception."""
+
+    opened = zenoh.open
+    panics = 2
+
+    def failing(config: zenoh.Config) -> object:
+        nonlocal panics
+        panics -= 1
+        if panics >= 0:
+            raise PanicException("Failed to init net\x1b[2J")
+        return opened(config)
+
+    monkeypatch.setattr("onboard.runtime.bus_zenoh.zenoh.open", failing)
+    monkeypatch.setattr("onboard.runtime.bus_zenoh.RETRY_S", 0.1)
+    bus = await open_zenoh(f"tcp/127.0.0.1:{free_port()}", listen=True)
+    try:
+        await until(lambda: bus.how in ("listening", "joined"))
+        assert bus.counters()["open_failed"] >= 1
+    finally:
+        await bus.close()

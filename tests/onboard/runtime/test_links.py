@@ -6,6 +6,7 @@ import asyncio
 import os
 import pty
 import socket
+import threading
 from collections.abc import Hashable
 
 import pytest
@@ -13,7 +14,7 @@ import pytest
 from onboard.config.strict import ConfigError
 from onboard.runtime.links import PENDING_MAX, UdpLink, memory_pair, open_link, open_udp
 from onboard.runtime.protocols import Link
-from onboard.runtime.serial_link import BACKLOG_MAX
+from onboard.runtime.serial_link import BACKLOG_MAX, SerialLink
 from tests.support.real_time import patience, until
 from tests.support.virtual_time import virtual
 
@@ -218,3 +219,32 @@ def _read(fd: int) -> bytes:
         return os.read(fd, 65536)
     except BlockingIOError:
         return b""
+
+
+@pytest.mark.real
+@pytest.mark.parametrize("url", ["udpout://field.example:14550", "serial:///dev/hangs:57600"])
+async def test_a_resolver_or_a_driver_that_hangs_holds_up_neither_loop_nor_end(
+    url: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    answers = threading.Event()
+
+    def hang(*_: object, **__: object) -> None:
+        answers.wait(60.0)
+        raise OSError("too late")
+
+    monkeypatch.setattr(socket, "getaddrinfo", hang)
+    monkeypatch.setattr(SerialLink, "_opened", hang)
+    turns = 0
+
+    async def turn() -> None:
+        nonlocal turns
+        while True:
+            await asyncio.sleep(0.005)
+            turns += 1
+
+    turning = asyncio.create_task(turn())
+    with pytest.raises(ConfigError, match=r"within 0\.5 s"):
+        await open_link(url, timeout_s=0.5)
+    turning.cancel()
+    answers.set()
+    assert turns > 10

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
@@ -14,7 +15,15 @@ from onboard.wire.mavlink.commands import Target
 from onboard.wire.mavlink.dialect import dialect
 from onboard.wire.mavlink.encoding import encode
 from onboard.wire.mavlink.frames import Framer, Sender
-from onboard.wire.mavlink.signing import EPOCH_NS, SECOND, MemoryStore, Signing, ticks
+from onboard.wire.mavlink.signing import (
+    EPOCH_NS,
+    RESERVE,
+    MemoryStore,
+    SignatureCheck,
+    Signing,
+    Stamps,
+    ticks,
+)
 
 KEY = bytes(range(32))
 NOW = EPOCH_NS + 300_000_000 * 10**9  # some day in 2024
@@ -100,7 +109,7 @@ def test_after_a_crash_with_a_clock_set_back_our_own_stamps_still_rise() -> None
     last = max(first.next_stamp(NOW + k) for k in range(1000))
     assert last == ticks(NOW) + 999
     assert Signing(KEY, store).next_stamp(NOW - 3600 * S) > last
-    assert Signing(KEY, store).next_stamp(NOW) <= last + 2 * SECOND + 2
+    assert Signing(KEY, store).next_stamp(NOW) <= last + 2 * RESERVE + 2  # two starts, each with its reserve
 
 
 def test_pymavlink_hears_us_and_we_hear_pymavlink() -> None:
@@ -155,3 +164,55 @@ def test_stamps_outlive_the_process_in_a_file(tmp_path: Path) -> None:
     lost = StampFile(tmp_path / "nowhere" / "stamps.json")
     assert Framer(signing=Signing(KEY, lost)).feed(tx.pack(commands.OwnHeartbeat(), NOW + S), NOW + S)
     assert lost.failures == 1
+
+
+def test_stamps_follow_no_link_and_a_pipe_for_a_key_is_not_waited_for(tmp_path: Path) -> None:
+    treasure = tmp_path / "treasure"
+    treasure.write_text("mine", encoding="utf-8")
+    stamps = tmp_path / "key.stamps"
+    (tmp_path / "key.stamps.new").symlink_to(treasure)
+    stamps.symlink_to(treasure)
+    file = StampFile(stamps)
+    file.save(Stamps(5, {}))
+    assert treasure.read_text(encoding="utf-8") == "mine"
+    assert not stamps.is_symlink()
+    assert stamps.stat().st_mode & 0o777 == 0o600
+    assert file.load() == Stamps(5, {})
+    assert file.failures == 0
+    os.mkfifo(tmp_path / "pipe", 0o600)
+    with pytest.raises(ConfigError, match="found no regular file"):
+        read_key(tmp_path / "pipe")
+
+
+def test_a_signed_frame_from_the_future_is_refused_from_one_minute_on_and_moves_nothing() -> None:
+    for ahead, check in ((60 * S, SignatureCheck.GOOD), (60 * S + 10_000, SignatureCheck.FUTURE)):
+        hearing = Signing(KEY, MemoryStore())
+        assert judged(hearing, NOW + ahead) is check
+        now_fine = judged(hearing, NOW) is SignatureCheck.GOOD
+        assert now_fine == (check is SignatureCheck.FUTURE)
+
+
+def test_a_new_stream_may_lag_one_minute_and_an_old_one_any_time() -> None:
+    assert judged(Signing(KEY, MemoryStore()), NOW - 60 * S) is SignatureCheck.GOOD
+    assert judged(Signing(KEY, MemoryStore()), NOW - 60 * S - 10_000) is SignatureCheck.STALE
+    hearing = Signing(KEY, MemoryStore())
+    assert judged(hearing, NOW - 50 * S) is SignatureCheck.GOOD
+    assert judged(hearing, NOW - 49 * S, now_ns=NOW + 3600 * S) is SignatureCheck.GOOD
+    assert judged(hearing, NOW - 49 * S, now_ns=NOW + 3600 * S) is SignatureCheck.REPLAYED
+
+
+def test_there_are_at_most_1024_streams_and_those_known_stay_heard() -> None:
+    hearing = Signing(KEY, MemoryStore())
+    senders = [(link, system) for link in range(5) for system in range(1, 251)][:1025]
+    checks = [judged(hearing, NOW, link_id=link, system=system) for link, system in senders]
+    assert checks[:1024] == [SignatureCheck.GOOD] * 1024
+    assert checks[1024] is SignatureCheck.CROWDED
+    assert judged(hearing, NOW + S, link_id=senders[0][0], system=senders[0][1]) is SignatureCheck.GOOD
+
+
+def judged(
+    hearing: Signing, stamp_ns: int, *, now_ns: int = NOW, link_id: int = 3, system: int = 1
+) -> SignatureCheck:
+    """What is found of a frame that was signed at `stamp_ns` and arrives at `now_ns`."""
+    frame = sender(link_id=link_id, system=system).pack(commands.OwnHeartbeat(), stamp_ns)
+    return hearing.verify(frame, True, system, 191, now_ns)

@@ -11,7 +11,7 @@ from onboard.core.math.states import Mate
 from onboard.core.math.vectors import Vec
 from onboard.core.safety.fence import fits, inside, outside_by
 from onboard.core.safety.health import HealthAction
-from onboard.core.safety.policy import Action, Cause, Fence, SupervisorInput
+from onboard.core.safety.policy import Action, Cause, Envelope, Fence, Policy, SupervisorInput
 from onboard.core.safety.supervisor import SupervisorState, advance, handed_back, supervise
 from tests.support.supervised_vehicle import COPTER, FIELD, PLANE, SupervisedVehicle, assert_within
 
@@ -121,3 +121,36 @@ def test_a_fence_too_small_for_a_planes_circle_is_known_before_flight() -> None:
     assert fits(FIELD, PLANE.envelope, 20.0, 5.0)
     assert not fits(small, PLANE.envelope, 20.0, 0.0)
     assert fits(small, COPTER.envelope, 20.0, 0.0)
+
+
+situations = st.tuples(
+    st.booleans(),
+    st.builds(Vec, st.floats(-320.0, 320.0), st.floats(-320.0, 320.0), st.floats(-125.0, -15.0)),
+    st.builds(Vec, st.floats(-20.0, 20.0), st.floats(-20.0, 20.0), st.just(0.0)),
+    st.builds(Vec, st.floats(-8.0, 8.0), st.floats(-8.0, 8.0), st.just(0.0)),
+    st.builds(Vec, st.floats(-300.0, 300.0), st.floats(-300.0, 300.0), st.just(-50.0)),
+    st.builds(Vec, st.floats(-25.0, 25.0), st.floats(-25.0, 25.0), st.floats(-4.0, 4.0)),
+)
+
+
+@settings(max_examples=1500, deadline=None)
+@given(situations)
+def test_near_a_fence_and_in_wind_the_speed_limit_is_the_last_word(
+    situation: tuple[bool, Vec, Vec, Vec, Vec, Vec]
+) -> None:
+    hovers, position, velocity, wind, mate, wanted = situation
+    envelope = Envelope(
+        hovers=hovers, speed_min=0.0 if hovers else 12.0, speed_max=10.0 if hovers else 20.0,
+        turn_rate=0.6, turn_radius=0.0 if hovers else 60.0,
+    )  # fmt: skip
+    square = Fence(((-300.0, -300.0), (300.0, -300.0), (300.0, 300.0), (-300.0, 300.0)), 20.0, 120.0)
+    policy = Policy(envelope=envelope, fences=(square,), separation=10.0 if hovers else 0.0)
+    seen = SupervisorInput(
+        now=10.0, id=2, position=position, velocity=velocity, wind=Vec(0.0, 0.0, 0.0) if hovers else wind,
+        mates=(Mate(3, mate, Vec(0.0, 0.0, 0.0), 0.1),),
+    )  # fmt: skip
+    verdict = supervise(wanted, seen, policy, SupervisorState())
+    if verdict.stream:
+        x, y, z = verdict.air
+        assert (x * x + y * y + z * z) ** 0.5 <= envelope.speed_max * (1.0 + 1e-6)
+        assert -envelope.climb_max - 1e-6 <= z <= envelope.sink_max + 1e-6

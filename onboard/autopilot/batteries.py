@@ -1,0 +1,84 @@
+"""The batteries that keep a vehicle in the air, told apart by id and function.
+
+A payload's or the avionics' battery says nothing of how long the vehicle can fly; of several flight batteries
+the emptiest speaks. What no BATTERY_STATUS of a flight battery tells, SYS_STATUS tells.
+"""
+
+from __future__ import annotations
+
+from onboard.autopilot.plausibility import Recent
+from onboard.core.math.constants import NEVER
+from onboard.wire.mavlink.values import UNKNOWN, Battery, SysStatus
+
+FLIGHT = (0, 1, 2)  # MAV_BATTERY_FUNCTION: not said, all of the vehicle, propulsion
+MOST = 16  # batteries told apart
+STALE = 30.0  # [s] after which a battery that fell silent no longer speaks, where another one does
+
+
+class _Gauge:
+    """Share and voltage of one battery, by its last few reports; UNKNOWN where it does not say."""
+
+    def __init__(self) -> None:
+        self.at = NEVER
+        self._share, self._voltage = Recent(), Recent()
+        self._knows = [False, False]
+
+    def take(self, now: float, share: float, voltage: float) -> None:
+        """Take in one more report at `now` [s, monotonic]."""
+        self.at = now
+        for index, (recent, value) in enumerate(((self._share, share), (self._voltage, voltage))):
+            if value >= 0.0:
+                recent.take(value)
+                self._knows[index] = True
+
+    @property
+    def share(self) -> float:
+        """0…1."""
+        return self._share.value if self._knows[0] else UNKNOWN
+
+    @property
+    def voltage(self) -> float:
+        """[V]."""
+        return self._voltage.value if self._knows[1] else UNKNOWN
+
+
+class Batteries:
+    """The flight batteries of one vehicle."""
+
+    def __init__(self) -> None:
+        self._gauges: dict[int, _Gauge] = {}
+        self._status = _Gauge()
+        self._now = NEVER
+
+    def take(self, now: float, battery: Battery) -> None:
+        """Take in a BATTERY_STATUS that came at `now` [s, monotonic]."""
+        self._now = now
+        if battery.function not in FLIGHT:
+            self._gauges.pop(battery.id, None)
+        elif battery.id in self._gauges or len(self._gauges) < MOST:
+            self._gauges.setdefault(battery.id, _Gauge()).take(now, battery.remaining, battery.voltage)
+
+    def take_status(self, status: SysStatus) -> None:
+        """Take in a SYS_STATUS."""
+        self._status.take(self._now, status.battery, status.voltage)
+
+    @property
+    def share(self) -> float:
+        """What is left in the emptiest flight battery [0…1]; UNKNOWN where nobody says."""
+        gauge = self._emptiest()
+        return self._status.share if gauge is None or gauge.share == UNKNOWN else gauge.share
+
+    @property
+    def voltage(self) -> float:
+        """The voltage of the emptiest flight battery [V]; UNKNOWN where nobody says."""
+        gauge = self._emptiest()
+        return self._status.voltage if gauge is None or gauge.voltage == UNKNOWN else gauge.voltage
+
+    def _emptiest(self) -> _Gauge | None:
+        """The battery that speaks: the emptiest; where no share is known, the lowest voltage."""
+        speaking = [gauge for gauge in self._gauges.values() if self._now - gauge.at <= STALE]
+
+        def left(gauge: _Gauge) -> tuple[bool, float, float]:
+            return gauge.share == UNKNOWN, gauge.share, gauge.voltage
+
+        return min(speaking, key=left, default=None)

@@ -1,0 +1,124 @@
+"""Bounds of the supervisor's rules on both their sides, against reckoning of our own."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from math import inf, nan, sqrt
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from onboard.core.math.states import Mate
+from onboard.core.math.vectors import ZERO, Vec
+from onboard.core.safety.fence import keep_height
+from onboard.core.safety.policy import Action, Cause, Envelope, Fence, Policy, SupervisorInput
+from onboard.core.safety.separation import keep_apart
+from onboard.core.safety.supervisor import SupervisorState, supervise
+
+POLICY = Policy(envelope=Envelope(speed_max=10.0, deceleration=2.0), separation=10.0, reaction=0.5)
+BAND = Fence(((-500.0, -500.0), (500.0, -500.0), (500.0, 500.0), (-500.0, 500.0)), 20.0, 120.0)
+
+
+def mate(north: float, age: float) -> Mate:
+    return Mate(3, Vec(north, 0.0, -50.0), ZERO, age)
+
+
+def toward(north: float, age: float) -> float:
+    """How fast a vehicle that wants to fly north at 10 m/s may do so with a mate `north` metres ahead."""
+    kept = keep_apart(Vec(10.0, 0.0, 0.0), Vec(0.0, 0.0, -50.0), 2, (mate(north, age),), POLICY)
+    assert kept.changed == (kept.velocity.x != 10.0)
+    return kept.velocity.x
+
+
+def test_a_mate_silent_for_minutes_is_no_longer_where_it_was() -> None:
+    assert toward(12.0, 0.1) < 10.0
+    assert toward(12.0, 10.0) < 10.0
+    assert toward(12.0, 10.01) == 10.0
+    assert toward(12.0, 180.0) == 10.0
+    assert toward(12.0, nan) == 10.0
+
+
+def test_a_mate_becomes_quiet_after_one_second_and_not_sooner() -> None:
+    assert toward(22.0, 1.0) > toward(22.0, 1.001)
+
+
+@pytest.mark.parametrize("gap", [0.5, 3.0, 8.0])
+def test_who_closes_in_can_still_stop_at_the_separation_distance(gap: float) -> None:
+    v = toward(10.0 + gap, 2.0 - 1.5)  # heard half a second ago: each takes half of the excess
+    most = 2.0 * (sqrt(0.25 + gap) - 0.5)  # v t + v²/2a = gap
+    assert v == pytest.approx(10.0 - 0.5 * (10.0 - most))
+    quiet = toward(20.0 + gap, 5.0)  # twice the distance, and all of the excess
+    assert quiet == pytest.approx(most)
+
+
+def test_at_and_inside_the_separation_distance_both_move_apart() -> None:
+    assert toward(10.0, 5.0) < 0.0  # twice the distance counts: well inside
+    inside = keep_apart(ZERO, Vec(0.0, 0.0, -50.0), 2, (mate(9.0, 0.1),), POLICY)
+    assert inside.changed
+    assert inside.velocity.x < 0.0
+
+
+@given(up=st.floats(20.5, 119.5), sink=st.floats(0.0, 6.0))
+def test_who_sinks_can_still_stop_above_the_floor(up: float, sink: float) -> None:
+    e = Envelope(deceleration=2.0, sink_max=6.0)
+    kept = keep_height(Vec(0.0, 0.0, sink), Vec(0.0, 0.0, -up), BAND, 3.0, 0.5, e)
+    v = kept.velocity.z
+    assert 0.0 <= v <= sink
+    room = up - 3.0 - 20.0
+    if v > 0.0:  # with half the deceleration, after half a second
+        assert v * 0.5 + v * v / 2.0 <= room + 1e-9
+    assert (kept.cause == Cause.FLOOR_AHEAD) == (v < sink)
+    if room > sink * 0.5 + sink * sink / 2.0 + 1e-6:
+        assert v == sink
+
+
+def test_the_nearer_the_floor_the_slower_the_descent() -> None:
+    def sinks(up: float) -> float:
+        return keep_height(Vec(0, 0, 2), Vec(0, 0, -up), BAND, 3.0, 0.5, Envelope()).velocity.z
+
+    speeds = [sinks(up) for up in (30.0, 26.0, 25.0, 24.0, 23.5, 23.0)]
+    assert all(a >= b for a, b in pairwise(speeds))
+    assert speeds[0] == 2.0
+    assert speeds[-1] == 0.0
+
+
+def seen(**what: object) -> SupervisorInput:
+    return SupervisorInput(10.0, 2, Vec(0.0, 0.0, -50.0), Vec(1.0, 0.0, 0.0))._replace(**what)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("what", "cause"),
+    [
+        ({"position": Vec(nan, 0.0, -50.0)}, Cause.TELEMETRY),
+        ({"position": Vec(0.0, 0.0, nan)}, Cause.TELEMETRY),
+        ({"velocity": Vec(0.0, nan, 0.0)}, Cause.TELEMETRY),
+        ({"velocity": Vec(0.0, 0.0, inf)}, Cause.TELEMETRY),
+        ({"telemetry_age": nan}, Cause.TELEMETRY),
+        ({"telemetry_age": 0.5001}, Cause.TELEMETRY),
+        ({"heartbeat_age": nan}, Cause.HEARTBEAT),
+        ({"strategy_age": nan}, Cause.STRATEGY),
+        ({"strategy_age": 0.2001}, Cause.STRATEGY),
+        ({"battery": nan}, Cause.BATTERY),
+        ({"battery": 0.1999}, Cause.BATTERY),
+        ({"track_sigma": nan}, Cause.TRACKS),
+        ({"clock_jump_age": nan}, Cause.CLOCK),
+        ({"clock_jump_age": 1.999}, Cause.CLOCK),
+    ],
+)
+def test_what_is_unknown_or_just_over_its_bound_is_a_fault(what: dict[str, object], cause: Cause) -> None:
+    found = supervise(Vec(1.0, 0.0, 0.0), seen(**what), POLICY, SupervisorState())
+    assert not found.stream
+    assert found.cause is cause
+
+
+@pytest.mark.parametrize(
+    "what",
+    [
+        {"telemetry_age": 0.5}, {"strategy_age": 0.2}, {"battery": 0.2}, {"battery": -1.0},
+        {"heartbeat_age": 6.0}, {"track_sigma": 100.0}, {"clock_jump_age": 2.0}, {"gps_fix": 3},
+    ],
+)  # fmt: skip
+def test_what_is_just_within_its_bound_passes(what: dict[str, object]) -> None:
+    found = supervise(Vec(1.0, 0.0, 0.0), seen(**what), POLICY, SupervisorState())
+    assert (found.action, found.cause) == (Action.PASS, Cause.NONE)
