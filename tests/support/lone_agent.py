@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import cos, sin
 from typing import Any
 
 import msgspec
@@ -27,7 +28,7 @@ from onboard.agent.core.events import (
 )
 from onboard.agent.core.machine import AgentCore, Facts
 from onboard.agent.thinker import Thinker
-from onboard.core.math.vectors import Vec
+from onboard.core.math.vectors import Vec, add
 from onboard.runtime.clock import RealClock
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import (
@@ -53,6 +54,8 @@ from onboard.wire.mavlink.modes import MODES, Kind
 GAME, VEHICLE, EVADER = "g", 2, 1
 EPOCH_NS = 1_700_000_000 * 10**9
 STEP_S = 0.05
+RADIUS = 80.0  # of a plane's circles [m]
+LIMIT = 20.0  # what every parameter says; half of it where it is a least value
 SQUARE = ((-300.0, -300.0), (300.0, -300.0), (300.0, 300.0), (-300.0, 300.0))
 ORIGIN = Origin(47.0, 8.0, 400.0)
 KINDS = {Kind.ARDUCOPTER: (2, 3), Kind.ARDUPLANE: (1, 3), Kind.PX4_MULTICOPTER: (2, 12)}
@@ -67,7 +70,9 @@ class FakeAutopilot:
         self.names = {number: name for name, number in MODES[kind].items()}
         self.mode = MODES[kind]["LOITER" if kind is not Kind.PX4_MULTICOPTER else "HOLD"]
         self.battery, self.fix, self.ekf = 95, 3, 0x33F
-        self.place, self.velocity = Vec(0.0, 0.0, -50.0), Vec(15.0, 0.0, 0.0)
+        self.place, self.speed = Vec(0.0, 0.0, -50.0), 15.0 if kind is Kind.ARDUPLANE else 0.0
+        self.drift = 0.0  # [m/s; north] reported over that
+        self._asked: list[str] = []  # parameters
         self.talks = True
         self.setpoints: list[float] = []  # when each arrived
         self._mav: Any = dialect.MAVLink(None, srcSystem=VEHICLE, srcComponent=1)
@@ -85,6 +90,8 @@ class FakeAutopilot:
             name = str(m.get_type())
             if name in SETPOINTS:
                 self.setpoints.append(now)
+            elif name == "PARAM_REQUEST_READ":
+                self._asked.append(m.param_id)
             elif name == "COMMAND_LONG" and m.command == dialect.MAV_CMD_DO_SET_MODE:
                 px4 = self.kind is Kind.PX4_MULTICOPTER
                 self.mode = int(m.param2) << 16 | int(m.param3) << 24 if px4 else int(m.param2)
@@ -97,8 +104,10 @@ class FakeAutopilot:
             return []
         d, boot = dialect, round(now * 1e3)
         kind, autopilot = KINDS[self.kind]
-        latitude, longitude, altitude = self._frame.geodetic_from_ned(self.place)
-        v = self.velocity
+        turn = now * self.speed / RADIUS  # a plane circles about its place
+        v = Vec(self.speed * cos(turn) + self.drift, self.speed * sin(turn), 0.0)
+        off = Vec(RADIUS * sin(turn), -RADIUS * cos(turn), 0.0) if self.speed else Vec(0.0, 0.0, 0.0)
+        latitude, longitude, altitude = self._frame.geodetic_from_ned(add(self.place, off))
         said = [
             d.MAVLink_heartbeat_message(kind, autopilot, 128 | 1, self.mode, 4, 3),
             d.MAVLink_gps_raw_int_message(
@@ -121,6 +130,10 @@ class FakeAutopilot:
                 round(-self.place.z * 1e3), round(v.x * 100), round(v.y * 100), round(v.z * 100), 0,
             )
         )  # fmt: skip
+        for name in self._asked:
+            value = LIMIT / 2 if "MIN" in name else LIMIT
+            said.append(d.MAVLink_param_value_message(name.encode(), value, d.MAV_PARAM_TYPE_REAL32, 1, 0))
+        self._asked.clear()
         return [bytes(m.pack(self._mav)) for m in said]
 
 

@@ -86,4 +86,5 @@ class CommandDesk:
         unfit = self._orders.unfit(command, self._nonce, fresh=fresh)
         if unfit or historic:
             return unfit
-        return why_no_order(self._vehicle, takes=command.kind in SETS_OFF) or self._flight.objection(command)
+        takes = command.kind in SETS_OFF
+        return why_no_order(self._vehicle, takes=takes) or self._flight.objection(command)

@@ -104,7 +104,7 @@ class Flight:
         state = self.part.state(now.wall_ns)
         self._resumed = state.resumed
         if self.part.policy is not self._policy:
-            if not _only_limits(self._policy, self.part.policy):  # what was latched in the last game is over
+            if not _only_limits(self._policy, self.part.policy):  # another game: what is latched stays
                 self._state = in_another_game(self._state)
             self._policy = self.part.policy
         heard_at = max(telemetry.heartbeat_at, telemetry.position_at)
@@ -257,13 +257,13 @@ class Flight:
         ours = adapter.stage in (Stage.ACTIVE, Stage.ENTERING)
         command = output.command
         known = not self.vehicle.unread  # of what its limits are; until then no setpoint leaves
-        if command is Command.STREAM and known:
-            if enters:
+        if command is Command.STREAM:
+            if enters and known:
                 free = adapter.stage is not Stage.TAKEN and self.may_control
                 if not ours and (free or self._given(now)):
                     adapter.enter(now)
                 self._given_at = NEVER
-            if streams:
+            if streams and known:
                 self.setpoint = output.ground
         elif command is Command.END_STREAM:
             adapter.end(now)
@@ -274,7 +274,7 @@ class Flight:
                 ends = self.ending and self._orders.order is Action.PASS
                 departs = ends and command is Command.RELEASE_TO_HOLD
                 adapter.leave(now, ReleaseMode.DEPART if departs else RELEASES[command])
-        flown = streams and known and (command is Command.STREAM or ours)
+        flown = known and streams and (command is Command.STREAM or ours)
         self.drive(now, output if flown else None)
 
     # ------------------------------------------------------------------ before and after the part
@@ -285,7 +285,8 @@ class Flight:
         if adapter is None:
             return
         held = self._orders.order is not Action.PASS
-        ours = adapter.stage in (Stage.ENTERING, Stage.ACTIVE, Stage.LEAVING)
+        unasked = state.late and not self._orders.granted  # found guided, and not this process's yet
+        ours = not unasked and adapter.stage in (Stage.ENTERING, Stage.ACTIVE, Stage.LEAVING)
         wanted = not held and not state.over and self._wanted(now, adapter, state)
         climbs = not held and not state.over and self._climbs(t, state)
         if not (held or ours or wanted or climbs):
@@ -296,8 +297,7 @@ class Flight:
         hovers = not adapter.holds_airspeed
         seen = self._input(now, t)._replace(over=state.over, wind=ZERO if hovers else t.wind)
         still = ZERO if hovers else sub(t.velocity, t.wind)
-        waits = climbs or (state.late and not self._orders.granted)
-        output = self._judge(still, seen, streams=hovers and not waits, enters=wanted)
+        output = self._judge(still, seen, streams=hovers and not (climbs or unasked), enters=wanted)
         if not (held or ours):  # what was not ours has latched nothing
             self._state = self._state._replace(floor=before.floor, floor_cause=before.floor_cause)
         if climbs and output.command is Command.STREAM and self.take_off.step(now, self.vehicle):
