@@ -21,8 +21,8 @@ from onboard.agent.core.events import (
 )
 from onboard.agent.core.machine import AgentCore, Facts
 from onboard.autopilot.flight_limits import NAMES, FlightLimits, read_limits, unread
-from onboard.wire.bus.messages import Member, Origin, Phase, PhaseChange, Role, RulesMessage, Setup
-from onboard.wire.bus.topics import PHASE, SETUP
+from onboard.wire.bus.messages import Master, Member, Origin, Phase, PhaseChange, Role, RulesMessage, Setup
+from onboard.wire.bus.topics import MASTER, PHASE, SETUP
 from onboard.wire.mavlink.dialect import DialectSender, MavMessage, dialect
 from onboard.wire.mavlink.frames import Framer
 from onboard.wire.mavlink.modes import Kind
@@ -40,7 +40,7 @@ def setup_of(speed: float) -> Setup:
     )
     return Setup(
         game=GAME, master="m", scenario="two", scenario_hash="0", origin=Origin(47.3977, 8.5456, 488.0),
-        roster=members, rules=RulesMessage(R=20.0, rho=40.0),
+        roster=members, rules=RulesMessage(R=20.0, rho=40.0), nonce=5,
     )  # fmt: skip
 
 
@@ -69,11 +69,18 @@ class OneAgent:
     def mavlink(self, message: MavMessage) -> None:
         self._do(LinkBytes(0, 0, self.sender.pack(message)))
 
+    def master(self) -> None:
+        """The lease of the master from whom setup and phase are."""
+        word = Master("m", T0 + int(self.now * 1e9), lease_s=60.0, nonce=5, number=1)
+        self._do(BusMessage(MASTER.key(GAME), MASTER.encode(word)))
+
     def setup(self) -> None:
+        self.master()
         self._do(BusMessage(SETUP.key(GAME), SETUP.encode(setup_of(self.speed))))
 
     def phase(self) -> None:
-        change = PhaseChange(Phase.STAGING, 0, T0 + int(self.now * 1e9))
+        self.master()
+        change = PhaseChange(Phase.STAGING, 0, T0 + int(self.now * 1e9), master="m", nonce=5, number=1)
         self._do(BusMessage(PHASE.key(GAME), PHASE.encode(change)))
 
     def heartbeat(self) -> None:
