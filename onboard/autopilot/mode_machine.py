@@ -21,6 +21,7 @@ from onboard.wire.mavlink.ids import COMPANION, CommandId
 from onboard.wire.mavlink.values import CommandAck
 from onboard.wire.retry import CommandRetry, RetryPolicy
 
+SOUND = 0.95  # share of frames that arrive on a link whose delays are the autopilot's
 MODE_RETRY = RetryPolicy(0.08, patience=25, slow=0.5, after_accepted=1.5, after_refused=1.0)  # [s]
 ARM_RETRY = MODE_RETRY._replace(after_refused=2.0)  # refused for many seconds although the pre-arm bit is set
 UNANSWERED = 0.5  # [s] at least, after which the next mode of a chain is asked for
@@ -54,6 +55,7 @@ class ModeMachine:
         self._requests = ModeRequests()
         self._from = ""  # the mode it was in when the asking began
         self._mode = CommandRetry(MODE_RETRY)
+        self._quality = 1.0  # share of the autopilot's frames that arrived lately
         self._arm: CommandRetry | None = None
         self._notes: list[Note] = []
         self._heard = (NEVER, "")  # arrival and mode of the heartbeat last judged
@@ -97,6 +99,7 @@ class ModeMachine:
 
     def step(self, now: float, telemetry: Telemetry, *, ready: bool = True) -> ModeStep:
         """Judge what was heard and return what is due. `ready` False holds back the request to enter."""
+        self._quality = telemetry.link_quality
         if telemetry.reboots != self._reboots:
             self._reboots = telemetry.reboots
             soon = now - self._taken_at < RESTART  # its new mode may have been heard before its new clock
@@ -225,7 +228,9 @@ class ModeMachine:
 
     def _ask(self) -> None:
         self._from = ""
-        pace = max(MODE_RETRY.every, min(1.0, self._requests.round_trip))
+        # A link that loses answers makes the measured round trip grow without cause: no reason to ask slower.
+        slow = min(1.0, self._requests.round_trip) if self._quality >= SOUND else 0.0
+        pace = max(MODE_RETRY.every, slow)
         self._mode = CommandRetry(MODE_RETRY._replace(every=pace))
         self._asked_at = NEVER
         self._heard = (NEVER, "")  # judge the present mode again in the light of the new wish

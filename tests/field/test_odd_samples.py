@@ -84,7 +84,8 @@ def test_every_second_measurement_rejected_is_no_loss(glitch: int) -> None:
 
 @pytest.mark.parametrize("px4", [True, False])
 @pytest.mark.parametrize(
-    ("odd", "within"), [({"ratio": 1.5}, 1.5), ({"flags": GOOD & ~16}, 0.5), ({"flags": GOOD | 128}, 0.5)]
+    ("odd", "within"),
+    [({"ratio": 1.5}, 1.5), ({"flags": GOOD & ~16}, 0.5), ({"flags": (GOOD & ~16) | 128}, 0.5)],
 )
 def test_an_estimate_that_stays_bad_is_lost_and_comes_back(
     px4: bool, odd: dict[str, float], within: float

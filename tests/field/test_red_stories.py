@@ -32,7 +32,7 @@ async def test_the_end_of_a_game_holds_copters_that_have_no_transmitter(transmit
 
 
 @pytest.mark.xfail(
-    strict=True, reason="an agent that nobody asked streams targets, and PX4 re-enters OFFBOARD"
+    strict=True, reason="an agent in a game takes an OFFBOARD that another companion chose for its own"
 )
 @virtual
 async def test_an_agent_without_control_never_takes_px4_out_of_its_failsafe() -> None:
@@ -66,9 +66,6 @@ async def test_an_answer_that_comes_late_is_not_a_pilot() -> None:
         assert not [e.text for e in game.events if e.kind in ("take_over", "handed_back")]
 
 
-@pytest.mark.xfail(
-    strict=True, reason="a take-off to 0°, 0° never climbs; PX4 at rest is taken for unhealthy"
-)
 @virtual
 async def test_px4_takes_off_from_the_ground() -> None:
     """For whoever sends NAV_TAKEOFF and judges the estimate: NaN for an unknown place; rest is healthy."""

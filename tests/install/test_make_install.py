@@ -26,7 +26,6 @@ version = "0"
 BACKEND = """
 from pathlib import Path
 from wheels import write_wheel
-from tests.support.real_time import patience
 def build_editable(folder, settings=None, metadata=None):
     return write_wheel(Path(folder), "apollonius", "0").name
 """

@@ -65,6 +65,7 @@ async def _trials(count: int, seed: int, loss: float) -> list[Trial]:
             await game.forward(rng.random())
             found.append(await _abort(game, station, ids))
             impair(game, CLEAR)
+            await game.forward(1.5)  # every vehicle's health says now that it was stopped: a resume quotes it
             resumed = station.command(CommandKind.RESUME, ids)
             await game.forward(PATIENCE_S, until=lambda c=resumed: done(station, c))
         task.cancel()

@@ -87,6 +87,7 @@ class Flight:
         self._number = 0
         self._resumed = False  # the master alone let this process in
         self._failing = False
+        self._took = False  # this process has entered the guided mode, or has played
         self._alive_at = NEVER  # the strategy's last sign of life [s]
         self._silent_at = NEVER  # when the link was last found silent [s]
         self._given_at = NEVER  # when control was given back, and the guided mode is not asked for yet [s]
@@ -116,7 +117,7 @@ class Flight:
             self.playing = False
             self._stand_by(now.s, telemetry, state)
             return None
-        self.playing = True
+        self.playing = self._took = True
         return self._ask(now, telemetry)
 
     def answered(self, answer: Answered) -> bool:
@@ -261,6 +262,7 @@ class Flight:
             if enters and known:
                 free = adapter.stage is not Stage.TAKEN and self.may_control
                 if not ours and (free or self._given(now)):
+                    self._took = True
                     adapter.enter(now)
                 self._given_at = NEVER
             if streams and known:
@@ -285,7 +287,8 @@ class Flight:
         if adapter is None:
             return
         held = self._orders.order is not Action.PASS
-        unasked = state.late and not self._orders.granted  # found guided, and not this process's yet
+        # Found in the guided mode, and not this process's yet.
+        unasked = not self._orders.granted and (state.late or not (state.engaged or self._took))
         ours = not unasked and adapter.stage in (Stage.ENTERING, Stage.ACTIVE, Stage.LEAVING)
         wanted = not held and not state.over and self._wanted(now, adapter, state)
         climbs = not held and not state.over and self._climbs(t, state)
@@ -297,6 +300,11 @@ class Flight:
         hovers = not adapter.holds_airspeed
         seen = self._input(now, t)._replace(over=state.over, wind=ZERO if hovers else t.wind)
         still = ZERO if hovers else sub(t.velocity, t.wind)
+        if climbs and not (held or ours or wanted):  # what keeps it on the ground is no end of a flight
+            if supervise(still, seen, self._thresholds(), before).command is Command.STREAM:
+                self.take_off.step(now, self.vehicle)
+            self.drive(now)
+            return
         output = self._judge(still, seen, streams=hovers and not (climbs or unasked), enters=wanted)
         if not (held or ours):  # what was not ours has latched nothing
             self._state = self._state._replace(floor=before.floor, floor_cause=before.floor_cause)

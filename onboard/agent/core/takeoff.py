@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import nan
+
 from onboard.agent.core.vehicle_link import VehicleLink
 from onboard.autopilot.base import Stage, Telemetry
 from onboard.wire.mavlink import commands
@@ -60,4 +62,4 @@ class TakeOff:
         if adapter.kind is Kind.ARDUCOPTER:
             return commands.takeoff(vehicle.to, self.height) if adapter.stage is Stage.ACTIVE else None
         above_sea = t.altitude_m - t.above_home_m + self.height  # what PX4 wants
-        return commands.takeoff(vehicle.to, above_sea)
+        return commands.takeoff(vehicle.to, above_sea, place=nan)  # where it stands: 0°, 0° would be a place

@@ -125,6 +125,8 @@ def arm(to: Target) -> CommandLong:
     return CommandLong(to, CommandId.ARM, (1.0, 0.0))
 
 
-def takeoff(to: Target, height_m: float) -> CommandLong:
-    """Ask for a take-off (22) to a height [m]: above home for ArduCopter, above sea level for PX4."""
-    return CommandLong(to, CommandId.TAKE_OFF, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, height_m))
+def takeoff(to: Target, height_m: float, place: float = 0.0) -> CommandLong:
+    """Ask for a take-off (22) to a height [m]: above home for ArduCopter, above sea level for PX4.
+
+    `place` stands for yaw, latitude and longitude: NaN where PX4 is to rise from where it stands."""
+    return CommandLong(to, CommandId.TAKE_OFF, (0.0, 0.0, 0.0, place, place, place, height_m))

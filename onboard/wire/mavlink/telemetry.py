@@ -137,8 +137,9 @@ _NEEDED = (
     | dialect.ESTIMATOR_VELOCITY_VERT
     | dialect.ESTIMATOR_POS_HORIZ_ABS
 )
-# The two reports agree on what is estimated and part ways on what is wrong.
-_FAULTS = dialect.ESTIMATOR_CONST_POS_MODE | dialect.ESTIMATOR_GPS_GLITCH | dialect.ESTIMATOR_ACCEL_ERROR
+# The two reports agree on what is estimated and part ways on what is wrong. PX4 sets CONST_POS_MODE at rest,
+# too, where all is well; where it holds a place for want of measurements, it takes the needed flags back.
+_FAULTS = dialect.ESTIMATOR_GPS_GLITCH | dialect.ESTIMATOR_ACCEL_ERROR
 _EKF_FAULTS = dialect.EKF_CONST_POS_MODE | dialect.EKF_UNINITIALIZED | dialect.EKF_GPS_GLITCHING
 # A measurement that disagrees sets these for as long as it does, be it one sample.
 _REJECTING = dialect.ESTIMATOR_GPS_GLITCH | dialect.ESTIMATOR_ACCEL_ERROR

@@ -131,7 +131,7 @@ def test_the_hash_is_of_the_contents_not_of_the_layout(tmp_path: Path) -> None:
         (
             'name = "plain"',
             'name = "plain"\nflight.autopilot = "betaflight"',
-            "flight.autopilot: found 'betaflight', expected one of: px4, arducopter, arduplane",
+            "flight.autopilot: found 'betaflight', expected one of: px4, px4-plane, arducopter, arduplane",
         ),
         ('name = "plain"', 'name = "plain"\nflight.sensor.dropout = 1.0', "flight.sensor.dropout: found 1.0"),
         (

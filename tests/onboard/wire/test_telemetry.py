@@ -134,7 +134,6 @@ GOOD = 1 | 2 | 4 | 16 | 32
         (GOOD, 0.3, True),
         (GOOD, 1.2, False),
         (GOOD & ~16, 0.1, False),  # no absolute position
-        (GOOD | 128, 0.1, False),  # constant position mode
         (GOOD, nan, True),  # a ratio that is not computed
     ],
 )
@@ -144,6 +143,15 @@ def test_both_estimators_say_when_they_are_good(flags: int, worst: float, ok: bo
     assert isinstance(ardupilot, EkfStatus)
     assert isinstance(px4, EkfStatus)
     assert (ardupilot.ok, px4.ok) == (ok, ok)
+
+
+def test_px4_at_rest_is_healthy_and_an_ardupilot_that_holds_its_place_is_not() -> None:
+    flags = GOOD | 128  # constant position mode: PX4 1.16 sets it whenever it stands still
+    ardupilot = decode(dialect.MAVLink_ekf_status_report_message(flags, 0.1, 0.1, 0.1, 0.1, 0.0))
+    px4 = decode(dialect.MAVLink_estimator_status_message(0, flags, 0.1, 0.1, 0.1, 0.1, nan, nan, 1.0, 1.0))
+    assert isinstance(ardupilot, EkfStatus)
+    assert isinstance(px4, EkfStatus)
+    assert (ardupilot.ok, px4.ok) == (False, True)
 
 
 def test_each_estimator_has_faults_of_its_own() -> None:

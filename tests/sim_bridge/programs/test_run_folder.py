@@ -55,7 +55,7 @@ def test_the_folder_holds_what_was_played_with_what_and_how_it_ended(twice: list
     (folder, said), _ = twice
     assert sorted(path.name for path in folder.iterdir()) == [
         "configuration.json", "recording.mcap", "scenario.toml", "summary.json", "timing.json",
-        "vehicle-1.tlog", "vehicle-2.tlog", "versions.json",
+        "vehicle-1.events", "vehicle-1.tlog", "vehicle-2.events", "vehicle-2.tlog", "versions.json",
     ]  # fmt: skip
     assert (folder / "scenario.toml").read_bytes() == (folder.parent.parent / "short.toml").read_bytes()
     versions = json.loads((folder / "versions.json").read_bytes())

@@ -259,7 +259,7 @@ def test_the_document_names_every_cause() -> None:
         (Action.HOLD, Cause.ORDER, Action.HOLD, Command.RELEASE_TO_HOLD, Command.RELEASE_TO_HOLD),
         (Action.RETURN, Cause.BATTERY, Action.HOLD, Command.RELEASE_TO_RETURN, Command.RELEASE_TO_RETURN),
         (Action.LAND, Cause.ORDER, Action.LAND, Command.RELEASE_TO_LAND, Command.RELEASE_TO_LAND),
-        (Action.END, Cause.EKF, Action.PASS, Command.END_STREAM, Command.END_STREAM),
+        (Action.END, Cause.EKF, Action.PASS, Command.END_STREAM, Command.RELEASE_TO_HOLD),
         (Action.END, Cause.EKF, Action.LAND, Command.RELEASE_TO_LAND, Command.RELEASE_TO_LAND),
         (Action.END, Cause.PILOT, Action.LAND, Command.HANDS_OFF, Command.HANDS_OFF),
     ],
