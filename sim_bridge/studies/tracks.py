@@ -69,7 +69,7 @@ def simulate(scenario: Scenario, seed: int = 0) -> Recording:
     spec = scenario.flight.sensor
     if spec.sigma == 0.0:
         spec = msgspec.structs.replace(spec, sigma=3.0, sigma_velocity=1.0)
-    sensor = Sensor(spec, (1,), np.random.default_rng([scenario.seed, seed]))
+    sensor = Sensor(spec, (1,), scenario.seed + seed)
     samples = []
     for t, state in zip(times, states, strict=True):
         now = round(t * NS_PER_S)

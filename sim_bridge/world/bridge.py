@@ -12,7 +12,7 @@ from onboard.runtime.tasks import Pace, periodic
 from onboard.wire.bus.topics import DEFAULT_GAME, TRACK
 from sim_bridge.world.master import BridgeMaster
 from sim_bridge.world.sensor import Sensor
-from sim_bridge.world.staging import generator, wind_of
+from sim_bridge.world.staging import wind_of
 from sim_bridge.world.world import RATE_HZ, World
 
 
@@ -53,7 +53,7 @@ class Bridge:
         self.world = World(
             scenario, clock, links, wind_of(scenario, seed, options.folder), options.battery_s, seed
         )
-        self.sensor = Sensor(scenario.flight.sensor, scenario.ids, generator(seed, "sensor"))
+        self.sensor = Sensor(scenario.flight.sensor, scenario.ids, seed)
         self.master = (
             BridgeMaster(scenario, game, clock, bus, options.nonce, say) if options.referee else None
         )

@@ -27,14 +27,9 @@ def calm(id: int, motion: Motion, t: float) -> Air:
     return CALM
 
 
-def seeds(seed: int, concern: str) -> SeedSequence:
-    """The seeds of one concern: others for each, and the same whichever other concerns there are."""
-    return SeedSequence(seed, spawn_key=(crc32(concern.encode()),))
-
-
 def generator(seed: int, concern: str) -> Generator:
     """The random generator of one concern: the same whichever other concerns there are."""
-    return np.random.default_rng(seeds(seed, concern))
+    return np.random.default_rng(SeedSequence(seed, spawn_key=(crc32(concern.encode()),)))
 
 
 def wind_of(scenario: Scenario, seed: int, folder: Path | None = None) -> Wind:
@@ -42,7 +37,7 @@ def wind_of(scenario: Scenario, seed: int, folder: Path | None = None) -> Wind:
     spec = scenario.flight.wind
     if spec.speed <= 0.0 and spec.gust_sigma <= 0.0 and not spec.recorded:
         return calm
-    field = WindField(spec, seeds(seed, "wind"), len(scenario.ids), folder)
+    field = WindField(spec, seed, scenario.ids, folder)
     numbers = {id: number for number, id in enumerate(scenario.ids)}
 
     def air(id: int, motion: Motion, t: float) -> Air:

@@ -68,7 +68,7 @@ def test_above_2000_ft_the_gusts_turn_with_the_vehicle(feet: float, turns: bool)
     spec = WindSpec(speed=5.0, from_deg=FROM_DEG, gust_sigma=SIGMA)
     gusts = []
     for yaw in (0.0, radians(120.0)):
-        field = WindField(spec, 7, 1)
+        field = WindField(spec, 7, range(1, 2))
         motion = Motion(Vec(0.0, 0.0, -feet * FOOT), Vec(45.0, 0.0, 0.0), 45.0, 0.0, 0.0, yaw)
         gusts.append(np.array([field.air(0, motion, k * TICK).gust for k in range(200)]))
     turned = Rotation.from_euler("z", 120.0 if turns else 0.0, degrees=True).apply(gusts[0])

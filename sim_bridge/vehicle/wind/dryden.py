@@ -15,6 +15,7 @@ from math import cos, exp, sin, sqrt
 from typing import NamedTuple
 
 from onboard.core.math.vectors import Vec
+from sim_bridge.draws import WORD, Key, normal, threefry
 
 FOOT = 0.3048  # [m]
 ROOT3 = sqrt(3.0)
@@ -41,6 +42,17 @@ class GustNoise(NamedTuple):
     v2: float
     w1: float
     w2: float
+
+
+GUST_WORDS = 5  # random numbers an instant of one vehicle's gusts
+
+
+def gust_noise(key: Key, tick: int) -> GustNoise:
+    """What drives one vehicle's gusts at a tick of their grid; `key` is of its gusts' numbers."""
+    a, b = threefry(key.a, key.b, tick & WORD, 0)
+    c, d = threefry(key.a, key.b, tick & WORD, 1)
+    e, _spare = threefry(key.a, key.b, tick & WORD, 2)
+    return GustNoise(normal(a), normal(b), normal(c), normal(d), normal(e))
 
 
 class Scales(NamedTuple):

@@ -1,12 +1,14 @@
 """The wind of a scenario: what air each vehicle meets, from one frozen seed.
 
 Gusts advance on a grid of their own (`TICK`), so that the same seed gives the same wind whatever time
-steps the vehicles are moved with. Each vehicle draws from its own stream; where the scenario
+steps the vehicles are moved with. Each vehicle has numbers of its own, by counter (`sim_bridge.draws`): the
+same in the compiled games, and whoever else flies; where the scenario
 asks for it, what they draw is correlated by their distance, exp(−d / ℓ).
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import cos, radians, sin
 from pathlib import Path
 
@@ -15,15 +17,22 @@ from numpy.typing import NDArray
 
 from onboard.core.math.vectors import ZERO, Vec, unit
 from onboard.game.scenario import WindSpec
+from sim_bridge.draws import Purpose, Stream, key_of
 from sim_bridge.vehicle.motion import CALM, Air, Motion
-from sim_bridge.vehicle.wind.dryden import GustAxes, GustNoise, GustState, first_gust, gust_of, step_gust
+from sim_bridge.vehicle.wind.dryden import (
+    GUST_WORDS,
+    GustAxes,
+    GustNoise,
+    GustState,
+    first_gust,
+    gust_of,
+    step_gust,
+)
 from sim_bridge.vehicle.wind.recorded import RecordedWind, read
 from sim_bridge.vehicle.wind.shear import ROUGHNESS, mean_wind
 
 TICK = 0.02  # [s] of the gusts' grid
-BLOCK = 256  # ticks of noise drawn at once
 REMIX = 25  # ticks after which the correlation is computed anew from the distances
-FIRST_AIRSPEED = 20.0  # [m/s] at which a vehicle meets gusts until `air` is first told its own
 
 
 def wind_vector(speed: float, from_deg: float) -> Vec:
@@ -33,12 +42,11 @@ def wind_vector(speed: float, from_deg: float) -> Vec:
 
 
 class WindField:
-    """The air around `count` vehicles."""
+    """The air around vehicles."""
 
-    def __init__(
-        self, spec: WindSpec, seed: int | np.random.SeedSequence, count: int, base: Path | None = None
-    ) -> None:
-        """`base` is the folder that a recorded wind's path is relative to. Raises ConfigError."""
+    def __init__(self, spec: WindSpec, seed: int, ids: Sequence[int], base: Path | None = None) -> None:
+        """`ids` name the vehicles, and with them what each draws; `base` is the folder that a recorded
+        wind's path is relative to. Raises ConfigError."""
         self._reference = wind_vector(spec.speed, spec.from_deg)
         self._shear = spec.shear
         self._sigma = spec.gust_sigma
@@ -48,16 +56,12 @@ class WindField:
             self._recorded = read((base or Path()) / spec.recorded)
         axis = unit(self._reference, Vec(1.0, 0.0, 0.0))
         self._axis = (axis.x, axis.y)
-        sequence = seed if isinstance(seed, np.random.SeedSequence) else np.random.SeedSequence(seed)
-        self._streams = [np.random.default_rng(child) for child in sequence.spawn(count)]
-        self._noise: NDArray[np.float64] = np.empty((0, count, 5))
-        self._drawn = 0
-        self._mix: NDArray[np.float64] = np.eye(count)
-        self._tick = 0
-        self._places = [ZERO] * count
-        self._speeds = [FIRST_AIRSPEED] * count
-        self._states = [GustState(0.0, 0.0, 0.0, 0.0, 0.0)] * count
-        self._started = False
+        self._streams = [Stream(key_of(seed, id, Purpose.GUST), GUST_WORDS) for id in ids]
+        self._mix: NDArray[np.float64] = np.eye(len(self._streams))
+        self._mixed = -1  # the tick for which the correlation was reckoned
+        self._ticks = [-1] * len(self._streams)  # that each vehicle's gusts have reached
+        self._places = [ZERO] * len(self._streams)
+        self._states = [GustState(0.0, 0.0, 0.0, 0.0, 0.0)] * len(self._streams)
 
     def air(self, vehicle: int, motion: Motion, time: float) -> Air:
         """The air at vehicle number `vehicle` (from 0) in `motion` at `time` [s; never falls].
@@ -73,40 +77,29 @@ class WindField:
         if self._sigma <= 0.0:
             return CALM if wind == ZERO else Air(wind, ZERO)
         self._places[vehicle] = position
-        self._speeds[vehicle] = motion.airspeed
-        self._advance(int(time / TICK + 1e-6))
+        self._advance(vehicle, int(time / TICK + 1e-6), motion.airspeed)
         axes = GustAxes(*self._axis, motion.yaw, motion.pitch, height)
         return Air(wind, gust_of(self._states[vehicle], self._sigma, axes))
 
-    def _advance(self, tick: int) -> None:
-        if not self._started:
-            self._started = True
-            self._remix()
-            self._states = [first_gust(noise) for noise in self._draw()]
-        while self._tick < tick:
-            self._tick += 1
-            if self._tick % REMIX == 0:
-                self._remix()
-            for index, noise in enumerate(self._draw()):
-                height = -self._places[index].z
-                self._states[index] = step_gust(self._states[index], self._speeds[index], height, TICK, noise)
+    def _advance(self, vehicle: int, tick: int, airspeed: float) -> None:
+        """One vehicle's gusts up to a tick."""
+        state, height = self._states[vehicle], -self._places[vehicle].z
+        for number in range(self._ticks[vehicle] + 1, tick + 1):
+            noise = GustNoise(*self._noise(vehicle, number))
+            state = step_gust(state, airspeed, height, TICK, noise) if number else first_gust(noise)
+        self._states[vehicle] = state
+        self._ticks[vehicle] = max(tick, self._ticks[vehicle])
 
-    def _draw(self) -> list[GustNoise]:
-        """Noise of the next tick, one for each vehicle."""
-        if self._drawn == len(self._noise):
-            blocks = [stream.standard_normal((BLOCK, 5)) for stream in self._streams]
-            self._noise = np.stack(blocks, axis=1)  # (BLOCK, count, 5)
-            self._drawn = 0
-        row = self._noise[self._drawn]
-        self._drawn += 1
-        if self._correlation > 0.0:
-            row = self._mix @ row
-        return [GustNoise(*values) for values in row.tolist()]
-
-    def _remix(self) -> None:
-        """Square root of the vehicles' correlation, from their distances."""
-        if self._correlation > 0.0:
-            self._mix = mixing(np.array(self._places), self._correlation)
+    def _noise(self, vehicle: int, tick: int) -> list[float]:
+        """What drives a vehicle's gusts at a tick; with a correlation, of all that were drawn before it."""
+        if self._correlation <= 0.0:
+            return self._streams[vehicle].at(tick)
+        remix = tick - tick % REMIX
+        if remix != self._mixed:
+            self._mixed, self._mix = remix, mixing(np.array(self._places), self._correlation)
+        drawn = np.array([stream.at(tick) for stream in self._streams[: vehicle + 1]])
+        mixed: list[float] = (self._mix[vehicle, : vehicle + 1] @ drawn).tolist()
+        return mixed
 
 
 def mixing(places: NDArray[np.float64], length: float) -> NDArray[np.float64]:

@@ -30,7 +30,7 @@ def watch(
     spec: SensorSpec, seconds: float, ids: tuple[int, ...] = (1, 2), seed: int = 7
 ) -> list[tuple[int, Track]]:
     """Every track with the instant at which it was published [ns since the start]."""
-    sensor = Sensor(spec, ids, np.random.default_rng(seed))
+    sensor = Sensor(spec, ids, seed)
     seen = []
     for tick in range(round(seconds * 100) + 1):
         motions = {id: at(tick / 100) for id in ids}
