@@ -34,7 +34,6 @@ from onboard.wire.bus.messages import (
 )
 from onboard.wire.bus.topics import Heard, Topic
 
-NAME = "gcs"
 STEP_S = 0.05
 LAG_NS = 300_000_000  # the instant judged lies so far back; most messages are there by then
 KEPT = 64  # positions of each vehicle
@@ -103,11 +102,13 @@ class FieldMaster:
     ) -> None:
         flight = scenario.flight
         timing = Timing(flight.ready_s, flight.timeout_s if auto_start else 0.0, RECOVERY_S, auto_start)
+        nonce = secrets.randbits(48) if nonce is None else nonce
+        name = f"{station.member}/{nonce & 0xFFFF:04x}"  # a person takes over by name: no two have one
         self.rules = GameMaster(
-            setup_of(scenario, station.game, NAME),
+            setup_of(scenario, station.game, name),
             target_of(scenario),
-            NAME,
-            secrets.randbits(48) if nonce is None else nonce,
+            name,
+            nonce,
             timing,
             takes_over,
         )

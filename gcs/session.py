@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING
 from gcs.console.source import Key
 from gcs.picture.values import Picture
 from gcs.settings import Settings
-from gcs.station import Station, StationSetup
+from gcs.station import NAME, Station, StationSetup
 from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.bus_security import BusSecurity, Lock, security_of
 from onboard.runtime.bus_zenoh import ZenohBus, open_zenoh
 from onboard.runtime.clock import RealClock
-from onboard.wire.bus.messages import CommandKind, Severity
+from onboard.wire.bus.messages import CommandKind, LinkLock, Severity
 
 if TYPE_CHECKING:
     from gcs.recording.shell import StationRecorder
@@ -51,12 +51,20 @@ class Session:
         return self.station.picture()
 
     def status(self) -> str:
-        """Bus, its lock and recording in a line."""
-        parts = [self.extra(), self.bus.status(), self.lock.short]
+        """The lock, the bus and the recording in a line, what matters most first."""
+        parts = [self.lock.short, self.extra(), self.bus.status(), self._links()]
         if self.recorder is not None:
             status = self.recorder.status()
             parts.append(f"recording {status.size / 1e6:.1f} MB" if not status.trouble else "NOT RECORDING")
         return ", ".join(part for part in parts if part)
+
+    def _links(self) -> str:
+        """How many vehicles sign their MAVLink links; "" where none does and the bus has no keys either."""
+        locks = self.station.reducer.fleet.link_locks()
+        signed = locks.count(LinkLock.SIGNED)
+        if not locks or (not signed and self.lock.lock is not Lock.KEYS):
+            return ""
+        return f"{signed} of {len(locks)} autopilot links signed"
 
     def act(self, action: str) -> str:
         """A live station has no keys of its own."""
@@ -87,7 +95,8 @@ async def on_air(settings: Settings, *, listen: bool, record: bool) -> AsyncIter
         lock = security_of(settings.bus.endpoint or None, zenoh, clock.wall_ns() / NS_PER_S)
         bus = await open_zenoh(settings.bus.endpoint or None, listen=listen, config_file=zenoh)
         stack.push_async_callback(bus.close)
-        who = StationSetup(settings.game, settings.signature, version(), settings.alerts)
+        member = NAME if lock.member is None else lock.member.name
+        who = StationSetup(settings.game, settings.signature, version(), settings.alerts, member)
         station = Station(bus, clock, who)
         recorder = None
         if record:

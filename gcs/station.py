@@ -28,6 +28,9 @@ Tap = Callable[[str, bytes, int], None]  # key, payload, now_ns
 Hearer = Callable[[Heard, int], None]  # what was heard, now_ns
 
 
+NAME = "gcs"  # of a station without a certificate
+
+
 class SteadyTime:
     """Wall time at the start, advanced by the monotonic clock: it never jumps."""
 
@@ -47,6 +50,7 @@ class StationSetup(NamedTuple):
     operator: str = "gcs"  # signs the commands
     version: str = ""  # of this program, compared with the agents'; "" = not compared
     limits: Thresholds = Thresholds()  # when alerts are raised
+    member: str = NAME  # who this station is on the bus: with keys, the name in its certificate
 
 
 class Station:
@@ -61,6 +65,7 @@ class Station:
     ) -> None:
         self.game = setup.game
         self.operator = setup.operator
+        self.member = setup.member
         self.reducer = PictureReducer(setup.game, setup.limits, setup.version)
         self.bus = bus
         self._time = SteadyTime(clock)

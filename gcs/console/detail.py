@@ -7,9 +7,15 @@ from math import atan2, degrees, hypot
 from gcs.console.vehicle_table import GRADE_WORDS, STYLES, age, evader_position, grades
 from gcs.picture.values import Picture, VehicleView
 from onboard.core.math.vectors import Vec, distance, dot, norm, scale, sub
-from onboard.wire.bus.messages import Role, SupervisorAction
+from onboard.wire.bus.messages import LinkLock, Role, SupervisorAction
 
 Line = tuple[str, str]  # text, style
+LOCKS: dict[LinkLock, Line] = {
+    LinkLock.SIGNED: ("autopilot link locked: signed", ""),
+    LinkLock.OPEN: ("autopilot link open: no key", "dim"),
+    LinkLock.SILENT: ("autopilot link: key set, nothing heard", "dim"),
+    LinkLock.REFUSED: ("autopilot link: signatures refused", "bold red"),
+}
 
 
 def detail(picture: Picture, selected: int | None) -> list[Line]:
@@ -123,6 +129,7 @@ def _health(vehicle: VehicleView) -> list[Line]:
         (f"battery {battery}, link {health.link_quality:.0%}, GPS fix {health.gps_fix}", ""),
         (f"telemetry {health.telemetry_rate_hz:.0f} Hz, setpoints {health.setpoint_rate_hz:.0f} Hz", ""),
         (f"state here {vehicle.state_rate_hz:.0f} Hz, clock {health.clock_offset_s * 1e3:+.0f} ms", ""),
+        LOCKS[health.link_lock],
         (f"version {health.version}", ""),
     ]
     dropped = {**health.counters, **{f"here {cause}": n for cause, n in vehicle.dropped}}

@@ -16,9 +16,17 @@ STYLES = {Severity.ERROR: "bold red", Severity.WARNING: "yellow", Severity.INFO:
 def status_line(picture: Picture, title: str, status: str, width: int) -> Runs:
     """Game, phase and clock to the left; the source's own words to the right, as far as there is room."""
     left = "  ".join(part for part in (f"Apollonius {title}", *_game(picture), _fleet(picture)) if part)
-    room = width - len(left) - 2
-    right = status if len(status) <= room else ""
+    right = _fitting(status, width - len(left) - 2)
     return [(f"{left}{right.rjust(max(0, width - len(left)))}"[:width], "bold")]
+
+
+def _fitting(status: str, room: int) -> str:
+    """As many whole parts of a status as there is room for, from the first."""
+    while len(status) > room:
+        status = status.rpartition(", ")[0]
+        if not status:
+            return ""
+    return status
 
 
 def _game(picture: Picture) -> list[str]:

@@ -30,6 +30,7 @@ from onboard.game.field_roster import FieldRoster, Member
 from onboard.runtime.membership import MEMBER_FILE, Membership, Peer
 from onboard.runtime.secret_files import make_private_folder, read_secret, write_secret
 from onboard.runtime.signing_keys import read_key
+from onboard.wire.bus.topics import Party
 
 ZENOH_FILE = "zenoh.json5"
 MAVLINK_FILE = "mavlink.key"
@@ -86,6 +87,7 @@ def init(roster: FieldRoster, roster_text: bytes, folder: Path, now: datetime) -
             port=roster.port,
             key=datagrams[member.name],
             peers=peers,
+            master=next((m.name for m in members if Party.MASTER in m.parties), ""),
         )
         write_secret(folder / member.name / MEMBER_FILE, membership.encoded())
         config = _zenoh(roster, member, pairs[member.name], pem(authority.certificate))

@@ -13,6 +13,7 @@ from typing import Annotated
 from msgspec import Meta
 
 from gcs.picture.alerts import Finding
+from gcs.picture.trouble_rules import troubles
 from gcs.picture.values import LegState, Picture, Presence, VehicleView
 from onboard.config.bounds import Distance, Duration, GpsFix, Share
 from onboard.config.strict import StrictConfig, demand
@@ -85,6 +86,7 @@ def rules(picture: Picture, in_force: InForce, limits: Thresholds, version: str)
             yield from _supervisor(vehicle)
             yield from _fence(picture, vehicle, in_force, limits)
             yield from _identity(picture, vehicle, version)
+            yield from troubles(vehicle)
 
 
 def _station(picture: Picture) -> Iterator[Finding]:
@@ -104,9 +106,12 @@ def _game(picture: Picture, limits: Thresholds) -> Iterator[Finding]:
             "stop one of them: two programs run games under one name",
         )  # fmt: skip
     if game.phase in ACTIVE and game.master_age_s > (game.master.lease_s if game.master else 2.0):
+        name = game.master.name if game.master else ""
+        lead = f", lead on with --take-over {name}" if name and game.phase is Phase.RUNNING else ""
         yield Finding(
-            "no_master", 0, WARNING, f"the game's master is silent{_since(game.master_age_s)}",
-            "nobody referees: restart the master or abort",
+            "no_master", 0, WARNING,
+            f"the game's master{f' {name}' if name else ''} is silent{_since(game.master_age_s)}",
+            f"nobody referees: restart the master{lead} or abort",
         )  # fmt: skip
     if game.phase is Phase.RUNNING and game.setup is not None:
         heard = {track.id: track.age_s for track in picture.tracks}

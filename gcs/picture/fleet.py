@@ -24,6 +24,7 @@ from onboard.wire.bus.messages import (
     EvaderBrief,
     Event,
     Health,
+    LinkLock,
     Master,
     Outcome,
     Phase,
@@ -151,6 +152,7 @@ class Fleet:
     def _on_health(self, health: Health, now_ns: int) -> None:
         entry = self._life(health.id, health.nonce, now_ns)
         entry.health, entry.health_ns = health, now_ns
+        entry.growth.take(health, now_ns)
         if entry.role is None:
             entry.role = health.role
 
@@ -265,6 +267,10 @@ class Fleet:
     def vehicles(self, now_ns: int) -> tuple[VehicleView, ...]:
         """Every vehicle heard or expected, by id."""
         return tuple(self._entries[i].view(i, now_ns) for i in sorted(self._entries))
+
+    def link_locks(self) -> list[LinkLock]:
+        """What keeps strangers off the MAVLink links of each agent that was heard."""
+        return [entry.health.link_lock for entry in self._entries.values() if entry.health is not None]
 
     def tracks(self, now_ns: int) -> tuple[TrackView, ...]:
         """Every track of the last half minute, by id."""

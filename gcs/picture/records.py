@@ -14,6 +14,9 @@ DOUBLE_NS = 3 * NS_PER_S  # a double id is reported until this long after its la
 TRAIL_STEP_NS = NS_PER_S // 2
 TRAIL_LENGTH = 120
 PROCESSES = 8  # earlier processes of an agent that are remembered
+GROWING_NS = 5 * NS_PER_S  # a counter counts as growing for so long
+GROWING_MAX = 64  # counters of one agent that are watched
+RECORDS_LOST = ("log_lost", "lines_lost", "events_unrecorded", "stamps_unsaved")
 EVENTS_KEPT = 1000  # numbers of events remembered, of each process
 
 
@@ -64,6 +67,37 @@ class Trail:
         return self.taken
 
 
+class Growth:
+    """Which of an agent's counters of trouble have grown lately."""
+
+    def __init__(self) -> None:
+        self._last: dict[str, int] = {}
+        self._grew_ns: dict[str, int] = {}
+        self._nonce = 0
+
+    def take(self, health: Health, now_ns: int) -> None:
+        """Compare a report's counters with those of the report before it; a new process begins at zero."""
+        watched = {name: n for name, n in health.counters.items() if watch(name)}
+        if health.nonce != self._nonce:
+            self._nonce, self._last = health.nonce, {}
+        for name, n in watched.items():
+            room = len(self._grew_ns) < GROWING_MAX or name in self._grew_ns
+            if n > self._last.get(name, 0) and room:
+                self._grew_ns[name] = now_ns
+        self._last = watched
+        self._grew_ns = {name: at for name, at in self._grew_ns.items() if now_ns - at < GROWING_NS}
+
+    def view(self, now_ns: int) -> tuple[tuple[str, int], ...]:
+        """Name and number of those that grew in the last `GROWING_NS`."""
+        grew = sorted(name for name, at in self._grew_ns.items() if now_ns - at < GROWING_NS)
+        return tuple((name, self._last.get(name, 0)) for name in grew)
+
+
+def watch(name: str) -> bool:
+    """Whether a counter of an agent tells of trouble while it grows."""
+    return name.startswith("signature_") or "limited_" in name or name in RECORDS_LOST
+
+
 class VehicleRecord:
     """What is known of one vehicle."""
 
@@ -87,6 +121,7 @@ class VehicleRecord:
         self.double_ns: int | None = None
         self.events: dict[int, set[int]] = {}  # numbers seen, by nonce
         self.missed_events = 0
+        self.growth = Growth()
 
     def view(self, vehicle_id: int, now_ns: int) -> VehicleView:
         """As the picture shows it."""
@@ -113,6 +148,7 @@ class VehicleRecord:
             dropped=tuple(sorted(self.drops.items())),
             schema_age_s=age_s(self.schema_ns, now_ns),
             missed_events=self.missed_events,
+            growing=self.growth.view(now_ns),
             trail=self.trail.view(),
         )
 

@@ -61,6 +61,7 @@ class VehicleView(Value, frozen=True):
     dropped: tuple[tuple[str, int], ...] = ()  # messages of this vehicle dropped here, by cause
     schema_age_s: float = INF  # since a message of another schema version
     missed_events: int = 0
+    growing: tuple[tuple[str, int], ...] = ()  # counters of trouble that grow: name, number so far
     trail: tuple[tuple[float, float, float], ...] = ()  # (north, east, down) [m], oldest first
 
     @property

@@ -8,6 +8,7 @@ from pathlib import Path
 from onboard.agent.config import AgentConfig
 from onboard.config.strict import ConfigError
 from onboard.core.math.constants import NS_PER_S
+from onboard.runtime.bus_field import FieldBus
 from onboard.runtime.bus_security import BusSecurity, Lock, security_of
 from onboard.runtime.bus_zenoh import ZenohBus, open_zenoh
 from onboard.runtime.clock import RealClock
@@ -67,6 +68,11 @@ def refuse_open_bus(config: AgentConfig, found: BusSecurity) -> None:
             f"zenoh: found a bus that is {found.words}, expected keys, or open_bus = true, "
             "because field = true (docs/security.md)"
         )
+
+
+def master_of(bus: Bus) -> str:
+    """The member of the bus's field whose certificate may write as the master; "" where there are no keys."""
+    return bus.member.master if isinstance(bus, FieldBus) else ""
 
 
 def _zenoh_file(config: AgentConfig) -> Path | None:

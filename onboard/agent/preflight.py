@@ -25,12 +25,15 @@ from onboard.autopilot.base import Telemetry
 from onboard.autopilot.parameters import findings
 from onboard.config.strict import ConfigError
 from onboard.core.math.constants import NEVER, NS_PER_S
+from onboard.runtime.bus_field import FieldBus
 from onboard.runtime.bus_security import BusSecurity, Lock
 from onboard.runtime.bus_zenoh import ZenohBus
 from onboard.runtime.clock import RealClock
 from onboard.runtime.protocols import Bus, Clock, Link, Sample
 from onboard.runtime.zenoh_config import DEFAULT_ENDPOINT
+from onboard.wire.bus.messages import LinkLock
 from onboard.wire.mavlink import commands
+from onboard.wire.mavlink.frames import SIGNATURES
 from onboard.wire.mavlink.ids import MessageId
 from onboard.wire.mavlink.modes import Kind
 from onboard.wire.mavlink.signing import Signing
@@ -39,6 +42,7 @@ ENOUGH = 0.7  # of the position rate that was asked for
 DISK_MIN = 200e6  # bytes free, for logs
 HARMLESS = ("no_peer", "muted", "twin")  # counted, but no bad frames
 DIALECT = "pymavlink.dialects.v20.ardupilotmega"
+UNSERVED_S = 4.0  # a listener that answers nothing is known by then
 PEERS_MAX = 64  # of one link that are told apart
 
 
@@ -78,7 +82,9 @@ class Sight(NamedTuple):
     bus: str = ""
     lock: BusSecurity | None = None  # what keeps strangers off the bus
     bus_status: str = ""  # the bus's own words
+    unserved: str = ""  # why an open session does not serve
     connected: bool = False
+    link_lock: LinkLock = LinkLock.OPEN
     master: bool = False
     offset_s: float = 0.0
     key_trouble: str = ""
@@ -97,6 +103,8 @@ def judge(config: AgentConfig, seen: Sight) -> list[Row]:
         rows.append(Row("signing key", Mark.FAIL, seen.key_trouble, "chmod 600, or make a new key"))
     elif seen.signed:
         rows.append(Row("signing key", Mark.PASS, "readable by its owner alone"))
+        if not seen.link_trouble and seen.datagrams:
+            rows.append(_link_lock(seen))
     else:
         mark = Mark.WARN if config.field else Mark.PASS
         rows.append(Row("signing key", mark, "none: anybody on the link can command the vehicle",
@@ -172,6 +180,9 @@ def _bus(config: AgentConfig, seen: Sight) -> list[Row]:
     if not seen.connected:
         found = f"nobody at {seen.bus}" + (f": {seen.bus_status}" if seen.bus_status else "")
         return [Row("bus", Mark.FAIL, found, "start gcs or sim-bridge, or give --bus"), *lock]
+    if seen.unserved:
+        remedy = "gcs keys init with it in the roster, copy the folders, restart the listener"
+        return [Row("bus", Mark.FAIL, f"{seen.bus}: {seen.unserved}", remedy), *lock]
     rows = [Row("bus", Mark.PASS, seen.bus), *lock]
     if not seen.master:
         rows.append(Row("clock", Mark.WARN, f"no master in game '{config.game}' to compare with",
@@ -191,6 +202,18 @@ def _lock(config: AgentConfig, found: BusSecurity) -> Row:
     if member is not None and found.words.endswith("EXPIRED"):
         return Row("bus lock", Mark.FAIL, found.words, "gcs keys init, and copy this member's folder again")
     return Row("bus lock", Mark.PASS, found.words)
+
+
+def _link_lock(seen: Sight) -> Row:
+    """Whether what comes over the links is signed with the key that is set."""
+    if seen.link_lock is LinkLock.SIGNED:
+        return Row("link lock", Mark.PASS, "locked: the autopilot signs with this key")
+    if seen.link_lock is LinkLock.REFUSED:
+        bad = seen.bad_frames or {}
+        causes = ", ".join(f"{name} {n}" for name, n in sorted(bad.items()) if name in SIGNATURES)
+        return Row("link lock", Mark.FAIL, f"frames come and are refused: {causes}",
+                   "give the autopilot this key; stale or future: set both clocks")  # fmt: skip
+    return Row("link lock", Mark.WARN, "a key is set, and no autopilot of this id was heard", "see autopilot")
 
 
 def table(rows: list[Row]) -> list[str]:
@@ -250,7 +273,7 @@ async def look(config: AgentConfig, seconds: float) -> Sight:
             for link in links:
                 link.close()
         if bus is not None:
-            seen = seen._replace(bus_status=bus.status())
+            seen = seen._replace(bus_status=bus.status(), unserved=bus.trouble())
     finally:
         if bus is not None:
             await close_bus(bus)
@@ -288,7 +311,9 @@ class Ears:
         self._do(self._instant())
         begun = self._instant().s
         asked = 0
-        while (past := self._instant().s - begun) < (seconds if self._links else min(seconds, 2.0)):
+        least = UNSERVED_S if isinstance(self._bus, FieldBus) else 0.0
+        patience = max(least, seconds if self._links else min(seconds, 2.0))
+        while (past := self._instant().s - begun) < patience:
             if self._links:
                 now = self._instant()
                 self._vehicle.chores(now.s)
@@ -318,6 +343,7 @@ class Ears:
             kind=vehicle.adapter.kind.value if vehicle.adapter is not None else "",
             refusal=vehicle.refusal,
             other_systems=tuple(sorted(vehicle.heard_systems)),
+            link_lock=self._radio.lock,
             version="" if version is None else ".".join(map(str, version.flight[:3])),
             telemetry=vehicle.look(now.s),
             position_rate=vehicle.position_rate.value,

@@ -13,7 +13,7 @@ import threading
 from pathlib import Path
 
 from onboard.agent.config import AgentConfig
-from onboard.agent.opening import close_bus, open_bus, open_links, signing_of
+from onboard.agent.opening import close_bus, master_of, open_bus, open_links, signing_of
 from onboard.agent.shell import Agent, Equipment
 from onboard.agent.version import version
 from onboard.agent.written_files import WrittenFiles
@@ -52,6 +52,7 @@ async def _fly(config: AgentConfig, timing: Path | None) -> int:
             beat=notifier.alive,
             route=route,
             counters=files.counters,
+            master=master_of(bus),
             apart=True,
         )
         agent = Agent(config, clock, links, bus, equipment)

@@ -80,6 +80,7 @@ class Equipment(NamedTuple):
     beat: Callable[[], None] | None = None  # called with each control step: a service's watchdog
     route: Route | None = None  # of a tracker
     counters: Callable[[], dict[str, int]] = dict  # of the files that are written, for health reports
+    master: str = ""  # the member of the field whose certificate may write as the master; "" = any
     apart: bool = False  # strategies of other distributions answer from child processes: on real time
 
 
@@ -139,6 +140,7 @@ class Agent:
             equipment.version,
             equipment.route,
             equipment.signing is not None,
+            equipment.master,
         )
         self.core = AgentCore(config, facts, equipment.signing)
         self._equipment = equipment

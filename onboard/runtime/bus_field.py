@@ -78,9 +78,13 @@ class FieldBus(ZenohBus):
 
     def status(self) -> str:
         """As of the session; and where the listener lets it in but answers nothing."""
+        trouble = self.trouble()
+        return super().status() + (f"; {trouble}" if trouble else "")
+
+    def trouble(self) -> str:
+        """That the listener lets the session in and answers nothing: its roster does not have this member."""
         name = self.member.certificate
-        asked = f"; the listener answers nothing: is {name} in its roster?" if self._unanswered else ""
-        return super().status() + asked
+        return f"the listener answers nothing: is {name} in its roster?" if self._unanswered else ""
 
     async def open_datagrams(self) -> None:
         """Open the socket and begin to beat. A port that is taken leaves the bus without datagrams."""

@@ -41,7 +41,8 @@ class BusSecurity(NamedTuple):
         """For a status line: "" on this computer alone."""
         if self.lock is Lock.LOOPBACK:
             return ""
-        return self.words if self.member is not None else self.lock.value
+        left = self.words.rpartition(", ")[2]  # "30 days left", "EXPIRED"
+        return f"{self.lock.value}, {left}" if self.member is not None else self.lock.value
 
 
 def security_of(endpoint: str | None, config_file: Path | None, now_s: float) -> BusSecurity:

@@ -38,6 +38,7 @@ class Membership(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     port: int  # TCP for TLS, UDP for datagrams
     key: KeyHex  # of the own datagrams
     peers: tuple[Peer, ...]
+    master: str = ""  # the member whose word counts as the master's; "" = the roster names none
 
     @property
     def endpoint(self) -> str:

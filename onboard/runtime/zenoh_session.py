@@ -116,6 +116,10 @@ class ZenohBus:
         """Whether at least one other session is connected to this one."""
         return self._session is not None and bool(self._session.info.transports())
 
+    def trouble(self) -> str:
+        """Why a session that is open does not serve; "" where it does, as far as is known."""
+        return ""
+
     def counters(self) -> dict[str, int]:
         """published, received, and what was dropped by cause."""
         return dict(self._inbox.counts) | self._limit.counters()

@@ -15,6 +15,7 @@ from onboard.config.names import game_name
 from onboard.config.strict import ConfigError
 from onboard.game.master import Standing
 from onboard.game.scenario import Scenario, load
+from onboard.runtime.bus_field import FieldBus
 from onboard.runtime.bus_zenoh import ZenohBus, open_zenoh
 from onboard.runtime.clock import RealClock, SteadyClock
 from onboard.runtime.links import open_udp
@@ -87,6 +88,8 @@ async def serve_scenario(
         bridge_options = BridgeOptions(
             secrets.randbits(48), options.game, options.seed, folder, options.referee
         )
+        if isinstance(bus, FieldBus):
+            bridge_options = bridge_options._replace(name=bus.member.name)
         clock = SteadyClock(RealClock())  # a game outlives a clock that is set
         bridge = Bridge(scenario, clock, bus, links, bridge_options, say)
         _introduce(scenario, options, ports, radios, bus, say)

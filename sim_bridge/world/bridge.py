@@ -10,7 +10,7 @@ from onboard.game.scenario import Scenario
 from onboard.runtime.protocols import Bus, Clock, Link
 from onboard.runtime.tasks import Pace, periodic
 from onboard.wire.bus.topics import DEFAULT_GAME, TRACK
-from sim_bridge.world.master import BridgeMaster
+from sim_bridge.world.master import NAME, BridgeMaster, Who
 from sim_bridge.world.sensor import Sensor
 from sim_bridge.world.staging import wind_of
 from sim_bridge.world.world import RATE_HZ, World
@@ -28,6 +28,7 @@ class Options(NamedTuple):
     seed: int | None = None  # in place of the scenario's
     folder: Path | None = None  # in which the scenario's recordings of wind lie
     referee: bool = True  # whether the bridge is the game's master
+    name: str = NAME  # of the master, on a bus with keys that of its member
     battery_s: float = 1200.0  # a battery's time from full to empty in flight [s]
 
 
@@ -55,7 +56,9 @@ class Bridge:
         )
         self.sensor = Sensor(scenario.flight.sensor, scenario.ids, seed)
         self.master = (
-            BridgeMaster(scenario, game, clock, bus, options.nonce, say) if options.referee else None
+            BridgeMaster(scenario, game, clock, bus, Who(options.name, options.nonce), say)
+            if options.referee
+            else None
         )
         self.pace = Pace("world", 1.0 / RATE_HZ)
         self._clock = clock

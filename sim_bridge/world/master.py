@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Mapping
+from typing import NamedTuple
 
 from onboard.core.math.vectors import Vec
 from onboard.game.master import GameMaster, Timing
@@ -18,15 +19,22 @@ NAME = "sim-bridge"
 RECOVERY_S = 3.0
 
 
+class Who(NamedTuple):
+    """As whom a bridge is the master."""
+
+    name: str
+    nonce: int
+
+
 class BridgeMaster:
     """Call `step` each step of the world; `rules` is the master itself."""
 
     def __init__(
-        self, scenario: Scenario, game: str, clock: Clock, bus: Bus, nonce: int, say: Callable[[str], None]
+        self, scenario: Scenario, game: str, clock: Clock, bus: Bus, who: Who, say: Callable[[str], None]
     ) -> None:
-        flight = scenario.flight
+        flight, (name, nonce) = scenario.flight, who
         timing = Timing(flight.ready_s, flight.timeout_s, RECOVERY_S)
-        self.rules = GameMaster(setup_of(scenario, game, NAME), target_of(scenario), NAME, nonce, timing)
+        self.rules = GameMaster(setup_of(scenario, game, name), target_of(scenario), name, nonce, timing)
         self.drops: Counter[str] = Counter()
         self._game = game
         self._clock = clock

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from msgspec.structs import replace
 
-from onboard.runtime.clock import SteadyClock
+from gcs.master import FieldMaster
+from gcs.station import Station, StationSetup
+from onboard.game.scenario import Parameters, Scenario, VehicleSpec
+from onboard.runtime.bus_memory import MemoryBroker
+from onboard.runtime.clock import RealClock, SteadyClock
 from onboard.runtime.loop import EPOCH_NS
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import AgentStage, Phase, RulesMessage
@@ -14,6 +18,12 @@ from onboard.wire.mavlink.signing import MemoryStore, SignatureCheck, Signing
 from tests.support.lone_agent import SQUARE, FakeMaster, LoneAgent, playing
 
 KEY = bytes(range(32))
+TINY = Scenario(
+    name="tiny",
+    evader=VehicleSpec(position=(0.0, 0.0, 50.0), speed=5.0),
+    pursuers=(VehicleSpec(position=(100.0, 0.0, 50.0), speed=5.0),),
+    parameters=Parameters(R=2.0, horizon=30.0),
+)
 HOUR_NS = 3600 * 10**9
 
 
@@ -100,6 +110,42 @@ def test_a_running_game_is_led_on_only_by_who_took_it_over_by_name_and_after_the
     assert agent.health is not None
     agent.run(1.0)
     assert agent.health.stage is AgentStage.ENDED  # what it had said meanwhile counts now
+
+
+def test_with_keys_a_master_counts_under_its_certificates_name_alone() -> None:
+    agent = playing(member="laptop-A")  # the member whose certificate may write as the master
+    mine = agent.core.bus.phase
+    assert mine is not None
+    named = FakeMaster("laptop-B", 9)
+    agent.master.on = False
+    agent.hear(named.lease(agent.wall_ns), topics.MASTER)
+    agent.run(4.0)  # the old lease has ended
+    named.takes_over = "laptop-A"
+    agent.hear(named.lease(agent.wall_ns), topics.MASTER)
+    agent.hear(replace(mine, phase=Phase.ENDED, number=99, master="laptop-B", nonce=9), topics.PHASE)
+    setup = agent.core.bus.setup
+    assert setup is not None
+    agent.hear(replace(setup, master="laptop-B", nonce=9, fence=None), topics.SETUP)
+    agent.run(0.5)
+    assert agent.core.bus.masters.name == "laptop-A"
+    assert agent.core.bus.phase == mine
+    assert agent.core.bus.drops["foreign_master"] == 4
+    again = FakeMaster("laptop-A/00ff", 11)  # the same member, another process, taken over by a person
+    again.takes_over = "laptop-A"
+    agent.hear(again.lease(agent.wall_ns), topics.MASTER)
+    agent.run(0.5)
+    assert agent.core.bus.masters.name == "laptop-A/00ff"
+
+
+def test_two_stations_without_keys_never_share_a_name_by_which_a_game_is_taken_over() -> None:
+    broker, names = MemoryBroker(), set()
+    for _ in range(50):
+        station = Station(broker.connect(), RealClock(), StationSetup("g"))
+        names.add(FieldMaster(station, TINY).rules.name)
+    assert len(names) == 50
+    assert all(name.startswith("gcs/") for name in names)
+    with_keys = Station(broker.connect(), RealClock(), StationSetup("g", member="ground"))
+    assert FieldMaster(with_keys, TINY, nonce=0xABCDE).rules.name == "ground/bcde"
 
 
 def heard(signing: Signing, sender: Sender, wall_ns: int) -> dict[str, int]:

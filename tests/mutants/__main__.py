@@ -1,120 +1,92 @@
 """Mutants: would the tests notice? cosmic-ray changes the code a little, and the tests of its room are run.
 
-`python -m tests.mutants [--seed N] [--each N] [ROOM ...]`: of each room a sample of so many mutants, drawn
-with the seed. Killed are those upon which a test fails or takes too long. Equivalent ones are among the
-survivors.
+`python -m tests.mutants [--seed N] [--each N] [--resume FILE] [ROOM ...]`: of each room a sample of so many
+mutants, drawn with the seed. The room's tests run once unchanged, to learn which run which line; upon a
+mutant those of its line run, the quickest first, a minute of them at most. Killed are mutants upon which a
+test fails or takes too long. Survivors whose reason stands in `reasons.toml` are told with it; equivalent
+ones count as survivors.
 """
 
 from __future__ import annotations
 
 import argparse
-import os
-import shutil
-import subprocess
 import sys
+import tomllib
 from pathlib import Path
 from random import Random
 from tempfile import TemporaryDirectory
-from typing import NamedTuple
 
-from cosmic_ray.ast import ast_nodes, get_ast
-from cosmic_ray.mutating import mutate_code
-from cosmic_ray.plugins import get_operator, operator_names
-
+from tests.mutants.trial import Bench, Ledger, Mutant, changed, mutants
 from tests.support import benchmark_record
 from tests.support.paths import ROOT
 
+AGENT = ["tests/onboard/agent", "tests/field", "-m", "not real and not long and not game"]
 ROOMS = {
-    "safety": (["onboard/core/safety"], ["tests/onboard/core/safety"]),
+    "safety": (["onboard/core/safety/"], ["tests/onboard/core/safety", *AGENT]),
     "signing": (["onboard/wire/mavlink/signing.py"], ["tests/onboard/wire/test_signing.py"]),
-    "commands": (["gcs/picture/command_book.py"], ["tests/gcs/picture/test_commands.py"]),
-    "agent": (["onboard/agent/core"], ["tests/onboard/agent", "-m", "not real"]),
+    "commands": (["gcs/picture/command_book.py"], ["tests/gcs/picture"]),
+    "agent": (["onboard/agent/core/"], AGENT),
 }
-LIMIT_S = 300.0
-COPIED = ("onboard", "gcs", "sim_bridge", "tests", "configs", "docs", "pyproject.toml")
-LEFT_OUT = (
-    "_BitOr_",  # `X | None` in annotations, which nothing evaluates
-    "Variable",  # these need to be told names
-)
+REASONS = Path(__file__).with_name("reasons.toml")
 
 
-class Mutant(NamedTuple):
-    """One change: an operator of cosmic-ray, at its n-th place in a file."""
-
-    file: str
-    operator: str
-    occurrence: int
-
-
-def mutants(files: list[str]) -> list[Mutant]:
-    """All mutants of some files and folders."""
-    found = []
-    operators = [name for name in operator_names() if not any(part in name for part in LEFT_OUT)]
-    for place in files:
-        for path in sorted((ROOT / place).rglob("*.py")) if (ROOT / place).is_dir() else [ROOT / place]:
-            nodes = list(ast_nodes(get_ast(path.read_text(encoding="utf-8"))))
-            for name in operators:
-                operator = get_operator(name)()
-                places = sum(1 for node in nodes for _ in operator.mutation_positions(node))
-                found += [Mutant(str(path.relative_to(ROOT)), name, n) for n in range(places)]
-    return found
-
-
-def survives(mutant: Mutant, tests: list[str], tree: Path) -> bool:
-    """Whether all tests pass upon a mutant, which is made in a copy of the project."""
-    file = tree / mutant.file
-    whole = file.read_text(encoding="utf-8")
-    changed = mutate_code(whole, get_operator(mutant.operator)(), mutant.occurrence)
-    if changed is None:
-        return True
-    file.write_text(changed, encoding="utf-8")
-    command = [str(ROOT / ".venv/bin/python"), "-m", "pytest", *tests, "-n", "0", "-x", "-q",
-               "-p", "no:cacheprovider", "--hypothesis-seed", "1"]  # fmt: skip
-    env = {**os.environ, "PYTHONPATH": str(tree), "PYTHONDONTWRITEBYTECODE": "1"}
-    try:
-        run = subprocess.run(command, cwd=tree, env=env, capture_output=True, timeout=LIMIT_S, check=False)
-    except subprocess.TimeoutExpired:
-        return False
-    finally:
-        file.write_text(whole, encoding="utf-8")
-    return run.returncode == 0
-
-
-def line_of(mutant: Mutant) -> str:
-    """The line that a mutant changes, as it becomes."""
+def change(mutant: Mutant) -> tuple[str, str]:
+    """The line that a mutant changes, as it is and as it becomes."""
     whole = (ROOT / mutant.file).read_text(encoding="utf-8")
-    changed = mutate_code(whole, get_operator(mutant.operator)(), mutant.occurrence) or whole
-    pairs = enumerate(zip(whole.splitlines(), changed.splitlines(), strict=False), 1)
-    return next((f"{number}: `{new.strip()}`" for number, (old, new) in pairs if old != new), "?")
+    pairs = zip(whole.splitlines(), changed(mutant).splitlines(), strict=False)
+    return next(((old.strip(), new.strip()) for old, new in pairs if old != new), ("?", "?"))
+
+
+def told(mutant: Mutant, reasons: dict[str, str]) -> str:
+    """A survivor in a line."""
+    old, new = change(mutant)
+    reason = reasons.get(f"{mutant.file} {new}", "")
+    return f"- {mutant.file}: `{old}` → `{new}`{': ' + reason if reason else ''}"
 
 
 def main() -> None:
     """Draw, try, tell."""
     parser = argparse.ArgumentParser(prog="python -m tests.mutants")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--each", type=int, default=40)
+    parser.add_argument("--each", type=int, default=80)
+    parser.add_argument("--resume", type=Path, help="what was found so far; a run that was ended goes on")
+    parser.add_argument("--at-most", type=int, default=10**9, help="so many in this run, then end")
     parser.add_argument("rooms", nargs="*", default=list(ROOMS), metavar="ROOM")
     asked = parser.parse_args()
+    ledger = Ledger(asked.resume)
+    reasons = tomllib.loads(REASONS.read_text(encoding="utf-8")) if REASONS.exists() else {}
     lines = ["| room | mutants there are | tried | killed |", "|---|---|---|---|"]
     left: list[Mutant] = []
+    all_tried = all_killed = 0
     with TemporaryDirectory() as name:
-        for part in COPIED:
-            copy = shutil.copytree if (ROOT / part).is_dir() else shutil.copy2
-            copy(ROOT / part, Path(name) / part)  # type: ignore[operator]
         for room in asked.rooms:
             files, tests = ROOMS[room]
             there = mutants(files)
             drawn = Random(f"{asked.seed} {room}").sample(there, min(asked.each, len(there)))
+            bench = None
             alive = []
             for mutant in drawn:
-                if survives(mutant, tests, Path(name)):
+                verdict = ledger.get(mutant)
+                if verdict is None:
+                    if asked.at_most <= 0:
+                        return
+                    asked.at_most -= 1
+                    if bench is None:
+                        bench = Bench(Path(name), tests)
+                        bench.look(files)
+                    verdict = bench.judge(mutant)
+                    ledger.put(mutant, verdict)
+                    word = "killed" if verdict.killed else "SURVIVES"
+                    print(f"{room}: {word} {mutant}, {verdict.tests} tests", flush=True)
+                if not verdict.killed:
                     alive.append(mutant)
-                print(f"{room}: {'SURVIVES' if mutant in alive else 'killed'} {mutant}", flush=True)
             left += alive
             killed = len(drawn) - len(alive)
+            all_tried, all_killed = all_tried + len(drawn), all_killed + killed
             lines.append(f"| {room} | {len(there)} | {len(drawn)} | {killed} ({killed / len(drawn):.0%}) |")
+    lines.append(f"| all | | {all_tried} | {all_killed} ({all_killed / all_tried:.0%}) |")
     lines += ["", "Survivors, equivalent ones among them:", ""]
-    lines += [f"- {mutant.file}:{line_of(mutant)} ({mutant.operator})" for mutant in left] or ["- none"]
+    lines += [told(mutant, reasons) for mutant in left] or ["- none"]
     print("\n".join(lines))
     command = f"python -m tests.mutants --seed {asked.seed} --each {asked.each} {' '.join(asked.rooms)}"
     benchmark_record.write("mutants.md", "Mutants that the tests notice", command, lines)

@@ -140,13 +140,15 @@ class FakeAutopilot:
 class LoneAgent:
     """The machine of pursuer 2, stepped at 20 Hz."""
 
-    def __init__(self, kind: Kind = Kind.ARDUCOPTER, nonce: int = 77, **config: Any) -> None:
+    def __init__(
+        self, kind: Kind = Kind.ARDUCOPTER, nonce: int = 77, member: str = "", **config: Any
+    ) -> None:
         self.s, self.wall_ns = 100.0, EPOCH_NS
         self.autopilot = FakeAutopilot(kind)
         self.master = FakeMaster()
         self.core = AgentCore(
             AgentConfig(id=VEHICLE, game=GAME, **{"take_control": True, **config}),
-            Facts(nonce, (LinkFacts("wire", False),)),
+            Facts(nonce, (LinkFacts("wire", False),), master=member),
         )
         self.thinker = Thinker(RealClock())
         self.health: Health | None = None

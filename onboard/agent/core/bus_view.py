@@ -13,7 +13,7 @@ from onboard.agent.config import AgentConfig
 from onboard.agent.core.clocks import MasterClock
 from onboard.agent.core.events import Instant, Outbox, Subscribe, Unsubscribe
 from onboard.agent.core.journal import Journal
-from onboard.agent.core.masters import MASTERS_MAX, Hearing, Masters, Who
+from onboard.agent.core.masters import MASTERS_MAX, Hearing, Masters, Who, certified
 from onboard.core.math.constants import NEVER
 from onboard.core.math.states import Mate, MateState, carried
 from onboard.core.math.vectors import Vec
@@ -52,7 +52,11 @@ class Heard:
 class BusView:
     """The bus as one agent sees it."""
 
-    def __init__(self, config: AgentConfig, nonce: int, out: Outbox, journal: Journal) -> None:
+    def __init__(
+        self, config: AgentConfig, nonce: int, out: Outbox, journal: Journal, member: str = ""
+    ) -> None:
+        """`member` is the name of the field's member whose certificate may write as the master; "" = any."""
+        self._member = member
         self.drops: Counter[str] = Counter()  # messages that did not count, by cause
         self.connected = True  # whether there is somebody to talk to, as far as the shell knows
         self.setup: Setup | None = None
@@ -136,7 +140,7 @@ class BusView:
         return self._mates
 
     def _take_setup(self, setup: Setup) -> None:
-        if setup == self.setup:
+        if setup == self.setup or self._foreign(setup.master):
             return
         who = (setup.master, setup.nonce)
         if who != self.masters.leader:
@@ -147,6 +151,8 @@ class BusView:
         self.setup_number += 1
 
     def _take_phase(self, phase: PhaseChange) -> None:
+        if self._foreign(phase.master):
+            return
         who = (phase.master, phase.nonce)
         if who != self.masters.leader:
             text = f"phase {phase.phase.value} from '{phase.master}', but {self.masters.name} is the master"
@@ -189,6 +195,8 @@ class BusView:
             self._mates_at = NEVER
 
     def _take_master(self, master: Master) -> None:
+        if self._foreign(master.name):
+            return
         now = self._now
         who = (master.name, master.nonce)
         before = self.masters.leader
@@ -213,6 +221,13 @@ class BusView:
                 self._journal.warning("clock_offset", f"{offset}: check the time service")
             else:
                 self._journal.info("clock_offset", f"{offset}: in order again")
+
+    def _foreign(self, name: str) -> bool:
+        """Whether a master's word comes under a name that the master's certificate does not have."""
+        if certified(name, self._member):
+            return False
+        self._trouble("foreign_master", f"{name} speaks as the master, whose certificate is {self._member}'s")
+        return True
 
     def _take_own_health(self, health: Health) -> None:
         if health.nonce != self._nonce:

@@ -73,6 +73,7 @@ class Facts(NamedTuple):
     version: str = ""  # of the package, for health reports
     route: Route | None = None  # of a tracker
     signed: bool = False  # whether links are signed, with a key that is not told here
+    master: str = ""  # the member whose certificate may write as the master; "" = the bus tells none
 
 
 class AgentCore:
@@ -88,7 +89,7 @@ class AgentCore:
             facts.links, config.id, self.out, signing=signing, link_id=link_id, mute=config.dry_run
         )
         self.vehicle = VehicleLink(config, self.radio, self.journal, self.out)
-        self.bus = BusView(config, facts.nonce, self.out, self.journal)
+        self.bus = BusView(config, facts.nonce, self.out, self.journal, facts.master)
         self.orders = Orders(Action.RETURN if config.safety.abort is KnockOff.RETURN else Action.HOLD)
         self.game: GamePlayer | None = None
         part: Part
@@ -318,7 +319,8 @@ class AgentCore:
         if not self.ending.complete:
             self._judge(now)
         number = self.desk.speak(now.s)
-        standing = Standing(self.stage, self.lacks, self.counters(event), number, self.orders.stopped_by)
+        stopped_by, lock = self.orders.stopped_by, self.radio.lock
+        standing = Standing(self.stage, self.lacks, self.counters(event), number, stopped_by, lock)
         health = self.reports.health(standing, now)
         self._messages.append((HEALTH, HEALTH.encode(health)))
         if self.ending.complete:

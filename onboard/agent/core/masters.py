@@ -51,6 +51,14 @@ class Words:
         return now - self._at.get((nonce, number), NEVER) <= QUOTED_S
 
 
+def certified(name: str, member: str) -> bool:
+    """Whether a master of this name may be the member of a field who alone may write as the master.
+
+    A name is the member's, or `MEMBER/…` where the program adds which process it is. "" = any may.
+    """
+    return not member or name.partition("/")[0] == member
+
+
 class Masters:
     """Leases of masters, in the order in which they began. Instants are the agent's own [s, monotonic]."""
 

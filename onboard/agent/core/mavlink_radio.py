@@ -16,12 +16,15 @@ from onboard.agent.core.events import ANY_PEER, Instant, Keep, LinkFacts, Outbox
 from onboard.autopilot.link_redundancy import Redundant
 from onboard.autopilot.one_sender import OneSender
 from onboard.autopilot.one_sender import Sender as Sent
+from onboard.core.math.constants import NEVER
+from onboard.wire.bus.messages import LinkLock
 from onboard.wire.mavlink.commands import Outgoing, SetpointMessage
-from onboard.wire.mavlink.frames import Framer, Packet, Sender
+from onboard.wire.mavlink.frames import SIGNATURES, Framer, Packet, Sender
 from onboard.wire.mavlink.ids import AUTOPILOT, COMPANION
 from onboard.wire.mavlink.signing import Signing
 
 PEERS_MAX = 16  # framing states of one link
+REFUSED_S = 2.0  # frames with bad signatures, and for so long no good one of the autopilot's
 
 
 class _Line:
@@ -70,11 +73,23 @@ class Radio:
         self._lines = [_Line(link) for link in links]
         self._redundant = Redundant(len(links))
         self._due: list[Outgoing] = []
+        self._good_at = NEVER  # when the vehicle's own autopilot was last heard [s]
+        self._refused = 0  # frames whose signatures were not good
+        self._refused_at = NEVER
 
     @property
     def active(self) -> str:
         """The name of the link that is used for sending."""
         return self._lines[self._redundant.active].facts.name
+
+    @property
+    def lock(self) -> LinkLock:
+        """What keeps strangers off the links."""
+        if self._signing is None:
+            return LinkLock.OPEN
+        if self._refused_at != NEVER and self._refused_at - self._good_at > REFUSED_S:
+            return LinkLock.REFUSED
+        return LinkLock.SILENT if self._good_at == NEVER else LinkLock.SIGNED
 
     def take(self, index: int, peer: int, data: bytes, now: Instant) -> Received:
         """Take what arrived on link `index` from `peer`."""
@@ -98,7 +113,17 @@ class Radio:
                         continue
             self._out.put(Keep(now.wall_ns, packet.raw))
             packets.append(packet)
+            if packet.component == AUTOPILOT and packet.system == self._system:
+                self._good_at = now.s
+        self._count_refused(now.s)
         return Received(tuple(packets), took_over, second)
+
+    def _count_refused(self, now: float) -> None:
+        if self._signing is None:
+            return
+        refused = sum(self.causes[cause] for cause in SIGNATURES)
+        if refused > self._refused:
+            self._refused, self._refused_at = refused, now
 
     def send(self, message: Outgoing) -> None:
         """Send to the autopilot, with the next `flush`."""

@@ -20,6 +20,7 @@ from onboard.wire.bus.messages import (
     DecisionModule,
     DecisionReport,
     Health,
+    LinkLock,
     State,
     SupervisorAction,
 )
@@ -35,6 +36,7 @@ class Standing(NamedTuple):
     counters: dict[str, int]
     number: int  # of this report
     stopped_by: str  # id of the last order obeyed that stops
+    link_lock: LinkLock = LinkLock.SILENT  # of the MAVLink links
 
 
 class Reports:
@@ -128,6 +130,7 @@ class Reports:
             nonce=self._nonce,
             number=standing.number,
             stopped_by=standing.stopped_by,
+            link_lock=standing.link_lock,
         )
 
 

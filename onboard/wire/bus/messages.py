@@ -241,6 +241,15 @@ class DecisionReport(Message, frozen=True):
     setpoint: Triple = (0.0, 0.0, 0.0)  # [m/s; ground, NED] what was sent
 
 
+class LinkLock(Enum):
+    """What keeps strangers off an agent's MAVLink links."""
+
+    SILENT = "silent"  # a key is set; nothing of the autopilot's has been heard
+    OPEN = "open"  # no key: whoever reaches a link can command the vehicle
+    SIGNED = "signed"  # with the key that the agent has
+    REFUSED = "refused"  # frames come, and their signatures are not good: nothing of them counts
+
+
 class Health(Message, frozen=True):
     """`vehicles/<id>/health`: heartbeat of the agent."""
 
@@ -267,6 +276,7 @@ class Health(Message, frozen=True):
     nonce: int = 0
     number: int = 0  # counts up in each process: what an order quotes where there is no master
     stopped_by: str = ""  # id of the last order obeyed that stops; '' = none by this process
+    link_lock: LinkLock = LinkLock.OPEN
 
 
 class Severity(Enum):

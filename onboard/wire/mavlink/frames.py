@@ -22,6 +22,7 @@ FIELDS_1, FIELDS_2 = Struct("<BBBBBB"), Struct("<BBBBBBBHB")
 SIGNED = dialect.MAVLINK_IFLAG_SIGNED
 SETUP_SIGNING: int = dialect.MAVLINK_MSG_ID_SETUP_SIGNING
 
+SIGNATURES = tuple(f"signature_{check.value}" for check in SignatureCheck if check is not SignatureCheck.GOOD)
 CAUSES = (
     "bad_crc",  # checksum wrong
     "truncated",  # a datagram ended inside a frame
@@ -29,7 +30,7 @@ CAUSES = (
     "incompatible",  # incompatibility flags that nobody has defined yet
     "garbage_bytes",  # bytes outside any frame
     "setup_signing",  # a key is never taken from the network
-    *(f"signature_{verdict.value}" for verdict in SignatureCheck if verdict is not SignatureCheck.GOOD),
+    *SIGNATURES,
 )
 
 
@@ -165,7 +166,7 @@ class Framer:
         return Packet(system, component, sequence, number, layout.name, value, raw, signed), ""
 
 
-_WHOLE = frozenset(cause for cause in CAUSES if cause.startswith("signature_") or cause == "setup_signing")
+_WHOLE = frozenset({*SIGNATURES, "setup_signing"})
 
 
 def _declared(data: bytes, at: int) -> int:

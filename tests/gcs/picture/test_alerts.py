@@ -13,7 +13,7 @@ from gcs.picture.alerts import CLEAR_NS, Alerts, Finding
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec
 from onboard.wire.bus import messages
-from onboard.wire.bus.messages import AgentStage, CommandState, Phase, Severity
+from onboard.wire.bus.messages import AgentStage, CommandState, LinkLock, Phase, Severity
 from tests.support.sample_messages import (
     START_NS,
     Tower,
@@ -87,6 +87,52 @@ def test_what_health_tells_is_raised_and_cleared(changes, name, severity):
     tower.fly(3.0, 2)
     assert tower.alerts() == set()
     assert [a.name for a in tower.picture.past_alerts] == [name]
+
+
+@pytest.mark.parametrize(
+    ("counter", "lock", "name", "severity", "said"),
+    [
+        ("signature_stale", LinkLock.SIGNED, "signature_stale:2", Severity.ERROR, "in the past"),
+        ("signature_future", LinkLock.SIGNED, "signature_future:2", Severity.ERROR, "in the future"),
+        ("signature_wrong", LinkLock.SIGNED, "signature_wrong:2", Severity.WARNING, "another key"),
+        ("signature_unsigned", LinkLock.REFUSED, "signature_unsigned:2", Severity.ERROR, "is not heard"),
+        ("signature_replayed", LinkLock.SIGNED, "signature_replayed:2", Severity.WARNING, "again"),
+        ("bus_limited_state", LinkLock.OPEN, "flooded:2", Severity.WARNING, "bus state 40"),
+        ("link_limited_link", LinkLock.OPEN, "flooded:2", Severity.WARNING, "link link 40"),
+        ("log_lost", LinkLock.OPEN, "records_lost:2", Severity.WARNING, "log lost 40"),
+        ("stamps_unsaved", LinkLock.OPEN, "records_lost:2", Severity.WARNING, "stamps unsaved 40"),
+    ],
+)
+def test_a_counter_of_trouble_is_an_alert_while_it_grows(counter, lock, name, severity, said):
+    tower = Tower()
+    tower.fly(2.0, 2, counters={counter: 37, "control_steps": 1})
+    tower.fly(8.0, 2, counters={counter: 37, "control_steps": 500})  # since long ago, and no more
+    assert tower.alerts() == set()
+    for n in (38, 39, 40):
+        tower.fly(0.5, 2, counters={counter: n}, link_lock=lock)
+    alert = tower.picture.alerts[0]
+    assert (alert.name, alert.severity, bool(alert.advice)) == (name, severity, True)
+    assert said in alert.text
+    assert "40" in alert.text
+    tower.fly(7.0, 2, counters={counter: 40})
+    assert tower.alerts() == set()
+
+
+def test_an_agent_that_was_started_again_begins_its_counters_anew():
+    tower = Tower()
+    tower.fly(8.0, 2, counters={"signature_wrong": 40})
+    tower.fly(1.0, 2, counters={"signature_wrong": 3}, nonce=77)
+    assert "signature_wrong:2" in tower.alerts()
+
+
+def test_a_stranger_who_counts_a_thousand_things_does_not_fill_the_picture():
+    tower = Tower()
+    for n in range(40):
+        tower.hear(health(2, tower.now_ns, counters={f"limited_{n}_{i}": n + 1 for i in range(200)}))
+        tower.wait(0.1)
+    assert len(tower.vehicle(2).growing) == 64
+    tower.fly(7.0, 2)
+    assert tower.vehicle(2).growing == ()
 
 
 def test_a_vehicle_that_acts_in_a_mode_that_does_not_follow_is_told():

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 import sys
+from pathlib import Path
 
+import msgspec
 import pytest
 
 from onboard.agent.config import AgentConfig
-from onboard.agent.preflight import Mark, Row, Sight, judge, table
+from onboard.agent.preflight import Mark, Row, Sight, judge, look, table
 from onboard.autopilot.base import Telemetry
 from onboard.runtime.bus_security import BusSecurity, Lock
+from onboard.runtime.bus_zenoh import open_zenoh
+from onboard.wire.bus.messages import LinkLock
 from onboard.wire.mavlink.modes import Kind
+from tests.support.field_keys import Field
 from tests.support.real_time import patience
 
 GOOD = Sight(
@@ -83,6 +89,49 @@ def test_each_trouble_has_its_row_with_what_to_do(
 
 def test_in_the_field_an_unsigned_link_is_a_warning() -> None:
     assert row(GOOD, "signing key", AgentConfig(field=True)).mark is Mark.WARN
+
+
+@pytest.mark.parametrize(
+    ("lock", "mark", "said"),
+    [
+        (LinkLock.SIGNED, Mark.PASS, "locked"),
+        (LinkLock.REFUSED, Mark.FAIL, "signature_unsigned 9, signature_wrong 4"),
+        (LinkLock.SILENT, Mark.WARN, "no autopilot"),
+    ],
+)
+def test_the_lock_of_the_links_has_a_row_of_its_own(lock: LinkLock, mark: Mark, said: str) -> None:
+    bad = {"signature_wrong": 4, "signature_unsigned": 9, "bad_crc": 1}
+    found = row(GOOD._replace(signed=True, link_lock=lock, bad_frames=bad), "link lock")
+    assert (found.mark, said in found.found) == (mark, True)
+    assert all(other.name != "link lock" for other in judge(AgentConfig(), GOOD._replace(link_lock=lock)))
+
+
+def test_a_listener_that_lets_one_in_and_answers_nothing_is_a_failure() -> None:
+    unserved = "the listener answers nothing: is vehicle-9.1 in its roster?"
+    found = row(GOOD._replace(unserved=unserved), "bus")
+    assert (found.mark, unserved in found.found, "roster" in found.remedy) == (Mark.FAIL, True, True)
+
+
+@pytest.mark.real
+async def test_the_check_of_a_member_that_was_revoked_says_so(tmp_path: Path) -> None:
+    field = Field(tmp_path / "keys").make()
+    old = tmp_path / "old"
+    shutil.copytree(field.config("vehicle-3").parent, old)
+    field.change("id = 3\n", "id = 3\nkey = 2\n")
+    field.make()
+    ground = await open_zenoh(listen=True, config_file=field.config("ground"))
+    try:
+        config = AgentConfig(
+            id=3, game="range", link="udpin://127.0.0.1:0", zenoh=str(old / "zenoh.json5")
+        )
+        seen = await look(config, 0.2)
+        assert row(seen, "bus").mark is Mark.FAIL
+        assert "is vehicle-3.1 in its roster?" in row(seen, "bus").found
+        good = await look(msgspec.structs.replace(config, zenoh=str(field.config("vehicle-3"))), 0.2)
+        assert row(good, "bus").mark is Mark.PASS
+        assert row(good, "bus lock").found.startswith("locked: vehicle-3.2")
+    finally:
+        await ground.close()
 
 
 def test_the_lock_of_the_bus_has_a_row_of_its_own() -> None:

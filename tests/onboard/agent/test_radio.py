@@ -5,6 +5,7 @@ from __future__ import annotations
 from onboard.agent.core.events import ANY_PEER, Instant, LinkFacts, Outbox, Send
 from onboard.agent.core.mavlink_radio import Radio
 from onboard.runtime.loop import EPOCH_NS
+from onboard.wire.bus.messages import LinkLock
 from onboard.wire.mavlink.commands import OwnHeartbeat
 from onboard.wire.mavlink.frames import Packet, Sender
 from onboard.wire.mavlink.signing import MemoryStore, Signing
@@ -48,6 +49,22 @@ def test_answers_go_to_the_autopilots_peer_and_to_nobody_elses() -> None:
     air.hear(beat(system=255, component=190), STRANGER)
     assert len(air.heard) == 2
     assert [send.peer for send in air.sent()] == [AUTOPILOT]
+
+
+def test_the_lock_of_the_links_tells_silent_signed_and_refused() -> None:
+    assert Air().radio.lock is LinkLock.OPEN
+    air = Air(signing=Signing(KEY, MemoryStore()))
+    assert air.radio.lock is LinkLock.SILENT
+    air.hear(beat(), AUTOPILOT)  # without a signature
+    assert air.radio.lock is LinkLock.REFUSED
+    own = Signing(KEY, MemoryStore())
+    air.hear(beat(signing=own), AUTOPILOT)
+    assert air.radio.lock is LinkLock.SIGNED
+    air.hear(beat(system=7), STRANGER)  # somebody else's, beside a signed one: the link is still locked
+    assert air.radio.lock is LinkLock.SIGNED
+    late = Instant(2.5, EPOCH_NS + 2_500_000_000)
+    air.radio.take(0, AUTOPILOT, beat(signing=Signing(bytes(32), MemoryStore())), late)  # another key since
+    assert air.radio.lock is LinkLock.REFUSED
 
 
 def test_a_second_autopilot_with_the_same_id_draws_nothing_to_itself_and_is_said() -> None:
