@@ -14,20 +14,29 @@ for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 import typer  # noqa: E402  (threads are set before anything imports NumPy)
 
 from gcs.options import BUS, STATION, Options, takes  # noqa: E402
+from onboard.config.bounds import ListenTime, SystemId, WaitTime  # noqa: E402
 from onboard.config.strict import ConfigError  # noqa: E402
+from onboard.runtime.options import VersionOption, group, shipped, value  # noqa: E402
 from onboard.runtime.program import run  # noqa: E402
+from onboard.runtime.resources import SCENARIOS, shipped_file  # noqa: E402
 from onboard.wire.bus.messages import CommandKind, Role  # noqa: E402
 
-app = typer.Typer(
-    help="The ground station: picture, console, commands, recording, replay, report.",
-    epilog="Without a command: the console. Beside `sim-bridge serve SCENARIO` it needs no option.",
-    add_completion=False,
-    pretty_exceptions_enable=False,
-    rich_markup_mode=None,
+app = group(
+    "The ground station: picture, console, commands, recording, replay, report.",
+    epilog="Without a command: the console. Beside `sim-bridge serve SCENARIO` it needs no option."
+    " Examples: gcs | gcs status --json | gcs command abort --all | gcs report runs/2026-…",
 )
-game_app = typer.Typer(help="Games with the ground station as their master.", no_args_is_help=True)
+game_app = group(
+    "Games with the ground station as their master.",
+    no_args_is_help=True,
+    epilog="Example: gcs game run one-on-one",
+)
 app.add_typer(game_app, name="game")
-keys_app = typer.Typer(help="Keys of a field: who may do what on the bus.", no_args_is_help=True)
+keys_app = group(
+    "Keys of a field: who may do what on the bus.",
+    no_args_is_help=True,
+    epilog="Examples: gcs keys init roster.toml | gcs keys show roster-keys | gcs keys sheet roster-keys",
+)
 app.add_typer(keys_app, name="keys")
 
 RunArgument = Annotated[Path, typer.Argument(help="Run folder, or a recording in it.")]
@@ -47,7 +56,7 @@ def _play(program: Coroutine[Any, Any, int]) -> int:
 
 @app.callback(invoke_without_command=True)
 @takes(*STATION)
-def console(options: Options) -> int:
+def console(options: Options, version: VersionOption = False) -> int:
     """The ground station: picture, console, commands, recording, replay, report."""
     from gcs import programs
 
@@ -55,31 +64,33 @@ def console(options: Options) -> int:
     return _play(programs.watch(found, record=found.recording.enabled, plain=bool(options.plain)))
 
 
-@app.command()
+@app.command(epilog="Examples: gcs status | gcs status --json --wait 5")
 @takes(*BUS)
 def status(
     options: Options,
     json: Annotated[bool, typer.Option("--json", help="One JSON object.")] = False,
-    wait: Annotated[float, typer.Option("--wait", help="How long to listen first [s].")] = 1.5,
+    wait: Annotated[
+        float, value(ListenTime, "--wait", words="How long to listen first [s].", unit="S")
+    ] = 1.5,
 ) -> int:
     """Print the picture once; exit 1 when nobody is heard."""
     from gcs import programs
 
-    if not 0.0 <= wait <= 60.0:
-        raise ConfigError(f"--wait: found {wait:g}, expected 0 to 60 s")
     return _play(programs.status(options.settings(), json=json, wait_s=wait))
 
 
-@app.command()
+@app.command(
+    epilog="Examples: gcs command start --all | gcs command hold 2 3 | gcs command abort --role pursuer"
+)
 @takes(*BUS, "operator")
 def command(
     options: Options,
-    kind: Annotated[CommandKind, typer.Argument(help="What to do.")],
-    ids: Annotated[list[int] | None, typer.Argument(help="Vehicles.")] = None,
+    kind: Annotated[CommandKind, value(CommandKind, words="What to do.")],
+    ids: Annotated[list[int] | None, value(SystemId, words="Vehicles.", unit="IDS")] = None,
     everybody: Annotated[bool, typer.Option("--all", help="All that are heard or in the game.")] = False,
-    role: Annotated[Role | None, typer.Option("--role", help="Every vehicle of a role.")] = None,
+    role: Annotated[Role | None, value(Role, "--role", words="Every vehicle of a role.")] = None,
     yes: Annotated[bool, typer.Option("--yes", help="Do not ask before return and land.")] = False,
-    within: Annotated[float, typer.Option("--within", help="How long to try [s].")] = 10.0,
+    within: Annotated[float, value(WaitTime, "--within", words="How long to try [s].", unit="S")] = 10.0,
 ) -> int:
     """Command vehicles; exit 0 only when every one of them has confirmed."""
     from gcs import programs
@@ -87,13 +98,11 @@ def command(
     given = [name for name, there in (("ids", ids), ("--all", everybody), ("--role", role)) if there]
     if len(given) != 1:
         raise ConfigError(f"whom: found {' and '.join(given) or 'nothing'}, expected ids, --all or --role")
-    if not 0.1 <= within <= 3600.0:
-        raise ConfigError(f"--within: found {within:g}, expected 0.1 to 3600 s")
     order = programs.Order(kind, tuple(ids or ()), role, within)
     return _play(programs.command(options.settings(), order, sure=yes))
 
 
-@app.command()
+@app.command(epilog="Example: gcs record --runs /data/runs")
 @takes(*BUS, "runs")
 def record(options: Options) -> int:
     """Record everything that is heard, without a console, until ctrl-C or SIGTERM."""
@@ -102,7 +111,10 @@ def record(options: Options) -> int:
     return _play(programs.watch(options.settings(), record=True, plain=True))
 
 
-@app.command()
+@app.command(
+    epilog="Examples: gcs replay runs/2026-… | gcs replay runs/2026-… --plain"
+    " | gcs replay runs/2026-… --decide"
+)
 @takes("config", "plain")
 def replay(
     options: Options,
@@ -124,7 +136,7 @@ def replay(
     return programs.replay(run, options.settings().alerts, plain=bool(options.plain))
 
 
-@app.command()
+@app.command(epilog="Example: gcs report runs/2026-…")
 @takes("config")
 def report(options: Options, run: RunArgument) -> int:
     """Write the run's report: one page for any browser, without network, and pictures."""
@@ -133,11 +145,18 @@ def report(options: Options, run: RunArgument) -> int:
     return programs.report(run, options.settings().alerts)
 
 
-@game_app.command("run")
+@game_app.command(
+    "run", epilog="Examples: gcs game run one-on-one | gcs game run mine.toml --wait --config gcs.toml"
+)
 @takes(*STATION)
 def game_run(
     options: Options,
-    scenario: Annotated[Path, typer.Argument(help="Scenario file.")],
+    scenario: Annotated[
+        Path,
+        typer.Argument(
+            help="Scenario file, or the name of a shipped one.", autocompletion=shipped(SCENARIOS)
+        ),
+    ],
     start: Annotated[
         bool, typer.Option("--start/--wait", help="Start when all are ready, or wait for `start all`.")
     ] = True,
@@ -149,12 +168,12 @@ def game_run(
     from gcs import programs
     from onboard.game.scenario import load
 
-    found, played = options.settings(), load(scenario)
+    found, played = options.settings(), load(shipped_file(scenario, SCENARIOS))
     plain = bool(options.plain)
     return _play(programs.play(found, played, plain=plain, auto_start=start, takes_over=take_over))
 
 
-@keys_app.command("init")
+@keys_app.command("init", epilog="Example: gcs keys init roster.toml")
 def keys_init(
     roster: Annotated[Path, typer.Argument(help="Roster of the field: see configs/field/roster.toml.")],
     folder: Annotated[Path | None, typer.Option("--folder", help="Where to [beside it, NAME-keys].")] = None,
@@ -165,7 +184,7 @@ def keys_init(
     return program.init(roster, folder)
 
 
-@keys_app.command("show")
+@keys_app.command("show", epilog="Example: gcs keys show roster-keys")
 def keys_show(folder: Annotated[Path, typer.Argument(help="Folder of `gcs keys init`.")]) -> int:
     """List who has which certificate, and until when; exit 1 when one has ended."""
     from gcs.keys import program
@@ -173,7 +192,7 @@ def keys_show(folder: Annotated[Path, typer.Argument(help="Folder of `gcs keys i
     return program.show(folder)
 
 
-@keys_app.command("sheet")
+@keys_app.command("sheet", epilog="Example: gcs keys sheet roster-keys")
 def keys_sheet(folder: Annotated[Path, typer.Argument(help="Folder of `gcs keys init`.")]) -> int:
     """Print what to copy where, what to write into each configuration, and who may do what."""
     from gcs.keys import program

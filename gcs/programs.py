@@ -17,9 +17,10 @@ from gcs.picture.command_book import ENDS_A_FLIGHT, SETS_OFF
 from gcs.picture.json_document import to_json
 from gcs.picture.terminal_text import printable
 from gcs.picture.values import Leg, LegState, Picture
-from gcs.session import Session, on_air, version
+from gcs.session import Session, on_air
 from gcs.settings import Settings
 from onboard.config.strict import ConfigError
+from onboard.config.version import version
 from onboard.core.math.constants import NS_PER_S
 from onboard.game.scenario import Scenario
 from onboard.runtime.bus_security import Lock

@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 from collections.abc import AsyncIterator, Callable, Iterable
 from contextlib import AsyncExitStack, asynccontextmanager
-from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,6 +12,7 @@ from gcs.console.source import Key
 from gcs.picture.values import Picture
 from gcs.settings import Settings
 from gcs.station import NAME, Station, StationSetup
+from onboard.config.version import version
 from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.bus_security import BusSecurity, Lock, security_of
 from onboard.runtime.bus_zenoh import ZenohBus, open_zenoh
@@ -21,14 +21,6 @@ from onboard.wire.bus.messages import CommandKind, LinkLock, Severity
 
 if TYPE_CHECKING:
     from gcs.recording.shell import StationRecorder
-
-
-def version() -> str:
-    """The version of this distribution; "" in a tree that is not installed."""
-    try:
-        return metadata.version("apollonius")
-    except metadata.PackageNotFoundError:
-        return ""
 
 
 class Session:

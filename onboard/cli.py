@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import argparse
 import os
+import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -19,8 +21,12 @@ OPTIONS = ("id", "role", "link", "autopilot", "game", "bus", "zenoh", "strategy"
            "may_arm", "dry_run", "log", "events")  # fmt: skip
 
 
+COMPLETES = "_ONBOARD_AGENT_COMPLETE"  # a shell asks what may follow
+COMPLETION = ("--install-completion", "--show-completion")
+
+
 class Parser(argparse.ArgumentParser):
-    """One line for a mistake."""
+    """One line for a mistake; what a value may be is said by its type, as in the configuration file."""
 
     def print_help(self, file: Any = None) -> None:
         """Print the help; unlike argparse, without silence where it cannot be written."""
@@ -35,17 +41,35 @@ def _common() -> Parser:
     common = Parser(add_help=False, argument_default=argparse.SUPPRESS)
     add = common.add_argument
     add("--config", metavar="FILE", help="TOML file; its template is configs/agent.toml")
-    add("--id", type=int, metavar="N", help="the vehicle: MAVLink system id, and name on the bus [2]")
-    add("--role", choices=("evader", "pursuer", "tracker"), help="[pursuer]")
+    add("--id", type=_typed("SystemId", "--id"), metavar="N",
+        help="the vehicle: MAVLink system id, and name on the bus [2]")  # fmt: skip
+    add("--role", type=_typed("Role", "--role"), metavar="ROLE", help="evader, pursuer or tracker [pursuer]")
     add("--link", action="append", metavar="URL",
         help="udpin://HOST:PORT, udpout://HOST:PORT or serial:///dev/NAME:BAUD; given twice, the second "
         "stands by [udpin://127.0.0.1:14539+id]")  # fmt: skip
-    add("--autopilot", choices=("auto", "velocity", "arduplane", "arduplane-plain", "mavsdk"),
-        help="which adapter flies it [auto: the one that fits its heartbeat]")  # fmt: skip
+    add("--autopilot", type=_typed("AdapterChoice", "--autopilot"), metavar="ADAPTER",
+        help="which adapter flies it: auto, velocity, arduplane, arduplane-plain, mavsdk [auto: the one that "
+        "fits its heartbeat]")  # fmt: skip
     add("--game", metavar="NAME", help="the game to join on the bus [game]")
     add("--bus", metavar="ENDPOINT", help="Zenoh endpoint [tcp/127.0.0.1:7447]")
     add("--zenoh", metavar="FILE", help="Zenoh configuration (JSON5): TLS, access control, routers")
     return common
+
+
+def _typed(kind: str, name: str) -> Callable[[str], Any]:
+    """Reads a value by a type of the agent's configuration, which is imported only where the option is typed.
+
+    Gives what the configuration is written in: an enum's word, not the enum. Raises ConfigError.
+    """
+
+    def read(text: str) -> Any:
+        from onboard.agent import config
+        from onboard.config.option_value import parsed
+
+        found = parsed(text, getattr(config, kind), name)
+        return getattr(found, "value", found)
+
+    return read
 
 
 def parser() -> Parser:
@@ -57,7 +81,7 @@ def parser() -> Parser:
         description="Fly one vehicle of a pursuit-evasion game through its autopilot. Every setting has a "
         "default that works beside `sim-bridge serve` on the same machine.",
         epilog=f"Examples: {NAME} --role evader --id 1 --take-control | {NAME} --id 2 --dry-run | "
-        f"{NAME} check --config /etc/apollonius/agent.toml",
+        f"{NAME} check --config /etc/apollonius/agent.toml | {NAME} --show-completion",
         allow_abbrev=False,
     )
     add = top.add_argument
@@ -75,6 +99,8 @@ def parser() -> Parser:
         help="record everything that happens in this file, for gcs replay --decide")  # fmt: skip
     add("--timing", metavar="FILE", default=given, help=argparse.SUPPRESS)
     add("--version", action="store_true", help="print the version and exit")
+    for option, words in zip(COMPLETION, ("install", "print"), strict=True):
+        add(option, action="store_true", help=f"{words} the completion of this program for the current shell")
     commands = top.add_subparsers(dest="command", metavar="check", parser_class=Parser)
     check = commands.add_parser(
         "check",
@@ -82,17 +108,25 @@ def parser() -> Parser:
         help="preflight: what is in order and what is not",
         description="Preflight: link, autopilot, rates, clock, parameters, bus, keys, disk. It commands "
         "nothing; exit code 1 if anything fails.",
+        epilog=f"Examples: {NAME} check --id 2 | {NAME} check --config agent.toml --seconds 20",
         allow_abbrev=False,
     )
-    check.add_argument("--seconds", type=float, default=8.0, metavar="S", help="how long to listen [8]")
+    check.add_argument(
+        "--seconds", type=_typed("CheckTime", "--seconds"), default=8.0, metavar="S",
+        help="how long to listen [8]")  # fmt: skip
     return top
 
 
 def run(arguments: list[str] | None = None) -> int:
     """Run the command line; gives the exit code. Raises ConfigError for a mistake in a file or option."""
-    given = vars(parser().parse_args(arguments))
+    typed = sys.argv[1:] if arguments is None else arguments
+    if (typed[:1] and typed[0] in COMPLETION) or COMPLETES in os.environ:
+        from onboard.agent.completion import complete
+
+        return complete(parser(), NAME)
+    given = vars(parser().parse_args(typed))
     if given["version"]:
-        from onboard.agent.version import version
+        from onboard.config.version import version
 
         print(version())
         return 0

@@ -11,28 +11,37 @@ for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 
 import typer  # noqa: E402  (threads are set before anything imports NumPy)
 
+from onboard.config.bounds import Epochs, PositiveDuration, Seed, TimeStep  # noqa: E402
 from onboard.config.printable import printable  # noqa: E402
 from onboard.config.strict import ConfigError  # noqa: E402
+from onboard.runtime import options  # noqa: E402
+from onboard.runtime.options import VersionOption  # noqa: E402
 from onboard.runtime.program import run  # noqa: E402
+from onboard.runtime.resources import AIRCRAFT, SCENARIOS, shipped_file  # noqa: E402
+from sim_bridge.programs.shipped_list import Listed  # noqa: E402
 
 ScenarioArgument = Annotated[
-    Path, typer.Argument(help="Scenario file, or the name of a shipped one (demo, one-on-one …).")
+    Path,
+    typer.Argument(
+        help="Scenario file, or the name of a shipped one (demo, one-on-one …).",
+        autocompletion=options.shipped(SCENARIOS),
+    ),
 ]
-SeedOption = Annotated[int | None, typer.Option(min=0, help="Seed, in place of the scenario's.")]
+SeedOption = Annotated[
+    int | None, options.value(Seed, "--seed", words="Seed, in place of the scenario's.", unit="N")
+]
 BusOption = Annotated[str, typer.Option(help="Zenoh endpoint [tcp/127.0.0.1:7447].")]
 
-app = typer.Typer(
-    help="Plays the autopilots in software, so that everything runs without hardware.",
+app = options.group(
+    "Plays the autopilots in software, so that everything runs without hardware.",
     no_args_is_help=True,
-    add_completion=False,
-    pretty_exceptions_enable=False,
-    rich_markup_mode=None,
+    epilog="Examples: sim-bridge list | sim-bridge fly --fast one-on-one | sim-bridge planar",
 )
 
 
 @app.callback()
-def _root() -> None:
-    """Keeps subcommands subcommands."""
+def _root(version: VersionOption = False) -> None:
+    """Plays the autopilots in software, so that everything runs without hardware."""
 
 
 @app.command(
@@ -42,14 +51,23 @@ def _root() -> None:
 def planar(
     scenarios: Annotated[
         list[Path] | None,
-        typer.Argument(help="Scenario files; none: the ten rows of the paper's Table 1."),
+        typer.Argument(
+            help="Scenario files or names; none: the ten rows of the paper's Table 1.",
+            autocompletion=options.shipped(SCENARIOS.sought_first("table1")),
+        ),
     ] = None,
     strategy: Annotated[
         list[str] | None,
         typer.Option(help="Pursuers' strategy; may be repeated. Default: 'paper' and 'earlier' [37]."),
     ] = None,
-    dt: Annotated[float | None, typer.Option(help="Time step [s], in place of the scenario's.")] = None,
-    horizon: Annotated[float | None, typer.Option(help="Longest game [s], likewise.")] = None,
+    dt: Annotated[
+        float | None,
+        options.value(TimeStep, "--dt", words="Time step [s], in place of the scenario's.", unit="S"),
+    ] = None,
+    horizon: Annotated[
+        float | None,
+        options.value(PositiveDuration, "--horizon", words="Longest game [s], likewise.", unit="S"),
+    ] = None,
     json: Annotated[bool, typer.Option("--json", help="One JSON object a game, nothing else.")] = False,
     figures: Annotated[
         Path | None, typer.Option(help="Folder for pictures of the initial and final stage (PNG and SVG).")
@@ -60,9 +78,9 @@ def planar(
     from onboard.game.plugins import pursuer_strategy
     from sim_bridge.plane_game import program as room
 
-    if dt is not None and not 0.0 < dt <= 1.0:
-        raise ConfigError(f"--dt: found {dt}, expected a time step in (0, 1] s")
-    games = room.within_horizon(room.load_plane(scenarios or room.table1()), horizon)
+    shelf = SCENARIOS.sought_first("table1")
+    paths = [shipped_file(one, shelf) for one in scenarios or ()]
+    games = room.within_horizon(room.load_plane(paths or room.table1()), horizon)
     names = strategy or [room.THIS_PAPER, room.EARLIER]
     for name in names:
         pursuer_strategy(name)
@@ -117,14 +135,14 @@ def serve(
     ports: Annotated[Path | None, typer.Option(help="Write the agents' ports to this JSON file.")] = None,
 ) -> None:
     """Play the autopilots of a scenario on UDP in real time, with its sensor and master on the bus."""
-    from sim_bridge.programs.fly import scenario_file
     from sim_bridge.programs.serve import Options
     from sim_bridge.programs.serve import serve as run_server
 
-    options = Options(
+    chosen = Options(
         game=game, bus=bus, listen=listen, zenoh=zenoh, referee=referee, once=once, seed=seed, ports=ports
     )
-    run_server(scenario_file(scenario), options, lambda line: print(printable(line), flush=True))
+    path = shipped_file(scenario, SCENARIOS)
+    run_server(path, chosen, lambda line: print(printable(line), flush=True))
 
 
 @app.command(epilog="Examples: sim-bridge fly demo | sim-bridge fly --fast --seed 3 my.toml --runs /tmp/runs")
@@ -140,8 +158,8 @@ def fly(
     """Fly a whole game, agents included, and leave a run folder; exit 1 when it ended without a verdict."""
     from sim_bridge.programs import fly as room
 
-    options = room.Options(fast, seed, runs, bus, report, quiet)
-    flown = room.fly(room.scenario_file(scenario), options, lambda line: print(printable(line), flush=True))
+    path, chosen = shipped_file(scenario, SCENARIOS), room.Options(fast, seed, runs, bus, report, quiet)
+    flown = room.fly(path, chosen, lambda line: print(printable(line), flush=True))
     print(room.story(flown))
     if flown.summary.verdict not in ("captured", "arrived", "escaped"):
         raise typer.Exit(1)
@@ -163,8 +181,8 @@ def accept(
     """Fly stories against a real autopilot and its simulated twin; exit 1 when they differ."""
     from sim_bridge.programs import accept as room
 
-    options = room.Options(tlog=tlog, only=tuple(only or ()), yes=yes)
-    rows = room.accept(url, options, lambda line: print(line, flush=True), typer.confirm)
+    chosen = room.Options(tlog=tlog, only=tuple(only or ()), yes=yes)
+    rows = room.accept(url, chosen, lambda line: print(line, flush=True), typer.confirm)
     differ = sum(not row.same for row in rows)
     print(room.table(rows))
     print(f"\n{len(rows) - differ} of {len(rows)} as the simulated twin; the flight is in {tlog}")
@@ -172,11 +190,25 @@ def accept(
         raise typer.Exit(1)
 
 
-scenario_app = typer.Typer(help="Make and check scenario files.", no_args_is_help=True, rich_markup_mode=None)
+@app.command("list", epilog="Examples: sim-bridge list | sim-bridge list strategies")
+def list_(
+    what: Annotated[Listed | None, options.value(Listed, words="What.")] = None,
+) -> None:
+    """List scenarios, strategies, aircraft and autopilots by the names that commands and files take."""
+    from sim_bridge.programs.shipped_list import lines
+
+    print("\n".join(lines(what)))
+
+
+scenario_app = options.group(
+    "Make and check scenario files.",
+    no_args_is_help=True,
+    epilog="Examples: sim-bridge scenario new mine.toml | sim-bridge scenario check mine.toml",
+)
 app.add_typer(scenario_app, name="scenario")
 
 
-@scenario_app.command("new")
+@scenario_app.command("new", epilog="Example: sim-bridge scenario new mine.toml")
 def scenario_new(
     file: Annotated[Path, typer.Argument(help="File to write; it must not exist.")],
 ) -> None:
@@ -186,53 +218,67 @@ def scenario_new(
     print(new(file))
 
 
-@scenario_app.command("check")
+@scenario_app.command(
+    "check", epilog="Examples: sim-bridge scenario check mine.toml | sim-bridge scenario check demo"
+)
 def scenario_check(scenario: ScenarioArgument) -> None:
     """Check a scenario; print turn radii, free cones and the expected duration."""
     from onboard.game.scenario import load
-    from sim_bridge.programs.fly import demand_strategies, scenario_file
+    from sim_bridge.programs.fly import demand_strategies
     from sim_bridge.programs.scenario_tools import check
 
-    file = scenario_file(scenario)
+    file = shipped_file(scenario, SCENARIOS)
     found = load(file)
     demand_strategies(found, str(file))
     print(check(found))
 
 
-@app.command()
+@app.command(epilog="Examples: sim-bridge design | sim-bridge design coordinated --figures out")
 def design(
     aircraft: Annotated[
-        Path | None, typer.Argument(help="Aircraft file; none: configs/aircraft/nose.toml.")
-    ] = None,
+        Path,
+        typer.Argument(
+            help="Aircraft file, or the name of a shipped one.", autocompletion=options.shipped(AIRCRAFT)
+        ),
+    ] = Path("nose"),
     figures: Annotated[Path | None, typer.Option(help="Folder for Bode and step plots.")] = None,
 ) -> None:
     """Print margins, bandwidth and step-response figures of the configured aircraft's loops."""
-    from onboard.runtime.resources import configs
     from sim_bridge.studies.design import design as report_on
 
     if figures is not None:
         _folder(figures)
-    print(report_on(aircraft or configs() / "aircraft" / "nose.toml", figures))
+    print(report_on(shipped_file(aircraft, AIRCRAFT), figures))
 
 
-@app.command(epilog="Examples: sim-bridge predict | sim-bridge predict track.csv --figures out")
+@app.command(
+    epilog="Examples: sim-bridge predict | sim-bridge predict track.csv --figures out"
+    " | sim-bridge predict one-on-one",
+)
 def predict(
     source: Annotated[
-        Path | None, typer.Argument(help="Track (CSV) or scenario; none: the example of 3.5.2 and a weave.")
+        Path | None,
+        typer.Argument(
+            help="Track (CSV), or scenario; none: the example of 3.5.2 and a weave.",
+            autocompletion=options.shipped(SCENARIOS),
+        ),
     ] = None,
     figures: Annotated[Path | None, typer.Option(help="Folder for figures.")] = None,
     json: Annotated[bool, typer.Option("--json", help="JSON lines in place of tables.")] = False,
-    seed: Annotated[int, typer.Option(help="Seed of training and noise.")] = 1,
+    seed: Annotated[int, options.value(Seed, "--seed", words="Seed of training and noise.", unit="N")] = 1,
     printed: Annotated[
         bool, typer.Option("--printed", help="Train the example by the printed rule (27)-(28).")
     ] = False,
-    epochs: Annotated[int, typer.Option(help="Epochs of the paper's training.")] = 1000,
+    epochs: Annotated[
+        int, options.value(Epochs, "--epochs", words="Epochs of the paper's training.", unit="N")
+    ] = 1000,
 ) -> None:
     """Compare predictors on a recorded or simulated track: a table and a figure."""
     from sim_bridge.studies.predict import predict as run_predict
 
     if figures is not None:
         _folder(figures)
+    source = None if source is None else shipped_file(source, SCENARIOS)
     run_predict(source, figures, json, seed, printed, epochs)
 
 

@@ -43,6 +43,7 @@ Horizon = Annotated[float, Meta(gt=0, le=60, description="a time in (0, 60] s")]
 TakeOffHeight = Annotated[float, Meta(ge=2, le=500, description="2 to 500 m above home")]
 LinkId = Annotated[int, Meta(ge=0, le=255, description="a link id from 0 to 255")]
 FileSize = Annotated[float, Meta(ge=1, le=1e5, description="1 to 100000 MB")]
+CheckTime = Annotated[float, Meta(ge=0.5, le=600, description="0.5 to 600 s")]
 Links = Annotated[tuple[str, ...], Meta(max_length=2, description="at most two links")]
 
 

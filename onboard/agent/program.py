@@ -15,11 +15,12 @@ from pathlib import Path
 from onboard.agent.config import AgentConfig
 from onboard.agent.opening import close_bus, master_of, open_bus, open_links, signing_of
 from onboard.agent.shell import Agent, Equipment
-from onboard.agent.version import version
 from onboard.agent.written_files import WrittenFiles
+from onboard.config.version import version
 from onboard.game.route_file import load_route
 from onboard.runtime.clock import RealClock
 from onboard.runtime.protocols import Link
+from onboard.runtime.resources import ROUTES, shipped_file
 from onboard.runtime.systemd import Notifier
 from onboard.wire.bus.messages import Role
 
@@ -38,7 +39,7 @@ async def _fly(config: AgentConfig, timing: Path | None) -> int:
     closed = True
     try:
         signing = signing_of(config, files.stamps)
-        route = load_route(Path(config.route)) if config.role is Role.TRACKER else None
+        route = load_route(shipped_file(Path(config.route), ROUTES)) if config.role is Role.TRACKER else None
         links = await open_links(config)
         bus = await open_bus(config)
         notifier = Notifier(clock)

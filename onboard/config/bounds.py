@@ -37,6 +37,13 @@ PitchDeg = Annotated[float, Meta(ge=-90, le=90, description="an angle in [−90,
 YawDeg = Annotated[float, Meta(ge=-360, le=360, description="an angle in [−360, 360] deg")]
 TurnRateDeg = Annotated[float, Meta(gt=0, le=3600, description="a positive rate [deg/s], at most 3600")]
 
+TimeStep = Annotated[float, Meta(gt=0, le=1, description="a time step in (0, 1] s")]
+Epochs = Annotated[int, Meta(ge=1, le=1_000_000, description="a whole number from 1 to 1 000 000")]
+Count = Annotated[int, Meta(ge=1, le=1_000_000, description="a whole number from 1 to 1 000 000")]
+Flights = Annotated[int, Meta(ge=2, le=1_000_000, description="a whole number from 2 to 1 000 000")]
+ListenTime = Annotated[float, Meta(ge=0, le=600, description="0 to 600 s")]
+WaitTime = Annotated[float, Meta(ge=0.1, le=3600, description="0.1 to 3600 s")]
+
 SystemId = Annotated[int, Meta(ge=1, le=250, description="a MAVLink system id from 1 to 250")]
 Seed = Annotated[int, Meta(ge=0, le=2**63 - 1, description="a whole number from 0 to 2^63 − 1")]
 GpsFix = Annotated[int, Meta(ge=0, le=6, description="a MAVLink GPS_FIX_TYPE from 0 to 6")]

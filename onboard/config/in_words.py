@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from difflib import get_close_matches
+from enum import Enum
 from typing import Any
 
 from msgspec import inspect
@@ -22,23 +24,46 @@ def shown(value: Any) -> str:
     return text if len(text) <= SHOWN else f"{text[:SHOWN]}…"
 
 
+def nearest(found: object, known: Iterable[str]) -> str:
+    """`; did you mean 'hold'?` where one of the known words is near what was found, else nothing."""
+    near = get_close_matches(str(found).lower(), list(known), n=1, cutoff=0.7)
+    return f"; did you mean '{near[0]}'?" if near else ""
+
+
+def keys_of(kind: Any, steps: Sequence[int | str]) -> tuple[str, ...]:
+    """The keys that a table takes at a place inside a type; none where no table is there."""
+    node = bare(_at(kind, steps) or inspect.AnyType())
+    return tuple(field.encode_name for field in node.fields) if isinstance(node, inspect.StructType) else ()
+
+
+def choices_of(kind: Any, steps: Sequence[int | str]) -> tuple[str, ...]:
+    """The words of an enum at a place inside a type; none where there is no enum."""
+    node = bare(_at(kind, steps) or inspect.AnyType())
+    return tuple(map(_word, node.cls)) if isinstance(node, inspect.EnumType) else ()
+
+
 def expected(kind: Any, steps: Sequence[int | str], *, another_type: bool) -> str:
     """What a type allows at a place inside it: the description of the type there, or what its bounds say.
 
     `steps` are keys of tables and indices of lists, from the outside in. Where a value of another type was
     found, the type comes before its description: "a number: zero or more [m/s]".
     """
-    node: inspect.Type | None = inspect.type_info(kind)
-    for step in steps:
-        node = _inside(node, step) if node is not None else None
+    node = _at(kind, steps)
     if node is None:
         return "another value"
-    words, plain = _described(node), _described(_bare(node)).partition(" in ")[0].partition(" of ")[0]
+    words, plain = _described(node), _described(bare(node)).partition(" in ")[0].partition(" of ")[0]
     return f"{plain}: {words}" if another_type and not words.startswith(plain) else words
 
 
+def _at(kind: Any, steps: Sequence[int | str]) -> inspect.Type | None:
+    node: inspect.Type | None = inspect.type_info(kind)
+    for step in steps:
+        node = _inside(node, step) if node is not None else None
+    return node
+
+
 def _inside(node: inspect.Type, step: int | str) -> inspect.Type | None:
-    node = _bare(node)
+    node = bare(node)
     if isinstance(node, inspect.StructType):
         return next((field.type for field in node.fields if field.encode_name == step), None)
     if isinstance(node, (inspect.VarTupleType, inspect.ListType)):
@@ -48,7 +73,7 @@ def _inside(node: inspect.Type, step: int | str) -> inspect.Type | None:
     return None
 
 
-def _bare(node: inspect.Type) -> inspect.Type:
+def bare(node: inspect.Type) -> inspect.Type:
     """The type itself, without its description and without `| None`."""
     while isinstance(node, (inspect.Metadata, inspect.UnionType)):
         if isinstance(node, inspect.Metadata):
@@ -69,7 +94,7 @@ def _described(node: inspect.Type) -> str:
     if isinstance(node, inspect.IntType):
         return "a whole number" + _interval(node)
     if isinstance(node, inspect.EnumType):
-        return "one of: " + ", ".join(str(member.value) for member in node.cls)
+        return "one of: " + ", ".join(map(_word, node.cls))
     if isinstance(node, inspect.TupleType):
         return f"{len(node.item_types)} values"
     if isinstance(node, (inspect.VarTupleType, inspect.ListType)):
@@ -78,6 +103,10 @@ def _described(node: inspect.Type) -> str:
         return "text" + _lengths(node, "characters")
     words = {inspect.BoolType: "true or false", inspect.StructType: "a table", inspect.DictType: "a table"}
     return words.get(type(node), "another type")
+
+
+def _word(member: Enum) -> str:
+    return str(member.value)
 
 
 def _interval(node: inspect.FloatType | inspect.IntType) -> str:

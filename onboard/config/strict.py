@@ -160,16 +160,17 @@ def _told(error: msgspec.ValidationError, data: Any, kind: Any, name: str) -> st
     if isinstance(fault, FieldError):
         key = f"{key}.{fault.key}" if key and fault.key else key or fault.key
         return f"{_at(name, key)}: found {fault.found}, expected {fault.expected}"
-    about = _ABOUT_A_FIELD.fullmatch(body)
+    from onboard.config.in_words import choices_of, expected, keys_of, nearest, shown  # only a fault needs it
+
+    about, steps = _ABOUT_A_FIELD.fullmatch(body), _steps(key)
     if about:
         key = f"{key}.{about['field']}" if key else about["field"]
-        unknown = about["what"] == "contains unknown"
-        return f"{_at(name, key)}: {'unknown key' if unknown else 'missing, but required'}"
-    from onboard.config.in_words import expected, shown  # only a faulty file needs it
-
-    steps = _steps(key)
-    words = expected(kind, steps, another_type=", got `" in body)
-    return f"{_at(name, key)}: found {shown(_value_at(data, steps))}, expected {words}"
+        if about["what"] == "missing required":
+            return f"{_at(name, key)}: missing, but required"
+        return f"{_at(name, key)}: unknown key{nearest(about['field'], keys_of(kind, steps))}"
+    words, found = expected(kind, steps, another_type=", got `" in body), _value_at(data, steps)
+    hint = nearest(found, choices_of(kind, steps)) if isinstance(found, str) else ""
+    return f"{_at(name, key)}: found {shown(found)}, expected {words}{hint}"
 
 
 def _at(name: str, key: str) -> str:

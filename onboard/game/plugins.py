@@ -11,6 +11,7 @@ from __future__ import annotations
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any
 
+from onboard.config.in_words import nearest
 from onboard.config.printable import words_of
 from onboard.config.strict import ConfigError
 from onboard.core.game.advance import EvaderStrategy, PursuerStrategy
@@ -40,11 +41,19 @@ def plugin_names() -> tuple[str, ...]:
     return tuple(sorted({point.name for point in entry_points(group=GROUP)}))
 
 
+def plugins() -> list[tuple[str, str]]:
+    """Names that other distributions add, with the distribution and its release."""
+    found = {(point.name, f"{d.name} {d.version}" if (d := point.dist) else point.value)
+             for point in entry_points(group=GROUP)}  # fmt: skip
+    return sorted(found)
+
+
 def _plugin(name: str, role: str, known: list[str]) -> Any:
     points = [point for point in entry_points(group=GROUP) if point.name == name]
     if not points:
-        names = ", ".join([*known, *plugin_names()])
-        raise ConfigError(f"strategy: found '{name}', expected one of: {names}")
+        names = [*known, *plugin_names()]
+        words = f"{', '.join(names)}{nearest(name, names)}"
+        raise ConfigError(f"strategy: found '{name}', expected one of: {words}")
     plugin = _load(points[0])
     found = getattr(plugin, "role", None)
     if found != role:

@@ -35,6 +35,7 @@ from onboard.config.bounds import (
     Share,
     Speed,
     SystemId,
+    TimeStep,
     TurnRateDeg,
     YawDeg,
 )
@@ -86,8 +87,6 @@ class Firmware(Enum):
     RECORDED = "recorded"  # ArduPilot 4.5.6, PX4 1.16
     NEWER = "newer"  # ArduPilot 4.7, PX4 1.18
 
-
-TimeStep = Annotated[float, msgspec.Meta(gt=0.0, le=1.0, description="a time step in (0, 1] s")]
 
 RULE_KEYS = {
     "R": Key(PositiveDistance, 2.0),

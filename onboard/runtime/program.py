@@ -81,6 +81,8 @@ def _called_by_typer(app: Callable[..., Any], name: str, typer: Any) -> Any:
     if not isinstance(app, typer.Typer):
         return app()
     command = typer.main.get_command(app)
+    if f"_{name}_COMPLETE".replace("-", "_").upper() in os.environ:
+        return command.main(prog_name=name, standalone_mode=False)  # the shell asks for words
     try:  # not `app()`: it would turn ctrl-C and a reader who left into exit codes of its own
         with command.make_context(name, sys.argv[1:]) as context:
             return command.invoke(context)

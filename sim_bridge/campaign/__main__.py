@@ -13,7 +13,17 @@ for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 
 import typer  # noqa: E402  (threads are set before anything imports NumPy)
 
-app = typer.Typer(add_completion=False, pretty_exceptions_enable=False, rich_markup_mode=None)
+from onboard.config.bounds import Count, Flights, Seed  # noqa: E402
+from onboard.runtime.options import group, shipped, value  # noqa: E402
+from onboard.runtime.resources import ROUTES, SCENARIOS, shipped_file  # noqa: E402
+
+NAME = "python -m sim_bridge.campaign"
+app = group(
+    "The tracking comparison and the spatial games.",
+    add_completion=False,
+    epilog=f"Examples: {NAME} | {NAME} games --seeds 20 | {NAME} encircled",
+)
+SPATIAL = SCENARIOS.sought_first("spatial")
 RESULTS = Path("benchmarks/results")
 Out = Annotated[Path, typer.Option(help="Folder for the results.")]
 
@@ -34,23 +44,24 @@ def both(context: typer.Context) -> None:
     """The spatial game and the tracking comparison; without a command both, with their defaults."""
     if context.invoked_subcommand is None:
         games(200, None, Path("docs/pictures"), RESULTS)
-        tracking(50, None, RESULTS)
+        tracking(50, Path("twenty_km"), RESULTS)
 
 
-@app.command()
+@app.command(epilog=f"Example: {NAME} tracking --seeds 10 --out /tmp/results")
 def tracking(
-    seeds: Annotated[int, typer.Option(help="Flights a way.", min=2)] = 50,
-    route: Annotated[Path | None, typer.Option(help="Route file; default: the twenty kilometres.")] = None,
+    seeds: Annotated[int, value(Flights, "--seeds", words="Flights a way.", unit="N")] = 50,
+    route: Annotated[
+        Path, typer.Option(help="Route file, or the name of a shipped one.", autocompletion=shipped(ROUTES))
+    ] = Path("twenty_km"),
     out: Out = RESULTS,
 ) -> None:
     """Strategy 1, Strategy 2, the intelligent module and straight flight along a timed route."""
     from onboard.game.route_file import load_route
     from onboard.game.scenario import WindSpec
-    from onboard.runtime.resources import configs
     from sim_bridge.campaign.spatial_campaign import output
     from sim_bridge.campaign.tracking import compare, table
 
-    flown = load_route(configs() / "routes" / "twenty_km.toml" if route is None else route)
+    flown = load_route(shipped_file(route, ROUTES))
     text = preface("Tracking a timed route", f"python -m sim_bridge.campaign tracking --seeds {seeds}")
     text += (
         f"\nRoute {flown.name}, mean wind 5 m/s from a direction drawn by the seed, gusts of 3 m/s rms;"
@@ -63,11 +74,14 @@ def tracking(
     print(f"written: {output(out, 'tracking.md', text)}")
 
 
-@app.command()
+@app.command(epilog=f"Example: {NAME} games --seeds 20 --scenario five --out /tmp/results")
 def games(
-    seeds: Annotated[int, typer.Option(help="Games a way and scenario.", min=1)] = 200,
+    seeds: Annotated[int, value(Count, "--seeds", words="Games a way and scenario.", unit="N")] = 200,
     scenario: Annotated[
-        list[Path] | None, typer.Option(help="Scenario files; default: five and six pursuers.")
+        list[Path] | None,
+        typer.Option(
+            help="Scenario files or names; default: five and six pursuers.", autocompletion=shipped(SPATIAL)
+        ),
     ] = None,
     figures: Annotated[Path | None, typer.Option(help="Folder for pictures of the first game.")] = None,
     out: Out = RESULTS,
@@ -79,9 +93,10 @@ def games(
     from sim_bridge.campaign.spatial_game import Evasion
 
     names = ["five", "six"]
-    scenarios = [load(path) for path in scenario] if scenario else [spatial(name) for name in names]
-    if scenario:
-        names = [path.stem for path in scenario]
+    files = [shipped_file(path, SPATIAL) for path in scenario or ()]
+    scenarios = [load(path) for path in files] if files else [spatial(name) for name in names]
+    if files:
+        names = [path.stem for path in files]
     contests = []
     for name, one in zip(names, scenarios, strict=True):
         print(f"{one.name}: {seeds} seeds, both ways", file=sys.stderr)
@@ -98,10 +113,10 @@ def games(
     print(f"written: {output(out, 'games.md', text)}")
 
 
-@app.command()
+@app.command(epilog=f"Example: {NAME} encircled --games 100 --out /tmp/results")
 def encircled(
-    games: Annotated[int, typer.Option(help="Plane games of each kind.", min=1)] = 400,
-    seed: Annotated[int, typer.Option(help="Seed of the places.", min=0)] = 1,
+    games: Annotated[int, value(Count, "--games", words="Plane games of each kind.", unit="N")] = 400,
+    seed: Annotated[int, value(Seed, "--seed", words="Seed of the places.", unit="N")] = 1,
     out: Out = RESULTS,
 ) -> None:
     """How often an encircled evader is captured (outcome 1 of 3.4.2 says: always)."""
@@ -119,21 +134,23 @@ def encircled(
     print(f"written: {output(out, 'encircled.md', text + found + chr(10))}")
 
 
-@app.command()
+@app.command(epilog=f"Example: {NAME} flown --seeds 3 --scenario six --out /tmp/results")
 def flown(
-    seeds: Annotated[int, typer.Option(help="Games a way, from seed 1.", min=1)] = 10,
-    scenario: Annotated[Path | None, typer.Option(help="Scenario file; default: five pursuers.")] = None,
+    seeds: Annotated[int, value(Count, "--seeds", words="Games a way, from seed 1.", unit="N")] = 10,
+    scenario: Annotated[
+        Path,
+        typer.Option(help="Scenario file, or the name of a shipped one.", autocompletion=shipped(SPATIAL)),
+    ] = Path("five"),
     runs: Annotated[Path, typer.Option(help="Folder for the run folders.")] = Path("runs/campaign"),
     out: Out = RESULTS,
 ) -> None:
     """Repeat seeds of the spatial game whole, with agents and MAVLink, by `sim-bridge fly --fast`."""
     from onboard.game.scenario import load
-    from onboard.runtime.resources import configs
     from sim_bridge.campaign.sil_crosscheck import fly_game
     from sim_bridge.campaign.spatial_campaign import output, play_seed
     from sim_bridge.campaign.spatial_game import Evasion
 
-    path = configs() / "scenarios" / "spatial" / "five.toml" if scenario is None else scenario
+    path = shipped_file(scenario, SPATIAL)
     one = load(path)
     lines = [
         "| seed | evader | flown: verdict | time [s] | smallest distance [m] | compiled: verdict | time [s] |"
@@ -156,4 +173,4 @@ def flown(
 if __name__ == "__main__":
     from onboard.runtime.program import run
 
-    run(app, "python -m sim_bridge.campaign")
+    run(app, NAME)

@@ -24,7 +24,6 @@ from sim_bridge.programs import run_folder
 from sim_bridge.world.summary import Summary
 
 REPORT_S = 120.0
-ROOMS = ("flight", "spatial")  # below configs/scenarios/: what is known by its bare name
 
 
 class Options(NamedTuple):
@@ -154,17 +153,3 @@ def story(flown: Flown) -> str:
     if flown.report is not None:
         lines.append(f"report:     {flown.report}  (open it in a browser)")
     return "\n".join(lines)
-
-
-def scenario_file(name: Path) -> Path:
-    """A scenario's path: as given, or a name below the shipped `configs/scenarios/`."""
-    from onboard.runtime.resources import configs
-
-    if name.exists():
-        return name
-    shipped = configs() / "scenarios"
-    for candidate in (str(name), f"{name}.toml", *(f"{room}/{name}.toml" for room in ROOMS)):
-        if (shipped / candidate).is_file():
-            return shipped / candidate
-    known = sorted(p.stem for room in ROOMS for p in (shipped / room).glob("*.toml"))
-    raise ConfigError(f"{name}: no such file; shipped scenarios: {', '.join(known)}")

@@ -123,7 +123,7 @@ def report(aircraft: Aircraft) -> str:
     """Margins, bandwidth and step responses of an aircraft as lines for people."""
     spec = aircraft.spec
     lines = [
-        f"{spec.name}: path model {spec.path}, stepped at {spec.rate_hz:g} Hz",
+        f"{spec.name}: path model {spec.path.value}, stepped at {spec.rate_hz:g} Hz",
         "",
         f"{'axis':6} {'poles':>24} {'w_n':>6} {'damping':>8} {'zero':>8} {'steady':>8}",
     ]

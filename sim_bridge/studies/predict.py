@@ -6,7 +6,6 @@ from pathlib import Path
 
 import msgspec
 
-from onboard.config.strict import ConfigError
 from sim_bridge.studies.comparison import compare, table
 from sim_bridge.studies.paper_example import example, example_table
 from sim_bridge.studies.tracks import recording_of, weave
@@ -24,8 +23,6 @@ def predict(
     example of 3.5.2 and compare on a weave. Prints a table (or JSON lines); draws into `figures`.
 
     `printed` trains the example by the printed rule (27)–(28). Raises ConfigError for bad input."""
-    if epochs < 1:
-        raise ConfigError(f"--epochs: found {epochs}, expected 1 or more")
     if source is None:
         played = example(epochs=epochs, printed=printed)
         for one in played.results if json else ():

@@ -57,7 +57,7 @@ def environment() -> dict[str, str]:
         (("command", "abort"), "whom: found nothing, expected ids, --all or --role"),
         (("command", "abort", "2", "--all"), "whom: found ids and --all, expected"),
         (("command", "hold", "--all", "--within", "0"), "--within: found 0, expected"),
-        (("command", "jump", "--all"), "'jump' is not one of"),
+        (("command", "jump", "--all"), "what to do: found 'jump', expected one of: start, hold"),
         (("status", "--wait", "-1"), "--wait: found -1, expected"),
         (("game", "run", "nowhere.toml", "--plain"), "nowhere.toml: no such file or directory"),
     ],

@@ -15,6 +15,7 @@ class NamedPursuer(NamedTuple):
 
     decide: PursuerStrategy
     table: tuple[Rule[PursuerView], ...]
+    words: str  # what it does, in one line
 
 
 class NamedEvader(NamedTuple):
@@ -22,20 +23,37 @@ class NamedEvader(NamedTuple):
 
     decide: EvaderStrategy
     table: tuple[Rule[EvaderView], ...]
+    words: str  # what it does, in one line
 
 
 PURSUERS: dict[str, NamedPursuer] = {
-    "paper": NamedPursuer(pursuit.pursuer, pursuit.PURSUER),
-    "predictive": NamedPursuer(pursuit.pursuer_predictive, pursuit.PURSUER_PREDICTIVE),
-    "earlier": NamedPursuer(pursuit.pursuer_earlier, pursuit.PURSUER_EARLIER),
-    "pure-pursuit": NamedPursuer(pursuit.pursuer_pure, pursuit.PURE),
-    "constant-bearing": NamedPursuer(pursuit.pursuer_bearing, pursuit.BEARING),
-    "proportional-navigation": NamedPursuer(pursuit.pursuer_navigation, pursuit.NAVIGATION),
+    "paper": NamedPursuer(
+        pursuit.pursuer, pursuit.PURSUER, "rules 4 to 6 of 3.4.2: intercept, greatest approach, parallel"
+    ),
+    "predictive": NamedPursuer(
+        pursuit.pursuer_predictive, pursuit.PURSUER_PREDICTIVE, "paper; rule 6 to where the evader will be"
+    ),
+    "earlier": NamedPursuer(
+        pursuit.pursuer_earlier, pursuit.PURSUER_EARLIER, "the strategy of [37]: intercept, or straight at it"
+    ),
+    "pure-pursuit": NamedPursuer(
+        pursuit.pursuer_pure, pursuit.PURE, "for comparison: always straight at the evader"
+    ),
+    "constant-bearing": NamedPursuer(
+        pursuit.pursuer_bearing, pursuit.BEARING, "for comparison: the line of sight keeps its direction"
+    ),
+    "proportional-navigation": NamedPursuer(
+        pursuit.pursuer_navigation,
+        pursuit.NAVIGATION,
+        "for comparison: turns 3 times as fast as the line of sight",
+    ),
 }
 
 EVADERS: dict[str, NamedEvader] = {
-    "paper": NamedEvader(evasion.evader, evasion.EVADER),
-    "straight": NamedEvader(evasion.straight, evasion.STRAIGHT),
+    "paper": NamedEvader(
+        evasion.evader, evasion.EVADER, "rules 1 to 3 of 3.4.1: free ray, or resultant force"
+    ),
+    "straight": NamedEvader(evasion.straight, evasion.STRAIGHT, "for comparison: straight to the target"),
 }
 
 DEFAULT = "paper"

@@ -54,7 +54,7 @@ def test_defaults_are_the_core_s_unless_the_file_has_its_own() -> None:
 
 
 @pytest.mark.parametrize(("data", "said"), [
-    ({"sweep": 0.5}, "file: sweep: unknown key"),
+    ({"sweep": 0.5}, "file: sweep: unknown key; did you mean 'sweep_deg'?"),
     ({"planar": True}, "file: planar: unknown key"),
     ({"age_s": -1.0}, "file: age_s: found -1.0, expected a positive number"),
     ({"mass": -1.0}, "file: mass: found -1.0, expected a positive number"),

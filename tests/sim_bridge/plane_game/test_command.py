@@ -204,10 +204,10 @@ def test_a_bad_file_among_good_ones_is_found_before_anything_is_played(tmp_path:
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        (["--dt", "0"], "--dt: found 0.0, expected a time step in (0, 1] s"),
-        (["--horizon", "0"], "--horizon: found 0.0, expected a time in (0, 100000] s"),
-        (["--horizon", "nan"], "--horizon: found nan, expected a time in (0, 100000] s"),
-        (["--dt", "nan"], "--dt: found nan, expected a time step in (0, 1] s"),
+        (["--dt", "0"], "--dt: found 0, expected a time step in (0, 1] s"),
+        (["--horizon", "0"], "--horizon: found 0, expected a duration in (0, 86400] s"),
+        (["--horizon", "nan"], "--horizon: found nan, expected a finite number"),
+        (["--dt", "nan"], "--dt: found nan, expected a finite number"),
         (["--strategy", "magic"], "strategy: found 'magic', expected one of: paper, predictive"),
         (["--animate", "film.txt"], "--animate: found 'film.txt', expected a name ending in .gif or .mp4"),
         (["--animate", "nowhere/film.gif"], "--animate: found the folder 'nowhere'"),

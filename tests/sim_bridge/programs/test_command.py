@@ -8,8 +8,8 @@ import pytest
 
 from onboard.config.strict import ConfigError
 from onboard.game.scenario import load
-from onboard.runtime.resources import configs
-from sim_bridge.programs.fly import Options, demand_strategies, fly, scenario_file
+from onboard.runtime.resources import SCENARIOS, configs, shipped_file
+from sim_bridge.programs.fly import Options, demand_strategies, fly
 from sim_bridge.programs.scenario_tools import TEMPLATE, check, new
 from tests.support.sim_bridge_process import bridge, short
 
@@ -114,7 +114,7 @@ def test_every_shipped_scenario_loads_and_can_be_told_of(path: Path) -> None:
     said = check(scenario)
     assert len(said.splitlines()) > len(scenario.vehicles) + 3
     if path.parent.name != "table1":
-        assert scenario_file(Path(path.stem)) == path
+        assert shipped_file(Path(path.stem), SCENARIOS) == path
 
 
 def test_the_scenarios_people_are_promised_are_shipped() -> None:

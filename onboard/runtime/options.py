@@ -1,0 +1,72 @@
+"""What the command lines of `gcs` and `sim-bridge` share: typed values, `-h`, `--version`, completion.
+
+(The agent's is argparse's: see `onboard.cli`.)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from enum import Enum
+from typing import Annotated, Any
+
+import typer
+
+from onboard.config.option_value import parsed
+from onboard.runtime.resources import Shelf, named_files
+
+
+def group(words: str, **more: Any) -> typer.Typer:
+    """A group of commands, as all of this project's are; `words` is its help."""
+    settings = {"help_option_names": ["-h", "--help"]}
+    return typer.Typer(help=words, context_settings=settings, pretty_exceptions_enable=False,
+                       rich_markup_mode=None, **more)  # fmt: skip
+
+
+def value(kind: Any, *flags: str, words: str, unit: str = "") -> Any:
+    """An option whose value has a type with a range, or is of an enum (`onboard.config.bounds`).
+
+    `flags` are its names, none for an argument; `words` its help, `unit` what stands for the value there. A
+    value out of range raises ConfigError.
+    """
+    name = flags[0] if flags else words.rstrip(".").lower()
+    choices = [str(one.value) for one in kind] if isinstance(kind, type) and issubclass(kind, Enum) else []
+    told = {
+        "parser": lambda text: text if text is None else parsed(text, kind, name),
+        "metavar": f"[{'|'.join(choices)}]" if choices else unit or "NUMBER",
+        "help": words,
+    }
+    if choices:
+        told["autocompletion"] = completing(choices)
+    return typer.Option(*flags, **told) if flags else typer.Argument(**told)  # type: ignore[arg-type]
+
+
+def shipped(shelf: Shelf) -> Callable[[str], list[str]]:
+    """Completes the names of what comes with the distribution."""
+
+    def complete(incomplete: str) -> list[str]:
+        return completing(named_files(shelf))(incomplete)
+
+    return complete
+
+
+def completing(known: Iterable[str]) -> Callable[[str], list[str]]:
+    """Completes one of the known words."""
+
+    def complete(incomplete: str) -> list[str]:
+        return [word for word in known if word.startswith(incomplete)]
+
+    return complete
+
+
+def _print_version(asked: bool) -> None:
+    if asked:
+        from onboard.config.version import version
+
+        print(version())
+        raise typer.Exit
+
+
+VersionOption = Annotated[
+    bool,
+    typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and exit."),
+]
