@@ -75,46 +75,14 @@ def planar(
     animate: Annotated[Path | None, typer.Option(help="GIF or MP4 of the first game.")] = None,
 ) -> None:
     """Play the paper's plane game; exit 1 when a verdict differs from the paper's."""
-    from onboard.game.plugins import pursuer_strategy
-    from sim_bridge.plane_game import program as room
+    from sim_bridge.plane_game import command as room
 
     shelf = SCENARIOS.sought_first("table1")
-    paths = [shipped_file(one, shelf) for one in scenarios or ()]
-    games = room.within_horizon(room.load_plane(paths or room.table1()), horizon)
-    names = strategy or [room.THIS_PAPER, room.EARLIER]
-    for name in names:
-        pursuer_strategy(name)
-    pictures = figures is not None or animate is not None
-    if pictures:
-        from sim_bridge.plane_game import figures as drawing
-    if animate is not None:
-        drawing.check_film(animate)
+    files = tuple(shipped_file(one, shelf) for one in scenarios or ())
     if figures is not None:
         _folder(figures)
-    results: list[room.Result] = []
-    for scenario in games:
-        for name in names:
-            first = not results
-            played = room.play(scenario, name, dt, keep=pictures)
-            results.append(room.result(played))
-            if json:
-                import msgspec
-
-                print(msgspec.json.encode(results[-1]).decode())
-            if figures is not None:
-                drawing.draw_game(played, figures)
-            if animate is not None and first:
-                drawing.animate(played, animate)
-    agree, total = room.differs(results)
-    if not json:
-        print(room.table(results))
-        if total:
-            print(f"\n{room.verdict_line(agree, total, games, not scenarios)}")
-        if figures is not None:
-            print(f"{2 * len(results)} pictures in {figures}")
-        if animate is not None:
-            print(f"animation of the first game in {animate}")
-    if agree != total:
+    wanted = room.Options(files, tuple(strategy or ()), dt, horizon, json, figures, animate)
+    if not room.planar(wanted):
         raise typer.Exit(1)
 
 

@@ -1,0 +1,58 @@
+"""What `sim-bridge planar` does: plays games one after the other, prints a table or lines, draws."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+
+import msgspec
+
+from onboard.game.plugins import pursuer_strategy
+from sim_bridge.plane_game import program
+
+
+class Options(NamedTuple):
+    """What `planar` can be told."""
+
+    files: tuple[Path, ...] = ()  # none: the ten rows of Table 1
+    strategies: tuple[str, ...] = ()  # of the pursuers; none: the paper's and that of [37]
+    dt: float | None = None  # [s] in place of the scenario's
+    horizon: float | None = None  # [s] likewise
+    json: bool = False  # one JSON object a game, nothing else
+    figures: Path | None = None  # folder of pictures
+    film: Path | None = None  # GIF or MP4 of the first game
+
+
+def planar(options: Options) -> bool:
+    """Play the games and tell of them; whether all verdicts are the paper's. Raises ConfigError."""
+    games = program.within_horizon(program.load_plane(options.files or program.table1()), options.horizon)
+    names = options.strategies or (program.THIS_PAPER, program.EARLIER)
+    for name in names:
+        pursuer_strategy(name)
+    pictures = options.figures is not None or options.film is not None
+    if pictures:
+        from sim_bridge.plane_game import figures as drawing
+    if options.film is not None:
+        drawing.check_film(options.film)
+    results: list[program.Result] = []
+    for scenario in games:
+        for name in names:
+            first = not results
+            played = program.play(scenario, name, options.dt, keep=pictures)
+            results.append(program.result(played))
+            if options.json:
+                print(msgspec.json.encode(results[-1]).decode())
+            if options.figures is not None:
+                drawing.draw_game(played, options.figures)
+            if options.film is not None and first:
+                drawing.animate(played, options.film)
+    agree, total = program.differs(results)
+    if not options.json:
+        print(program.table(results))
+        if total:
+            print(f"\n{program.verdict_line(agree, total, games, not options.files)}")
+        if options.figures is not None:
+            print(f"{2 * len(results)} pictures in {options.figures}")
+        if options.film is not None:
+            print(f"animation of the first game in {options.film}")
+    return agree == total
