@@ -13,6 +13,7 @@ for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 
 import typer  # noqa: E402  (threads are set before anything imports NumPy)
 
+from gcs.export.formats import Format  # noqa: E402
 from gcs.options import BUS, STATION, Options, takes  # noqa: E402
 from onboard.config.bounds import ListenTime, SystemId, WaitTime  # noqa: E402
 from onboard.config.strict import ConfigError  # noqa: E402
@@ -143,6 +144,28 @@ def report(options: Options, run: RunArgument) -> int:
     from gcs import programs
 
     return programs.report(run, options.settings().alerts)
+
+
+@app.command(
+    epilog="Examples: gcs export RUN | gcs export RUN --format kml --format czml"
+    " | gcs export RUN --id 1 --to out",
+)
+@takes()
+def export(
+    options: Options,
+    run: RunArgument,
+    formats: Annotated[
+        list[Format] | None, value(Format, "--format", words="May be repeated. Default: csv.")
+    ] = None,
+    to: Annotated[Path | None, typer.Option("--to", help="Folder [RUN/export].")] = None,
+    ids: Annotated[
+        list[int] | None, value(SystemId, "--id", words="A vehicle; may be repeated. Default: all.")
+    ] = None,
+) -> int:
+    """Write states, setpoints, decisions, tracks and true motion for other programs; docs/run-folder.md."""
+    from gcs import programs
+
+    return programs.export(run, tuple(dict.fromkeys(formats or (Format.CSV,))), to, tuple(ids or ()))
 
 
 @game_app.command(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import signal
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple, TextIO
@@ -28,6 +28,7 @@ from onboard.runtime.clock import RealClock
 from onboard.wire.bus.messages import CommandKind, Role
 
 if TYPE_CHECKING:
+    from gcs.export.formats import Format
     from gcs.replay.player import Player
 
 LOOK_S = 0.25
@@ -288,4 +289,16 @@ def report(run: Path, limits: Thresholds) -> int:
     print(written.page)
     for picture in written.pictures:
         print(picture)
+    return 0
+
+
+def export(run: Path, formats: Sequence[Format], to: Path | None, ids: tuple[int, ...]) -> int:
+    """A run in formats that other programs read."""
+    from gcs.export.program import export as write
+
+    written, notes = write(run, formats, to, ids)
+    for note in notes:
+        print(f"gcs: {note}", file=sys.stderr)
+    for path in written:
+        print(path)
     return 0

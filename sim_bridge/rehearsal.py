@@ -32,6 +32,7 @@ from sim_bridge.world.bridge import Options as BridgeOptions
 from sim_bridge.world.run_observer import Observer
 from sim_bridge.world.staging import generator
 from sim_bridge.world.summary import Summary
+from sim_bridge.world.truth import TRUTH, TruthLog
 
 GAME = "rehearsal"
 TOLD_MAX = 100_000
@@ -118,6 +119,7 @@ class Rehearsal:
         )
         self._world: asyncio.Task[None] | None = None
         self._recorder: BusRecorder | None = None
+        self._truth: BinaryIO | None = None
 
     # ------------------------------------------------------------------ life
 
@@ -126,6 +128,8 @@ class Rehearsal:
         if folder is not None:
             self._recorder = BusRecorder(folder, self.game, self.clock)
             self._recorder.hear(self.bus)
+            self._truth = (folder / TRUTH).open("wb")
+            self.bridge.watch = TruthLog(self._truth.write).step
             for id in self.scenario.ids:
                 file: BinaryIO = (folder / f"vehicle-{id}.tlog").open("wb")
                 self._tlogs[id] = (file, TlogWriter(file))
@@ -146,6 +150,8 @@ class Rehearsal:
             self._recorder.close()
         for log, _writer in self._tlogs.values():
             log.close()
+        if self._truth is not None:
+            self._truth.close()
         await self.bus.close()
 
     async def until(self, holds: Callable[[], bool], within_s: float) -> bool:

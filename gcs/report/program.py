@@ -50,18 +50,24 @@ def read_run(run: Path, limits: Thresholds | None = None, version: str = "") -> 
 
 
 def write_report(run: Path, limits: Thresholds | None = None, version: str = "") -> Written:
-    """Write `report.html` and `figures/*.png` into the run folder. Raises ConfigError with one line."""
+    """Write `report.html` and `figures/*.png` into the run folder. Raises ConfigError with one line.
+
+    Of a recording with a name of its own, `x.mcap`, they are `x-report.html` and `x-figures/*.png` beside it,
+    so that no report takes another's place.
+    """
     values = read_run(run, limits, version)
     folder = values.folder
+    before = "" if run.is_dir() or run.name == RECORDING else f"{run.stem}-"
+    html, room = folder / f"{before}{PAGE}", folder / f"{before}{FIGURES}"
     try:
-        (folder / FIGURES).mkdir(exist_ok=True)
+        room.mkdir(exist_ok=True)
         for name in NAMES:
-            (folder / FIGURES / f"{name}.png").unlink(missing_ok=True)  # of an earlier report
+            (room / f"{name}.png").unlink(missing_ok=True)  # of an earlier report
         drawings = figures(values)
-        (folder / PAGE).write_text(page(values, drawings), encoding="utf-8")
-        pictures = [folder / FIGURES / f"{drawing.name}.png" for drawing in drawings]
+        html.write_text(page(values, drawings), encoding="utf-8")
+        pictures = [room / f"{drawing.name}.png" for drawing in drawings]
         for drawing, picture in zip(drawings, pictures, strict=True):
             write_png(drawing, values, picture)
     except OSError as error:
         raise ConfigError(f"{error.filename or folder}: {(error.strerror or str(error)).lower()}") from None
-    return Written(folder / PAGE, tuple(pictures), values.notes)
+    return Written(html, tuple(pictures), values.notes)

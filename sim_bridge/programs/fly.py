@@ -52,7 +52,8 @@ def fly(path: Path, options: Options, say: Callable[[str], None] = print) -> Flo
     clock = RealClock()
     folder = new_run(options.runs, scenario.name, clock.wall_ns())
     tell = (lambda line: None) if options.quiet else say
-    run_folder.write_bytes(folder / "scenario.toml", path.read_bytes())
+    used = run_folder.scenario_used(scenario, options.seed, path.parent)
+    run_folder.write_bytes(folder / "scenario.toml", used)
     run_folder.write(folder / "versions.json", run_folder.versions())
     began = clock.monotonic_ns()
     try:

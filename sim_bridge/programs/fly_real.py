@@ -15,6 +15,7 @@ from onboard.game.scenario import Scenario
 from onboard.game.staging import target_of
 from onboard.runtime.bus_zenoh import ZenohBus
 from onboard.runtime.clock import RealClock
+from onboard.runtime.file_writer import FileWriter
 from onboard.runtime.zenoh_config import DEFAULT_ENDPOINT
 from onboard.wire.bus.messages import DecisionReport, Event, Outcome, Phase, Severity
 from onboard.wire.bus.topics import DECISION, DEFAULT_GAME, Dispatcher
@@ -24,7 +25,9 @@ from sim_bridge.rehearsal import BusRecorder
 from sim_bridge.world.bridge import Bridge
 from sim_bridge.world.run_observer import Observer
 from sim_bridge.world.summary import Summary
+from sim_bridge.world.truth import TRUTH, TruthLog
 
+CLOSE_S = 1.0  # for what is on its way to the disk at the end [s]
 TELL_S = 5.0  # between two lines on how the game goes [s]
 
 
@@ -90,6 +93,8 @@ class RealGame:
         self._seed = scenario.seed if options.seed is None else options.seed
         self._say = say
         self._recorder = BusRecorder(folder, DEFAULT_GAME, RealClock())
+        self._writer = FileWriter()
+        self._truth = TruthLog(self._writer.open(folder / TRUTH).write)
         self._rule = ""  # by which the evader decided last
         self._drops: Counter[str] = Counter()
 
@@ -121,10 +126,12 @@ class RealGame:
                         task.cancel()
         finally:
             self._recorder.close()
+            self._writer.close(CLOSE_S)
 
     def _server_started(self, bridge: Bridge, bus: ZenohBus, ports: dict[int, int]) -> None:
         self._recorder.hear(bus)
         self.bridge = bridge
+        bridge.watch = self._truth.step
         self.observer = Observer(self._scenario, self._seed, "real", DEFAULT_GAME, bus, self._on_event)
         hear = Dispatcher(self._drops).on(DECISION, self._on_decision)
         bus.subscribe(DECISION.key(DEFAULT_GAME, self._scenario.ids[0]), hear)

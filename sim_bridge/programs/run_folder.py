@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import os
 import platform
+import re
 import shutil
+from collections.abc import Mapping
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -12,8 +14,11 @@ from typing import Any
 import msgspec
 
 from onboard.config.strict import ConfigError
+from onboard.core.strategy.registry import DEFAULT
+from onboard.game.scenario import Scenario
 
 PACKAGES = ("apollonius", "numpy", "pymavlink", "eclipse-zenoh", "msgspec", "numba", "scipy", "control")
+BARE = re.compile("[A-Za-z0-9_-]+")  # a key that TOML takes without quotes
 
 
 def discard(folder: Path) -> None:
@@ -24,9 +29,19 @@ def discard(folder: Path) -> None:
 
 
 def write(path: Path, value: object) -> None:
-    """Write JSON, whole or not at all. Raises ConfigError."""
-    data = msgspec.json.format(msgspec.json.encode(value), indent=1) + b"\n"
+    """Write JSON, whole or not at all; what is not known is null, never "". Raises ConfigError."""
+    answers = _answers(msgspec.to_builtins(value))
+    data = msgspec.json.format(msgspec.json.encode(answers), indent=1) + b"\n"
     write_bytes(path, data)
+
+
+def _answers(value: Any) -> Any:
+    """Plain data in which an empty string, which answers nothing, has become None."""
+    if isinstance(value, Mapping):
+        return {key: _answers(inner) for key, inner in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_answers(inner) for inner in value]
+    return None if value == "" else value
 
 
 def write_bytes(path: Path, data: bytes) -> None:
@@ -52,6 +67,44 @@ def versions() -> dict[str, str]:
     return found
 
 
-def toml_of(settings: dict[str, Any]) -> str:
-    """Flat settings as TOML: strings, numbers, booleans and lists of strings are written as in JSON."""
-    return "".join(f"{key} = {msgspec.json.encode(value).decode()}\n" for key, value in settings.items())
+def toml_of(settings: Mapping[str, Any], table: str = "") -> str:
+    """Settings as TOML, tables and lists of tables included; what is None is left out.
+
+    `table` is the dotted name of the table that they stand in.
+    """
+    values, tables = [], []
+    for key, value in settings.items():
+        name = key if BARE.fullmatch(key) else msgspec.json.encode(key).decode()
+        at = f"{table}.{name}" if table else name
+        if isinstance(value, Mapping) and value:
+            tables.append(f"\n[{at}]\n{toml_of(value, at)}")
+        elif isinstance(value, (list, tuple)) and value and isinstance(value[0], Mapping):
+            tables += [f"\n[[{at}]]\n{toml_of(entry, at)}" for entry in value]
+        elif value is not None and not isinstance(value, Mapping):
+            values.append(f"{name} = {msgspec.json.encode(value).decode()}\n")
+    return "".join(values + tables)
+
+
+def scenario_used(scenario: Scenario, seed: int | None, home: Path) -> bytes:
+    """A scenario file with every value that a run used, those that were left to their defaults included.
+
+    `seed` where it was given in place of the scenario's; a recording of wind, which lies in `home`, by its
+    full path. `fly` plays the file again from any folder.
+    """
+    replace = msgspec.structs.replace
+    wind = scenario.flight.wind
+    if wind.recorded:
+        wind = replace(wind, recorded=str((home / wind.recorded).resolve()))
+    vehicles = [
+        replace(spec, id=id, strategy=spec.strategy or DEFAULT, speed_max=spec.limits().speed_max)
+        for id, spec in zip(scenario.ids, scenario.vehicles, strict=True)
+    ]
+    used = replace(
+        scenario,
+        evader=vehicles[0],
+        pursuers=tuple(vehicles[1:]),
+        seed=scenario.seed if seed is None else seed,
+        parameters=replace(scenario.parameters, rho=scenario.rules.rho),
+        flight=replace(scenario.flight, wind=wind),
+    )
+    return f"# Every value that this run used.\n{toml_of(_answers(msgspec.to_builtins(used)))}".encode()

@@ -23,6 +23,11 @@ from sim_bridge.plane_game.setup import conditions_of, game_of
 from sim_bridge.vehicle.motion import Motion
 from sim_bridge.world.sensor import Sensor
 
+EXPORTED = {
+    "t_s": "t", "north_m": "north", "east_m": "east", "down_m": "down",
+    "v_north_m_s": "vn", "v_east_m_s": "ve", "v_down_m_s": "vd", "sigma_m": "sigma",
+}  # fmt: skip
+"""The columns of `gcs export`'s tables, and what they are called in a track."""
 Array = npt.NDArray[np.float64]
 
 
@@ -47,7 +52,7 @@ class Recording(NamedTuple):
 
 
 def recording_of(path: Path, seed: int = 0) -> Recording:
-    """A track: a CSV file (t,north,east,down[,vn,ve,vd][,sigma]) or a scenario's evader, simulated.
+    """A track: a CSV file (see `read_csv`) or a scenario's evader, simulated.
 
     Raises ConfigError for a file that is neither."""
     if path.suffix == ".toml":
@@ -83,7 +88,11 @@ def simulate(scenario: Scenario, seed: int = 0) -> Recording:
 
 
 def read_csv(path: Path) -> Recording:
-    """Read a track from a CSV file with a header; see `recording_of`. Raises ConfigError."""
+    """Read a track from a CSV file with a header: `t,north,east,down[,vn,ve,vd][,sigma]` in s, m and m/s.
+
+    The files of `gcs export` are read too: their columns have the units in their names (EXPORTED). One of
+    several vehicles is refused. Raises ConfigError.
+    """
     try:
         with path.open(newline="", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
@@ -91,6 +100,8 @@ def read_csv(path: Path) -> Recording:
         raise ConfigError(f"{path}: not UTF-8 text") from None
     except (OSError, csv.Error) as error:
         raise ConfigError(f"{path}: {str(getattr(error, 'strerror', None) or error).lower()}") from None
+    if rows and "t_s" in rows[0]:
+        rows = _exported(path, rows)
     found = list(rows[0]) if rows else []
     for key in ("t", "north", "east", "down"):
         if key not in found:
@@ -121,6 +132,15 @@ def read_csv(path: Path) -> Recording:
         raise ConfigError(f"{path}: found {len(known)} instants, expected at least 20")
     times = np.array([t for t, _ in known])
     return Recording(path.name, tuple(samples), times, np.array([p for _, p in known]), False)
+
+
+def _exported(path: Path, rows: list[dict[str, str]]) -> list[dict[str, str]]:
+    """The rows of a table of `gcs export` as those of a track. Raises ConfigError."""
+    ids = sorted({row.get("id") or "" for row in rows})
+    if len(ids) > 1:
+        found = ", ".join(map(str, ids))
+        raise ConfigError(f"{path}: id: found {found}, expected one vehicle: gcs export RUN --id ID")
+    return [{EXPORTED.get(str(key), key): value for key, value in row.items()} for row in rows]
 
 
 def weave(seconds: float = 60.0, speed: float = 50.0, rate: float = 10.0, seed: int = 0) -> Recording:

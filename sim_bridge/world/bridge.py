@@ -10,6 +10,7 @@ from onboard.game.scenario import Scenario
 from onboard.runtime.protocols import Bus, Clock, Link
 from onboard.runtime.tasks import Pace, periodic
 from onboard.wire.bus.topics import DEFAULT_GAME, TRACK
+from sim_bridge.vehicle.motion import Motion
 from sim_bridge.world.master import NAME, BridgeMaster, Who
 from sim_bridge.world.sensor import Sensor
 from sim_bridge.world.staging import wind_of
@@ -18,6 +19,13 @@ from sim_bridge.world.world import RATE_HZ, World
 
 def mute(line: str) -> None:
     """A `say` that tells nobody."""
+
+
+def unwatched(wall_ns: int, motions: Mapping[int, Motion]) -> None:
+    """A `Bridge.watch` that looks at nothing."""
+
+
+Watch = Callable[[int, Mapping[int, Motion]], None]  # wall instant [ns], true motions then, by vehicle id
 
 
 class Options(NamedTuple):
@@ -36,7 +44,8 @@ class Bridge:
     """Everything that is simulated, and the game's master; `run` it, or `step` it yourself.
 
     `links` are those on which each vehicle's autopilot speaks, by vehicle id; `say` hears what people should
-    know. Raises ConfigError for what cannot fly.
+    know; `watch`, which may be set, is told the true motions at every step. Raises ConfigError for what
+    cannot fly.
     """
 
     def __init__(
@@ -64,11 +73,13 @@ class Bridge:
         self._clock = clock
         self._bus = bus
         self._keys = {id: TRACK.key(game, id) for id in scenario.ids}
+        self.watch: Watch = unwatched
 
     def step(self) -> None:
         """Move the world on to now, publish what the sensor sees, judge the game."""
         self.world.step()
         motions = self.world.motions
+        self.watch(self.world.wall_ns, motions)
         for track in self.sensor.step(self.world.wall_ns, motions):
             self._bus.publish(self._keys[track.id], TRACK.encode(track), TRACK.delivery)
         if self.master is not None:

@@ -5,18 +5,27 @@ from __future__ import annotations
 import json
 import os
 import re
+import tomllib
 from pathlib import Path
 
+import msgspec
+import numpy as np
 import pytest
 
+import gcs
+from onboard.config import strict
 from onboard.config.strict import ConfigError
+from onboard.game.scenario import Scenario, load
 from onboard.runtime.run_folder import new_run
 from onboard.wire.mavlink.tlog import read_tlog
 from sim_bridge.programs import run_folder
+from tests.support.paths import ROOT
 from tests.support.sim_bridge_process import bridge, short
 
 pytestmark = pytest.mark.game
-SEEDED = ("summary.json", "vehicle-1.tlog", "vehicle-2.tlog", "recording.mcap", "configuration.json")
+SEEDED = (
+    "summary.json", "vehicle-1.tlog", "vehicle-2.tlog", "recording.mcap", "configuration.json", "truth.csv",
+)  # fmt: skip
 
 
 def flown(folder: Path, scenario: Path, *options: object) -> tuple[Path, str]:
@@ -47,6 +56,7 @@ def test_another_seed_gives_another_game(twice: list[tuple[Path, str]], tmp_path
     (first, _), _ = twice
     other, _ = flown(tmp_path / "runs", first / "scenario.toml", "--seed", "4", "--quiet")
     assert json.loads((other / "summary.json").read_bytes())["seed"] == 4
+    assert load(other / "scenario.toml").seed == 4  # what was flown, not what the file said
     for name in ("summary.json", "vehicle-2.tlog", "recording.mcap"):
         assert (first / name).read_bytes() != (other / name).read_bytes(), name
 
@@ -54,10 +64,9 @@ def test_another_seed_gives_another_game(twice: list[tuple[Path, str]], tmp_path
 def test_the_folder_holds_what_was_played_with_what_and_how_it_ended(twice: list[tuple[Path, str]]) -> None:
     (folder, said), _ = twice
     assert sorted(path.name for path in folder.iterdir()) == [
-        "configuration.json", "recording.mcap", "scenario.toml", "summary.json", "timing.json",
+        "configuration.json", "recording.mcap", "scenario.toml", "summary.json", "timing.json", "truth.csv",
         "vehicle-1.events", "vehicle-1.tlog", "vehicle-2.events", "vehicle-2.tlog", "versions.json",
     ]  # fmt: skip
-    assert (folder / "scenario.toml").read_bytes() == (folder.parent.parent / "short.toml").read_bytes()
     versions = json.loads((folder / "versions.json").read_bytes())
     assert {"python", "apollonius", "numpy", "pymavlink"} <= set(versions)
     configuration = json.loads((folder / "configuration.json").read_bytes())
@@ -65,6 +74,61 @@ def test_the_folder_holds_what_was_played_with_what_and_how_it_ended(twice: list
     assert re.fullmatch(r"\d{8}T\d{6}Z-short", folder.name)
     assert f"run folder: {folder}" in said
     assert "the evader escaped: not captured within 3 s" in said
+
+
+def nothing_empty(value: object) -> bool:
+    """Whether no answer in plain data is an empty string."""
+    inner = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
+    return value != "" and all(map(nothing_empty, inner))
+
+
+def test_the_scenario_in_the_folder_holds_every_value_that_was_used(twice: list[tuple[Path, str]]) -> None:
+    (folder, _), _ = twice
+    asked, used = load(folder.parent.parent / "short.toml"), load(folder / "scenario.toml")
+    assert used.rules == asked.rules
+    assert [spec.limits() for spec in used.vehicles] == [spec.limits() for spec in asked.vehicles]
+    assert (used.ids, used.flight, used.seed) == (asked.ids, asked.flight, asked.seed)
+    assert [spec.strategy for spec in used.vehicles] == ["paper", "paper"]
+    written = tomllib.loads((folder / "scenario.toml").read_text(encoding="utf-8"))
+    assert written["parameters"]["rho"] == asked.rules.rho  # 2R, which the file left out
+    assert written["flight"]["impairment"]["loss"] == 0.1
+    assert nothing_empty(written)
+    for name in ("summary.json", "configuration.json", "versions.json"):
+        assert nothing_empty(json.loads((folder / name).read_bytes())), name
+
+
+SHIPPED = sorted((ROOT / "configs/scenarios").rglob("*.toml"))
+
+
+@pytest.mark.parametrize("shipped", SHIPPED, ids=lambda path: path.stem)
+def test_the_scenario_of_a_run_is_a_scenario(shipped: Path) -> None:
+    scenario = load(shipped)
+    used = run_folder.scenario_used(scenario, 7, shipped.parent)
+    again = strict.parse(used.decode(), Scenario, "again")
+    assert (again.rules, again.seed, again.flight) == (scenario.rules, 7, scenario.flight)
+    assert run_folder.scenario_used(again, None, shipped.parent) == used
+
+
+def test_a_recorded_wind_is_found_from_the_run_folder_too(tmp_path: Path) -> None:
+    scenario = load(ROOT / "configs/scenarios/flight/demo.toml")
+    wind = msgspec.structs.replace(scenario.flight.wind, recorded="winds/monday.csv")
+    flight = msgspec.structs.replace(scenario.flight, wind=wind)
+    used = run_folder.scenario_used(msgspec.structs.replace(scenario, flight=flight), None, tmp_path)
+    assert tomllib.loads(used.decode())["flight"]["wind"]["recorded"] == str(tmp_path / "winds/monday.csv")
+
+
+def test_the_truth_is_what_the_vehicles_flew(twice: list[tuple[Path, str]]) -> None:
+    """Against the vehicle's own states: the noise of its estimate apart, they are the same motion."""
+    (folder, _), _ = twice
+    data = gcs.load(folder)
+    for id in (1, 2):
+        true, own = data.truth.of(id), data.states.of(id)
+        assert np.diff(true["stamp_ns"]).min() >= 45_000_000
+        for axis in ("north_m", "east_m", "down_m"):
+            there = np.interp(own["stamp_ns"], true["stamp_ns"], true[axis])
+            assert np.abs(there - own[axis]).max() < 1.0, (id, axis)
+        speed = np.gradient(true["north_m"], true["t_s"])
+        assert np.median(np.abs(speed - true["v_north_m_s"])) < 0.2
 
 
 def test_the_summary_knows_neither_the_wall_clock_nor_a_path(twice: list[tuple[Path, str]]) -> None:
@@ -125,7 +189,7 @@ def test_a_folder_in_which_nothing_was_flown_goes_unless_a_log_tells_why(tmp_pat
 
 
 def test_settings_become_toml_that_reads_back() -> None:
-    import tomllib
-
-    settings = {"id": 2, "link": ["udpin://127.0.0.1:1"], "take_control": True, "rate": 20.0, "log": 'a"b\\c'}
+    settings = {"id": 2, "link": ["udpin://127.0.0.1:1"], "take_control": True, "rate": 20.0, "log": 'a"b\\c',
+                "safety": {"separation": 3.0, "fence": {"polygon": [[0.0, 1.0]]}},
+                "players": [{"id": 1}, {"id": 2}], "odd key": {"a.b": 1}}  # fmt: skip
     assert tomllib.loads(run_folder.toml_of(settings)) == settings

@@ -1,0 +1,42 @@
+"""`gcs export RUN`: a run in formats that other programs read."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+
+from gcs.export import earth_files, table_files
+from gcs.export.formats import Format
+from gcs.export.run_data import load
+from onboard.config.strict import ConfigError
+
+FOLDER = "export"
+WRITERS = {**table_files.WRITERS, **earth_files.WRITERS}
+
+
+def export(
+    run: Path, formats: Sequence[Format], to: Path | None, ids: tuple[int, ...]
+) -> tuple[list[Path], tuple[str, ...]]:
+    """Write a run in these formats; the files, and what was missing or damaged, one line each.
+
+    `to` is the folder (None: `export` in the run folder, or beside a recording that has another name);
+    `ids` the vehicles (empty: all). Each file is written whole or not at all. Raises ConfigError.
+    """
+    data = load(run)
+    if ids:
+        data = data.only(ids)
+    if to is None:
+        to = data.folder / (FOLDER if run.is_dir() or run.stem == "recording" else f"{run.stem}-{FOLDER}")
+    files = [found for each in formats for found in WRITERS[each.value](data).items()]
+    written = []
+    try:
+        to.mkdir(parents=True, exist_ok=True)
+        for name, content in files:
+            part = to / f".{name}.part"
+            part.write_bytes(content)
+            os.replace(part, to / name)
+            written.append(to / name)
+    except OSError as error:
+        raise ConfigError(f"{error.filename or to}: {(error.strerror or str(error)).lower()}") from None
+    return written, data.notes
