@@ -13,7 +13,6 @@ import typer  # noqa: E402  (threads are set before anything imports NumPy)
 
 from onboard.config.bounds import Epochs, PositiveDuration, Seed, TimeStep  # noqa: E402
 from onboard.config.printable import printable  # noqa: E402
-from onboard.config.strict import ConfigError  # noqa: E402
 from onboard.runtime import options  # noqa: E402
 from onboard.runtime.options import VersionOption  # noqa: E402
 from onboard.runtime.program import run  # noqa: E402
@@ -79,8 +78,6 @@ def planar(
 
     shelf = SCENARIOS.sought_first("table1")
     files = tuple(shipped_file(one, shelf) for one in scenarios or ())
-    if figures is not None:
-        _folder(figures)
     wanted = room.Options(files, tuple(strategy or ()), dt, horizon, json, figures, animate)
     if not room.planar(wanted):
         raise typer.Exit(1)
@@ -214,8 +211,6 @@ def design(
     """Print margins, bandwidth and step-response figures of the configured aircraft's loops."""
     from sim_bridge.studies.design import design as report_on
 
-    if figures is not None:
-        _folder(figures)
     print(report_on(shipped_file(aircraft, AIRCRAFT), figures))
 
 
@@ -244,17 +239,8 @@ def predict(
     """Compare predictors on a recorded or simulated track: a table and a figure."""
     from sim_bridge.studies.predict import predict as run_predict
 
-    if figures is not None:
-        _folder(figures)
     source = None if source is None else shipped_file(source, SCENARIOS)
     run_predict(source, figures, json, seed, printed, epochs)
-
-
-def _folder(path: Path) -> None:
-    try:
-        path.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise ConfigError(f"{path}: {(error.strerror or str(error)).lower()}") from None
 
 
 def main() -> None:

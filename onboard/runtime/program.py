@@ -21,6 +21,7 @@ NOT_WRITTEN = 74  # EX_IOERR of sysexits.h
 INTERRUPTED = 130  # as a shell reports SIGINT
 READER_LEFT = 141  # as a shell reports SIGPIPE
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
+FORBIDDEN = tuple(getattr(errno, f"E{name}") for name in "ACCES PERM ROFS ISDIR NOTDIR NAMETOOLONG LOOP".split())
 
 
 def run(app: Callable[..., Any], name: str) -> NoReturn:
@@ -47,7 +48,7 @@ def run(app: Callable[..., Any], name: str) -> NoReturn:
         _discard_output()
         sys.exit(READER_LEFT)
     except OSError as error:
-        if error.errno not in NO_ROOM:
+        if error.errno not in NO_ROOM and not (error.errno in FORBIDDEN and error.filename):
             raise
         _discard_output()
         where = f"{error.filename}: " if error.filename else "cannot write: "

@@ -16,6 +16,7 @@ import typer  # noqa: E402  (threads are set before anything imports NumPy)
 from onboard.config.bounds import Count, Flights, Seed  # noqa: E402
 from onboard.runtime.options import group, shipped, value  # noqa: E402
 from onboard.runtime.resources import ROUTES, SCENARIOS, shipped_file  # noqa: E402
+from onboard.runtime.run_folder import made  # noqa: E402
 
 NAME = "python -m sim_bridge.campaign"
 app = group(
@@ -61,6 +62,7 @@ def tracking(
     from sim_bridge.campaign.spatial_campaign import output
     from sim_bridge.campaign.tracking import compare, table
 
+    made(out)
     flown = load_route(shipped_file(route, ROUTES))
     text = preface("Tracking a timed route", f"python -m sim_bridge.campaign tracking --seeds {seeds}")
     text += (
@@ -92,6 +94,7 @@ def games(
     from sim_bridge.campaign.spatial_campaign import contest, output, play_seed, spatial, table
     from sim_bridge.campaign.spatial_game import Evasion
 
+    made(out)
     names = ["five", "six"]
     files = [shipped_file(path, SPATIAL) for path in scenario or ()]
     scenarios = [load(path) for path in files] if files else [spatial(name) for name in names]
@@ -123,6 +126,7 @@ def encircled(
     from sim_bridge.campaign import encircled as room
     from sim_bridge.campaign.spatial_campaign import output
 
+    made(out)
     found = room.table(room.shares(games, seed))
     command = f"python -m sim_bridge.campaign encircled --games {games} --seed {seed}"
     text = preface("Encircled, and then?", command)
@@ -150,6 +154,7 @@ def flown(
     from sim_bridge.campaign.spatial_campaign import output, play_seed
     from sim_bridge.campaign.spatial_game import Evasion
 
+    made(out)
     path = shipped_file(scenario, SPATIAL)
     one = load(path)
     lines = [

@@ -20,6 +20,7 @@ from onboard.core.game.referee import GameResult
 from onboard.core.math.vectors import Vec, add, yaw_of
 from onboard.game.scenario import Scenario, load
 from onboard.runtime.resources import configs
+from onboard.runtime.run_folder import made
 from sim_bridge.campaign.compiled import KERNELS as CORE
 from sim_bridge.campaign.compiled import register
 from sim_bridge.campaign.plane_in_wind import GUST_EVERY, Flown, climate_of, launched, wind_at
@@ -301,8 +302,7 @@ def share(count: int, games: int) -> str:
 
 
 def output(folder: Path, name: str, text: str) -> Path:
-    """Write a result."""
-    folder.mkdir(parents=True, exist_ok=True)
-    path = folder / name
+    """Write a result. Raises ConfigError where the folder cannot be made."""
+    path = made(folder) / name
     path.write_text(text + "\n", encoding="utf-8")
     return path

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import msgspec
 
 from onboard.game.plugins import pursuer_strategy
+from onboard.runtime.run_folder import made
 from sim_bridge.plane_game import program
 
 
@@ -34,6 +35,8 @@ def planar(options: Options) -> bool:
         from sim_bridge.plane_game import figures as drawing
     if options.film is not None:
         drawing.check_film(options.film)
+    if options.figures is not None:
+        made(options.figures)
     results: list[program.Result] = []
     for scenario in games:
         for name in names:

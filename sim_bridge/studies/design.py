@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from onboard.core.math.vectors import ZERO, Vec
+from onboard.runtime.run_folder import made
 from sim_bridge.studies.pictures import pyplot, save
 from sim_bridge.vehicle.flight import control_toolbox as linear
 from sim_bridge.vehicle.flight import loop_analysis
@@ -172,6 +173,8 @@ def design(config_path: Path, figures_dir: Path | None) -> str:
     Raises ConfigError where the file is at fault.
     """
     aircraft = load(config_path)
+    if figures_dir is not None:
+        made(figures_dir)
     text = report(aircraft)
     if figures_dir is not None:
         drawn = [draw_bode(aircraft, figures_dir), draw_steps(aircraft, figures_dir)]

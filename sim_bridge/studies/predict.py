@@ -6,6 +6,7 @@ from pathlib import Path
 
 import msgspec
 
+from onboard.runtime.run_folder import made
 from sim_bridge.studies.comparison import compare, table
 from sim_bridge.studies.paper_example import example, example_table
 from sim_bridge.studies.tracks import recording_of, weave
@@ -23,6 +24,9 @@ def predict(
     example of 3.5.2 and compare on a weave. Prints a table (or JSON lines); draws into `figures`.
 
     `printed` trains the example by the printed rule (27)–(28). Raises ConfigError for bad input."""
+    recording = None if source is None else recording_of(source, seed)
+    if figures is not None:
+        made(figures)
     if source is None:
         played = example(epochs=epochs, printed=printed)
         for one in played.results if json else ():
@@ -34,7 +38,7 @@ def predict(
 
             draw_activation(figures)
             draw_example(played, figures)
-    drawn = compare(weave() if source is None else recording_of(source, seed), seed)
+    drawn = compare(recording or weave(), seed)
     print(msgspec.json.encode(drawn.comparison).decode() if json else table(drawn.comparison))
     if figures is not None:
         from sim_bridge.studies.predict_figures import draw_comparison

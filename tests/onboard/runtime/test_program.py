@@ -49,6 +49,9 @@ def ended(command: list[str], **environment: str) -> tuple[int, str, str]:
         ("raise KeyboardInterrupt", 130, "", "prog: interrupted\n"),
         ("import errno\nraise OSError(errno.ENOSPC, 'No space left on device', 'runs/1.tlog')", 74, "",
          "prog: runs/1.tlog: no space left on device\n"),
+        ("import os\nraise PermissionError(13, os.strerror(13), 'runs/1.tlog')", 74, "",
+         "prog: runs/1.tlog: permission denied\n"),
+        ("open('/')", 74, "", "prog: /: is a directory\n"),
     ],
 )  # fmt: skip
 def test_every_end_has_its_code_and_at_most_one_line(
