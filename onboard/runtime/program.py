@@ -21,7 +21,9 @@ NOT_WRITTEN = 74  # EX_IOERR of sysexits.h
 INTERRUPTED = 130  # as a shell reports SIGINT
 READER_LEFT = 141  # as a shell reports SIGPIPE
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
-FORBIDDEN = tuple(getattr(errno, f"E{name}") for name in "ACCES PERM ROFS ISDIR NOTDIR NAMETOOLONG LOOP".split())
+FORBIDDEN = (
+    errno.EACCES, errno.EPERM, errno.EROFS, errno.EISDIR, errno.ENOTDIR, errno.ENAMETOOLONG, errno.ELOOP
+)  # fmt: skip
 
 
 def run(app: Callable[..., Any], name: str) -> NoReturn:
