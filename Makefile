@@ -9,7 +9,7 @@ export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
-.PHONY: help install demo test check check-long bench bench-games bench-predictor check-aarch64 golden fuzz soak mutants mavproxy clean lock
+.PHONY: help install demo test check check-long bench figures bench-predictor check-aarch64 golden fuzz soak mutants mavproxy clean lock
 
 help:
 	@echo "make install   the environment only"
@@ -18,7 +18,8 @@ help:
 	@echo "make check     ruff, mypy strict, import contracts, closed locks"
 	@echo "make check-long   the long tests, and every property with five times other examples"
 	@echo "make bench     benchmarks; results go to benchmarks/results/"
-	@echo "make bench-games, bench-predictor   the long comparisons"
+	@echo "make figures   the committed tables of games, routes and predictors again, in one sweep"
+	@echo "make bench-predictor   the comparison with LSTM and GRU"
 	@echo "make golden    what whole games, agents and campaigns do, against what was recorded of them"
 	@echo "make fuzz      ten million frames and more into the parsers; resumable"
 	@echo "make soak      hours of simulated flight with random faults; resumable"
@@ -71,9 +72,6 @@ check-aarch64: install
 	  --implementation cp --platform manylinux_2_28_aarch64 --platform manylinux2014_aarch64 -r locks/base.lock
 	@echo "the base install resolves to wheels for aarch64"
 
-bench-games: install
-	$(BIN)/python -m sim_bridge.campaign
-
 # PyTorch, for the comparison with LSTM and GRU, in an environment of its own that sees this one's packages.
 TORCH := .venv-torch
 $(TORCH)/.installed: locks/bench-predictor.in $(STAMP)
@@ -84,6 +82,10 @@ $(TORCH)/.installed: locks/bench-predictor.in $(STAMP)
 
 bench-predictor: install $(TORCH)/.installed
 	$(TORCH)/bin/python -m tests.benchmarks.predictor
+
+# PAGES="games.md tracking.md" makes some of them, PAGES=--stale those whose sources have changed.
+figures: install $(TORCH)/.installed
+	$(TORCH)/bin/python -m tests.figures $(PAGES)
 
 golden: install
 	$(BIN)/python -m tests.golden

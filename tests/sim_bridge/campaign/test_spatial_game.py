@@ -1,6 +1,6 @@
 """A share of the spatial campaign, played by the kernels that fly.
 
-The whole, 200 seeds a scenario, is `make bench-games`.
+The whole, 200 seeds a scenario, is `make figures`.
 """
 
 from __future__ import annotations
