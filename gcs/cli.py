@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import asyncio
 import os
+import sys
 from collections.abc import Coroutine
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -15,6 +17,7 @@ import typer  # noqa: E402  (threads are set before anything imports NumPy)
 
 from gcs.export.formats import Format  # noqa: E402
 from gcs.options import BUS, STATION, Options, takes  # noqa: E402
+from gcs.urgent import WITHIN_S, Abort, abort_of  # noqa: E402
 from onboard.config.bounds import ListenTime, SystemId, WaitTime  # noqa: E402
 from onboard.config.strict import ConfigError  # noqa: E402
 from onboard.runtime.options import VersionOption, group, shipped, value  # noqa: E402
@@ -91,16 +94,16 @@ def command(
     everybody: Annotated[bool, typer.Option("--all", help="All that are heard or in the game.")] = False,
     role: Annotated[Role | None, value(Role, "--role", words="Every vehicle of a role.")] = None,
     yes: Annotated[bool, typer.Option("--yes", help="Do not ask before return and land.")] = False,
-    within: Annotated[float, value(WaitTime, "--within", words="How long to try [s].", unit="S")] = 10.0,
+    within: Annotated[float, value(WaitTime, "--within", words="How long to try [s].", unit="S")] = WITHIN_S,
 ) -> int:
     """Command vehicles; exit 0 only when every one of them has confirmed."""
-    from gcs import programs
+    from gcs import shell_command
 
     given = [name for name, there in (("ids", ids), ("--all", everybody), ("--role", role)) if there]
     if len(given) != 1:
         raise ConfigError(f"whom: found {' and '.join(given) or 'nothing'}, expected ids, --all or --role")
-    order = programs.Order(kind, tuple(ids or ()), role, within)
-    return _play(programs.command(options.settings(), order, sure=yes))
+    order = shell_command.Order(kind, tuple(ids or ()), role, within)
+    return _play(shell_command.command(options.settings(), order, sure=yes))
 
 
 @app.command(epilog="Example: gcs record --runs /data/runs")
@@ -225,7 +228,16 @@ def keys_sheet(folder: Annotated[Path, typer.Argument(help="Folder of `gcs keys 
 
 def main() -> None:
     """Run `gcs` and exit with its code."""
-    run(app, "gcs")
+    urgent = abort_of(sys.argv[1:])
+    run(app if urgent is None else partial(_abort, urgent), "gcs")
+
+
+def _abort(order: Abort) -> int:
+    """An abort, which does not wait until Typer has built its parser."""
+    from gcs import shell_command
+
+    meant = shell_command.Order(CommandKind.ABORT, order.ids, None, order.within_s)
+    return _play(shell_command.command(order.options.settings(), meant, sure=True))
 
 
 if __name__ == "__main__":

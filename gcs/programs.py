@@ -8,15 +8,14 @@ import sys
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple, TextIO
+from typing import TYPE_CHECKING, TextIO
 
 from gcs.console.plain_lines import PlainLines
 from gcs.console.plain_lines import status as status_lines
 from gcs.picture.alert_rules import Thresholds
-from gcs.picture.command_book import ENDS_A_FLIGHT, SETS_OFF
 from gcs.picture.json_document import to_json
 from gcs.picture.terminal_text import printable
-from gcs.picture.values import Leg, LegState, Picture
+from gcs.picture.values import Picture
 from gcs.session import Session, on_air
 from gcs.settings import Settings
 from onboard.config.strict import ConfigError
@@ -25,23 +24,13 @@ from onboard.core.math.constants import NS_PER_S
 from onboard.game.scenario import Scenario
 from onboard.runtime.bus_security import Lock
 from onboard.runtime.clock import RealClock
-from onboard.wire.bus.messages import CommandKind, Role
+from onboard.wire.bus.messages import Role
 
 if TYPE_CHECKING:
     from gcs.export.formats import Format
     from gcs.replay.player import Player
 
 LOOK_S = 0.25
-GATHER_S = 1.5  # to learn who is there
-
-
-class Order(NamedTuple):
-    """A command from a shell, to the vehicles named, to those of a role, or to all."""
-
-    kind: CommandKind
-    ids: tuple[int, ...]  # empty: all that are known, of `role` if that is given
-    role: Role | None
-    within_s: float  # how long confirmations are waited for
 
 
 async def watch(settings: Settings, *, record: bool, plain: bool) -> int:
@@ -98,81 +87,6 @@ async def status(settings: Settings, *, json: bool, wait_s: float) -> int:
             print(f"gcs: nobody heard in game {settings.game}: {session.bus.status()}", file=sys.stderr)
             return 1
     return 0
-
-
-async def command(settings: Settings, order: Order, *, sure: bool) -> int:
-    """Give a command and wait for the confirmations."""
-    async with on_air(settings, listen=False, record=False) as session:
-        told: dict[int, str] = {}  # vehicle → command id
-        ends_ns = session.station.now_ns() + round(order.within_s * NS_PER_S)
-        if order.kind is not CommandKind.ABORT:
-            await _gather(session, order)
-            ids = _whom(session, order)
-            if ids and order.kind in ENDS_A_FLIGHT and not sure and not await _asked(order, ids):
-                print("gcs: not done", file=sys.stderr)
-                return 1
-            ends_ns = session.station.now_ns() + round(order.within_s * NS_PER_S)
-        gathered_ns = session.station.now_ns()
-        if order.kind is CommandKind.ABORT:
-            gathered_ns += round(GATHER_S * NS_PER_S)
-        while session.station.now_ns() < ends_ns:
-            fresh = [i for i in _whom(session, order) if i not in told]
-            if fresh:  # an abort goes out at once, to whoever is known so far, and to the rest as it appears
-                command_id = session.station.command(order.kind, fresh, named=len(order.ids) == 1)
-                told.update(dict.fromkeys(fresh, command_id))
-            settled = all(not leg.open for leg in _legs(session, told))
-            complete = bool(order.ids) or session.station.now_ns() > gathered_ns
-            if settled and complete:
-                break
-            await asyncio.sleep(0.02)
-        return _told(session, order, told, settings.game)
-
-
-def _legs(session: Session, told: dict[int, str]) -> list[Leg]:
-    """How each vehicle has answered so far."""
-    legs = []
-    for vehicle_id, command_id in sorted(told.items()):
-        view = session.station.reducer.book.view(command_id, session.station.now_ns())
-        legs += [leg for leg in view.legs if leg.id == vehicle_id] if view else []
-    return legs
-
-
-def _told(session: Session, order: Order, told: dict[int, str], game: str) -> int:
-    """Say who has confirmed; the exit code."""
-    if not told:
-        print(f"gcs: nobody to command in game {game}: {session.bus.status()}", file=sys.stderr)
-        return 1
-    legs = _legs(session, told)
-    confirmed = sum(leg.state is LegState.CONFIRMED for leg in legs)
-    print(f"{order.kind.value}: {confirmed} of {len(legs)} confirmed", flush=True)
-    for leg in legs:
-        parts = [f"  vehicle {leg.id}: {leg.state.words}", f"({leg.reason})" if leg.reason else "", leg.mode]
-        print(printable(" ".join(part for part in (*parts, f"after {leg.took_s:.2f} s") if part)), flush=True)
-    return 0 if confirmed == len(legs) else 1
-
-
-async def _gather(session: Session, order: Order) -> None:
-    """Listen until who is meant is known: with ids there is nothing to wait for but the bus."""
-    for _ in range(round(GATHER_S / 0.05)):
-        fleet, now_ns = session.station.reducer.fleet, session.station.now_ns()
-        met = order.kind not in SETS_OFF or all(fleet.quote(id, now_ns).agent for id in order.ids)
-        if order.ids and session.bus.connected() and met:
-            return
-        await asyncio.sleep(0.05)
-
-
-def _whom(session: Session, order: Order) -> tuple[int, ...]:
-    if order.ids:
-        return tuple(sorted(set(order.ids)))
-    return session.station.ids(order.role)
-
-
-async def _asked(order: Order, ids: tuple[int, ...]) -> bool:
-    if not sys.stdin.isatty():
-        raise ConfigError(f"{order.kind.value} ends a flight: found no terminal to ask, expected --yes")
-    print(f"{order.kind.value} {', '.join(map(str, ids))}? type yes: ", end="", flush=True)
-    answer: str = await asyncio.get_running_loop().run_in_executor(None, sys.stdin.readline)
-    return answer.strip().lower() == "yes"
 
 
 async def play(

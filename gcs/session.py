@@ -74,13 +74,13 @@ class Session:
 
 
 @asynccontextmanager
-async def on_air(settings: Settings, *, listen: bool, record: bool) -> AsyncIterator[Session]:
-    """A station on the bus, recording if asked; all of it ends with the block. Raises ConfigError."""
-    from gcs.recording.shell import StationRecorder
-    from onboard.runtime.file_writer import FileWriter
-    from onboard.runtime.links import open_link
-    from onboard.runtime.run_folder import new_run
+async def on_air(
+    settings: Settings, *, listen: bool, record: bool, versions: bool = True
+) -> AsyncIterator[Session]:
+    """A station on the bus, recording if asked; all of it ends with the block. Raises ConfigError.
 
+    Without `versions` those of the agents are not compared with the own, which takes time to look up.
+    """
     clock = RealClock()
     zenoh = Path(settings.bus.zenoh) if settings.bus.zenoh else None
     async with AsyncExitStack() as stack:
@@ -88,19 +88,10 @@ async def on_air(settings: Settings, *, listen: bool, record: bool) -> AsyncIter
         bus = await open_zenoh(settings.bus.endpoint or None, listen=listen, config_file=zenoh)
         stack.push_async_callback(bus.close)
         member = NAME if lock.member is None else lock.member.name
-        who = StationSetup(settings.game, settings.signature, version(), settings.alerts, member)
+        shown = version() if versions else ""
+        who = StationSetup(settings.game, settings.signature, shown, settings.alerts, member)
         station = Station(bus, clock, who)
-        recorder = None
-        if record:
-            links = []
-            for url in settings.recording.mavlink:
-                link = await open_link(url)
-                stack.callback(link.close)
-                links.append(link)
-            folder = new_run(Path(settings.recording.folder), settings.game, station.now_ns())
-            recorder = StationRecorder(station, folder, links, writer=FileWriter())
-            stack.callback(recorder.close)
-            station.remark(Severity.INFO, "recording", f"recording into {folder}")
+        recorder = await _recorder(settings, station, stack) if record else None
         if bus.how == "joined":
             station.remark(Severity.INFO, "bus", bus.status())
         if lock.lock is Lock.OPEN:
@@ -116,3 +107,22 @@ async def on_air(settings: Settings, *, listen: bool, record: bool) -> AsyncIter
         finally:
             for task in running:
                 task.cancel()
+
+
+async def _recorder(settings: Settings, station: Station, stack: AsyncExitStack) -> StationRecorder:
+    """What records the station into a new folder, until the stack ends."""
+    from gcs.recording.shell import StationRecorder
+    from onboard.runtime.file_writer import FileWriter
+    from onboard.runtime.links import open_link
+    from onboard.runtime.run_folder import new_run
+
+    links = []
+    for url in settings.recording.mavlink:
+        link = await open_link(url)
+        stack.callback(link.close)
+        links.append(link)
+    folder = new_run(Path(settings.recording.folder), settings.game, station.now_ns())
+    recorder = StationRecorder(station, folder, links, writer=FileWriter())
+    stack.callback(recorder.close)
+    station.remark(Severity.INFO, "recording", f"recording into {folder}")
+    return recorder

@@ -76,7 +76,9 @@ class Station:
         self._overflow = 0
         self._limited: dict[str, int] = {}  # what was over a bound, by kind
         self._heard: list[Subscription] = []
-        self._courier = Courier(bus, self.game, self.reducer.book, self.now_ns, self._on_reply)
+        self._courier = Courier(
+            bus, self.game, self.reducer.book, self.now_ns, self._on_reply, self.give_also
+        )
 
     def now_ns(self) -> int:
         """The station's time [ns since the epoch; steady]."""
@@ -134,6 +136,20 @@ class Station:
                 tasks.create_task(self._tick())
         finally:
             self.close()
+
+    def abort_everybody(self) -> str:
+        """Abort all that are known, and whoever else answers a call to all agents; the command's id."""
+        order = Command(self._new_id(), CommandKind.ABORT, self.operator, self.now_ns())
+        self.note(station_journal.SENT, station_journal.Sent(order, self.ids(), everybody=True))
+        self._courier.wake()
+        return order.command_id
+
+    def give_also(self, command_id: str, id: int) -> None:
+        """Give a command of `abort_everybody` to a vehicle that is only known now."""
+        order = self.reducer.book.call_found(command_id, id)
+        if order is not None:
+            self.note(station_journal.SENT, station_journal.Sent(order, (id,)))
+            self._courier.wake()
 
     def command(self, kind: CommandKind, ids: Iterable[int], *, named: bool = False) -> str:
         """Give a command to vehicles; its id. It is repeated until each has confirmed.

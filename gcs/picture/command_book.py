@@ -4,6 +4,8 @@ Confirmed means that the autopilot reports the state asked for: the agent answer
 Each command is repeated to each vehicle until a final answer, at most every 80 ms: at 30 % loss both
 ways a retry every 0.1 s confirms six of six within 2 s in 99.98 % of trials, one every 0.5 s in 19 %.
 Repeating is harmless, because agents know a command by its id. After 38 tries (3 s) the pace falls to 1 s.
+A command to everybody is also called out to all agents of the game, for 1.5 s at that pace and
+until somebody answers: who does is from then on one of those told, and confirms under its own key.
 """
 
 from __future__ import annotations
@@ -24,7 +26,9 @@ PATIENCE = 38  # tries at that pace: 3 s
 RETRY = RetryPolicy(RETRY_NS, patience=PATIENCE, slow=NS_PER_S)
 # `start` and `resume` expire: a vehicle that comes back later must not set off on its own
 EXPIRY_NS = 5 * NS_PER_S
+CALL_NS = 3 * NS_PER_S // 2  # how long everybody is called: at 30 % loss both ways each hears it
 KEPT = 50  # commands
+LEGS_MAX = 256  # who may join a command by answering a call: MAVLink knows no more systems
 
 ENDS_A_FLIGHT = frozenset({CommandKind.RETURN, CommandKind.LAND})  # these ask twice; abort never does
 SETS_OFF = frozenset({CommandKind.START, CommandKind.RESUME})
@@ -45,14 +49,17 @@ class _Leg:
 
 
 class _Order:
-    __slots__ = ("command", "issued_ns", "legs")
+    __slots__ = ("call", "command", "everybody", "issued_ns", "legs")
 
-    def __init__(
-        self, command: Command, ids: Iterable[int], now_ns: int, quotes: Mapping[int, Quote]
-    ) -> None:
+    def __init__(self, command: Command, now_ns: int, everybody: bool) -> None:
         self.command = command
         self.issued_ns = now_ns
-        self.legs = {i: _Leg(replace(command, quote=quotes.get(i, Quote()))) for i in sorted(set(ids))}
+        self.everybody = everybody
+        self.call = CommandRetry(RETRY)
+        self.legs: dict[int, _Leg] = {}
+
+    def calls(self, now_ns: int) -> bool:
+        return self.everybody and (now_ns - self.issued_ns < CALL_NS or not self.legs)
 
     def open(self, leg: _Leg, now_ns: int) -> bool:
         return leg.state not in FINAL and not self.expired(now_ns)
@@ -64,7 +71,7 @@ class _Order:
 class Due(NamedTuple):
     """One request to send now."""
 
-    id: int
+    id: int | None  # None: to all agents of the game
     command: Command
 
 
@@ -80,28 +87,39 @@ class CommandBook:
         ids: Iterable[int],
         now_ns: int,
         quotes: Mapping[int, Quote] = MappingProxyType({}),
+        *,
+        everybody: bool = False,
     ) -> None:
         """Enter a command to `ids`, with what each quotes: fixed now, however often it is sent.
 
         It supersedes what is open to them, but for one thing: nothing that sets a vehicle off supersedes an
-        abort that is not confirmed yet."""
-        if command.command_id in self._orders:
-            return
-        order = _Order(command, ids, now_ns, quotes)
-        for other in self._orders.values():
-            for vehicle_id, leg in other.legs.items():
-                if vehicle_id not in order.legs or not other.open(leg, now_ns):
-                    continue
-                if command.kind in SETS_OFF and other.command.kind is CommandKind.ABORT:
-                    mine = order.legs[vehicle_id]
-                    mine.state, mine.took_ns = LegState.REFUSED, now_ns
-                    mine.reason = "an abort is not confirmed yet"
-                else:
-                    leg.state, leg.took_ns = LegState.SUPERSEDED, now_ns
-                    leg.reason = f"by {command.kind.value}"
-        self._orders[command.command_id] = order
+        abort that is not confirmed yet. A command that is known already is given to further vehicles.
+        `everybody`: it is also called out to all agents, and those who answer are told it like the rest."""
+        order = self._orders.get(command.command_id)
+        if order is None:
+            order = self._orders[command.command_id] = _Order(command, now_ns, everybody)
+        for vehicle_id in sorted(set(ids)):
+            self._tell(order, vehicle_id, now_ns, quotes.get(vehicle_id, Quote()))
         while len(self._orders) > KEPT:
             self._orders.pop(next(iter(self._orders)))
+
+    def _tell(self, order: _Order, vehicle_id: int, now_ns: int, quote: Quote) -> _Leg:
+        """One more vehicle is told a command."""
+        known = order.legs.get(vehicle_id)
+        if known is not None:
+            return known
+        mine = order.legs[vehicle_id] = _Leg(replace(order.command, quote=quote))
+        for other in self._orders.values():
+            leg = other.legs.get(vehicle_id) if other is not order else None
+            if leg is None or not other.open(leg, now_ns):
+                continue
+            if order.command.kind in SETS_OFF and other.command.kind is CommandKind.ABORT:
+                mine.state, mine.took_ns = LegState.REFUSED, now_ns
+                mine.reason = "an abort is not confirmed yet"
+            else:
+                leg.state, leg.took_ns = LegState.SUPERSEDED, now_ns
+                leg.reason = f"by {order.command.kind.value}"
+        return mine
 
     def reply(self, reply: CommandReply, now_ns: int) -> None:
         """Enter an answer. Late ones of a leg that is final change nothing."""
@@ -114,6 +132,12 @@ class CommandBook:
         if leg.state in FINAL:
             leg.took_ns = now_ns
 
+    def call_found(self, command_id: str, vehicle_id: int) -> Command | None:
+        """The command to give to a vehicle that answered a call, for one that is not told it yet."""
+        order = self._orders.get(command_id)
+        wanted = order is not None and order.everybody and len(order.legs) < LEGS_MAX
+        return order.command if order is not None and wanted and vehicle_id not in order.legs else None
+
     def knows(self, reply: CommandReply) -> bool:
         """Whether state, reason and mode of an answer are what the book has of its leg already."""
         order = self._orders.get(reply.command_id)
@@ -125,6 +149,8 @@ class CommandBook:
         """What is to be sent now; counts as sent."""
         found = []
         for order in self._orders.values():
+            if order.calls(now_ns) and order.call.due(now_ns):
+                found.append(Due(None, order.command))
             for vehicle_id, leg in order.legs.items():
                 if order.open(leg, now_ns) and leg.retry.due(now_ns):
                     found.append(Due(vehicle_id, leg.command))
@@ -132,7 +158,10 @@ class CommandBook:
 
     def busy(self, now_ns: int) -> bool:
         """Something is open."""
-        return any(o.open(leg, now_ns) for o in self._orders.values() for leg in o.legs.values())
+        return any(
+            o.calls(now_ns) or any(o.open(leg, now_ns) for leg in o.legs.values())
+            for o in self._orders.values()
+        )
 
     def view(self, command_id: str, now_ns: int) -> CommandView | None:
         """One command as the picture shows it."""

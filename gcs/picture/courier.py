@@ -25,12 +25,14 @@ class Courier:
         book: CommandBook,
         now_ns: Callable[[], int],
         on_reply: Callable[[CommandReply], None],
+        on_found: Callable[[str, int], None],
     ) -> None:
         self._bus = bus
         self._game = game
         self._book = book
         self._now_ns = now_ns
         self._on_reply = on_reply
+        self._on_found = on_found  # (command id, vehicle that answered a call)
         self._wake = asyncio.Event()
         self.drops: Counter[str] = Counter()
 
@@ -54,5 +56,7 @@ class Courier:
         payload = COMMAND.encode(due.command)
         for answer in await self._bus.request(key, payload, REQUEST_TIMEOUT_S):
             reply = COMMAND.decode_reply(answer, self.drops)
-            if reply is not None and reply.id == due.id:
+            if reply is not None and due.id is None:
+                self._on_found(due.command.command_id, reply.id)  # what it says counts under its own key
+            elif reply is not None and reply.id == due.id:
                 self._on_reply(reply)

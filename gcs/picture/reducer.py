@@ -106,8 +106,9 @@ class PictureReducer:
 
     def _on_sent(self, sent: Sent, now_ns: int) -> None:
         quotes = {id: self.fleet.quote(id, now_ns) for id in sent.ids}
-        self.book.issue(sent.command, sent.ids, now_ns, quotes)
-        text = f"{sent.command.kind.value} to {', '.join(map(str, sent.ids))}, by {sent.command.sender}"
+        self.book.issue(sent.command, sent.ids, now_ns, quotes, everybody=sent.everybody)
+        whom = ["everybody"] if sent.everybody else [*map(str, sent.ids)]
+        text = f"{sent.command.kind.value} to {', '.join(whom)}, by {sent.command.sender}"
         line = LogLine(at_ns=now_ns, id=0, severity=Severity.INFO, kind="command", text=text)
         self.fleet.log.append(line)
 

@@ -25,10 +25,11 @@ class Presence(Message, frozen=True):
 
 
 class Sent(Message, frozen=True):
-    """The operator gave a command to these vehicles."""
+    """The operator gave a command to these vehicles; the same command again names further ones."""
 
     command: Command
     ids: tuple[int, ...]
+    everybody: bool = False  # and to whoever answers a call to all agents of the game
 
 
 class Replied(Message, frozen=True):

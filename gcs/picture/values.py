@@ -204,7 +204,7 @@ class CommandView(Value, frozen=True):
     @property
     def confirmed(self) -> bool:
         """Every vehicle has confirmed."""
-        return all(leg.state is LegState.CONFIRMED for leg in self.legs)
+        return bool(self.legs) and all(leg.state is LegState.CONFIRMED for leg in self.legs)
 
     @property
     def unconfirmed(self) -> tuple[int, ...]:

@@ -137,7 +137,14 @@ class FieldBus(ZenohBus):
         return _Both(inner, lambda: self._serving.pop(key, None) and None)
 
     async def request(self, key: str, payload: bytes, timeout_s: float) -> list[bytes]:
-        """The replies that came first: over the session, or by datagrams that are repeated meanwhile."""
+        """The replies that came first: over the session, or by datagrams that are repeated meanwhile.
+
+        A pattern asks every key of the membership that belongs to it: keys are granted one by one.
+        """
+        if "*" in key:
+            keys = sorted({k for peer in self.member.peers for k in peer.reads if matches(key, k)})
+            found = await asyncio.gather(*(self.request(one, payload, timeout_s) for one in keys))
+            return [reply for replies in found for reply in replies]
         number = self._path.next_request()
         if not self._path.ask(number, key, payload):
             return await self._over_session(key, payload, timeout_s)

@@ -85,7 +85,9 @@ class Bus(Protocol):
         ...
 
     async def request(self, key: str, payload: bytes, timeout_s: float) -> list[bytes]:
-        """All replies that came within `timeout_s` (as soon as the first where only one can come)."""
+        """All replies that came within `timeout_s` (as soon as the first where only one can come).
+
+        A key with `*` for a chunk asks all who serve one that belongs to it."""
         ...
 
     def announce(self, key: str) -> Subscription:

@@ -14,8 +14,9 @@ from pathlib import Path
 
 import msgspec
 import pytest
+import typer
 
-from gcs import cli, options, settings
+from gcs import cli, options, settings, urgent
 from gcs.console.plain_lines import PlainLines
 from gcs.picture.alert_rules import Thresholds
 from gcs.picture.json_document import document
@@ -111,16 +112,20 @@ def free_endpoint() -> str:
 
 
 @asynccontextmanager
-async def field(endpoint: str, count: int = 3, deaf: int = 0):
-    """`count` vehicles on a bus that listens, and `deaf` more in the game that are not there."""
+async def field(endpoint: str, count: int = 3, deaf: int = 0, silent: bool = False):
+    """`count` vehicles on a bus that listens, and `deaf` more in the game that are not there.
+
+    `silent`: nobody says a word, and no game is set up.
+    """
     bus = await open_zenoh(endpoint, listen=True)
     clock = RealClock()
     crews = [AnsweringAgent(bus, clock, i) for i in range(1, count + 1)]
-    bus.publish(*on_bus(setup(count + deaf)), topics.SETUP.delivery)
-    bus.publish(*on_bus(phase(Phase.STAGING)), topics.PHASE.delivery)
+    if not silent:
+        bus.publish(*on_bus(setup(count + deaf)), topics.SETUP.delivery)
+        bus.publish(*on_bus(phase(Phase.STAGING)), topics.PHASE.delivery)
 
     async def speak() -> None:
-        while True:
+        while not silent:
             for crew in crews:
                 crew.speak()
             await asyncio.sleep(0.1)
@@ -170,6 +175,83 @@ async def test_abort_from_a_shell_ends_with_0_only_when_every_vehicle_has_confir
         assert out.startswith("abort: 3 of 3 confirmed")
         assert out.count("LOITER") == 3
         assert all([c.kind for c in crew.obeyed] == [CommandKind.ABORT] for crew in crews)
+
+
+@pytest.mark.real
+async def test_an_abort_of_everybody_is_called_out_before_anything_is_heard(free_endpoint):
+    async with field(free_endpoint, silent=True) as crews:
+        code, out, _ = await shell("command", "abort", "--all", endpoint=free_endpoint)
+        assert (code, out.splitlines()[0]) == (0, "abort: 3 of 3 confirmed")
+        assert all(len(crew.obeyed) == 1 for crew in crews)
+
+
+@pytest.mark.parametrize(
+    ("line", "expected"),
+    [
+        ("command abort --all", ({}, (), 10.0)),
+        ("--bus tcp/h:1 command --game=g abort 3 12 --within 2.5",
+         ({"bus": "tcp/h:1", "game": "g"}, (3, 12), 2.5)),
+        ("--zenoh k/z.json5 command abort --all --yes --operator anna --bus a --bus b",
+         ({"zenoh": Path("k/z.json5"), "operator": "anna", "bus": "b"}, (), 10.0)),
+        ("command abort --all 3", None),  # what is not plain is left to Typer, which tells the mistake
+        ("command abort", None),
+        ("--all command abort", None),
+        ("command abort --all --within 0", None),
+        ("command abort --all --within x", None),
+        ("command abort --all --bus", None),
+        ("command abort --role evader", None),
+        ("command abort --all --plain", None),
+        ("command abort ²", None),
+        ("command abort 251", None),
+        ("command hold --all", None),
+        ("command abort --help", None),
+    ],
+)  # fmt: skip
+def test_a_plain_abort_is_read_without_typer(line, expected):
+    found = urgent.abort_of(line.split())
+    assert found == (None if expected is None else (options.Options(**expected[0]), *expected[1:]))
+
+
+@pytest.mark.parametrize("name", urgent.SHARED)
+def test_an_abort_read_without_typer_takes_the_options_that_the_command_takes(name):
+    command = typer.main.get_command(cli.app).commands["command"]
+    declared = {option for parameter in command.params for option in parameter.opts}
+    assert name in declared
+    assert declared - set(urgent.SHARED) == {"kind", "ids", "--all", "--role", "--yes", "--within"}
+
+
+FIRST_REQUEST = """
+import sys
+from onboard.runtime.zenoh_session import ZenohBus
+asked = ZenohBus.request
+def request(bus, key, payload, timeout_s):
+    print(key, *sorted({name.partition(".")[0] for name in sys.modules}
+          | {name for name in sys.modules if name.startswith("gcs.")}), file=sys.stderr)
+    ZenohBus.request = asked
+    return asked(bus, key, payload, timeout_s)
+ZenohBus.request = request
+from gcs.cli import main
+main()
+"""
+HEAVY = {
+    *("numpy", "numba", "textual", "rich", "mcap", "pymavlink", "cryptography", "scipy", "email", "pydantic"),
+    *("gcs.programs", "gcs.recording", "gcs.console.app", "gcs.replay", "gcs.report", "gcs.keys"),
+}
+
+
+@pytest.mark.real
+async def test_an_abort_calls_everybody_first_and_imports_nothing_large_before(free_endpoint):
+    async with field(free_endpoint):
+        process = await asyncio.create_subprocess_exec(
+            sys.executable, "-c", FIRST_REQUEST, "command", "abort", "--all", "--bus", free_endpoint,
+            "--game", GAME, stderr=asyncio.subprocess.PIPE, env=environment(),
+        )  # fmt: skip
+        async with asyncio.timeout(patience(20.0)):
+            _, err = await process.communicate()
+    key, *loaded = err.decode().split()
+    assert key == topics.COMMAND.key(GAME)
+    assert "gcs.shell_command" in loaded
+    assert HEAVY & set(loaded) == set()
 
 
 @pytest.mark.real

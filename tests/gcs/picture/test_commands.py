@@ -9,7 +9,7 @@ from contextlib import asynccontextmanager
 import numpy as np
 import pytest
 
-from gcs.picture.command_book import EXPIRY_NS, RETRY_NS, CommandBook
+from gcs.picture.command_book import CALL_NS, EXPIRY_NS, RETRY_NS, CommandBook
 from gcs.picture.values import CommandView, LegState
 from gcs.station import Station, StationSetup
 from onboard.core.math.constants import NS_PER_S
@@ -99,8 +99,40 @@ def test_answers_to_nothing_late_and_unknown_ones_change_nothing():
     book.reply(reply(CommandState.REFUSED, reason="no autopilot"), START_NS)
     book.reply(reply(CommandState.PENDING), START_NS)
     assert legs(book) == {2: LegState.REFUSED}
-    book.issue(order(), (2, 3), START_NS)  # the same id again is the same command
-    assert legs(book) == {2: LegState.REFUSED}
+    book.issue(order(), (2, 3), START_NS)  # the same id again is the same command, given to one more
+    assert legs(book) == {2: LegState.REFUSED, 3: LegState.SENT}
+
+
+def test_everybody_is_called_and_who_answers_is_one_of_those_told():
+    book = CommandBook()
+    book.issue(order(CommandKind.RESUME, "c0"), (7,), START_NS)
+    book.issue(order(), (2,), START_NS, everybody=True)
+    assert {due.id for due in book.due(START_NS)} == {None, 2, 7}
+    book.reply(reply(CommandState.PENDING, 7), START_NS)
+    assert legs(book) == {2: LegState.SENT}  # a vehicle is told it first
+    found = book.call_found("c1", 7)
+    assert found == order()
+    book.issue(found, (7,), START_NS)
+    assert legs(book) == {2: LegState.SENT, 7: LegState.SENT}
+    assert book.call_found("c1", 7) is None
+    assert book.call_found("c0", 9) is None  # nobody is called to that one
+    assert legs(book, "c0") == {7: LegState.SUPERSEDED}
+    late_ns = START_NS + CALL_NS
+    assert {due.id for due in book.due(late_ns)} == {2, 7}  # each by its own key until it has confirmed
+    for vehicle in (2, 7):
+        book.reply(reply(CommandState.CONFIRMED, vehicle), late_ns)
+    assert not book.busy(late_ns)
+
+
+def test_a_call_that_nobody_answers_goes_on_and_strangers_who_answer_have_a_bound():
+    book = CommandBook()
+    book.issue(order(), (), START_NS, everybody=True)
+    late_ns = START_NS + 20 * CALL_NS
+    assert [due.id for due in book.due(late_ns)] == [None]
+    for vehicle in range(1000):
+        found = book.call_found("c1", vehicle)
+        book.issue(found or order(CommandKind.HOLD, "none"), (vehicle,), late_ns)
+    assert len(legs(book)) == 256
 
 
 def test_the_book_is_bounded():
@@ -150,6 +182,18 @@ async def test_an_abort_of_six_is_confirmed_by_their_autopilots():
         assert all(crew.obeyed[0].sender == "anna" for crew in crews)
         await asyncio.sleep(1.0)
         assert all(crew.heard[command_id] <= 1 + 0.4 / 0.08 for crew in crews)
+
+
+@virtual
+async def test_an_abort_to_everybody_reaches_those_whom_nobody_has_heard():
+    async with field(6, Impairment(loss=0.3, delay_s=0.02)) as (station, crews):
+        assert station.ids() == ()
+        command_id = station.abort_everybody()
+        await asyncio.sleep(2.0)
+        view = await confirmed(station, command_id, 2.0)
+        assert view.confirmed
+        assert sorted(leg.id for leg in view.legs) == [1, 2, 3, 4, 5, 6]
+        assert all([c.command_id for c in crew.obeyed] == [command_id] for crew in crews)
 
 
 @virtual
@@ -207,8 +251,9 @@ def test_an_abort_gets_through_a_bus_that_loses_every_third_message(seed):
     fly()
 
 
+@pytest.mark.parametrize("abort", [lambda s: s.command(CommandKind.ABORT, (2, 3)), Station.abort_everybody])
 @virtual
-async def test_a_reply_in_the_name_of_another_vehicle_counts_for_nobody() -> None:
+async def test_a_reply_in_the_name_of_another_vehicle_counts_for_nobody(abort) -> None:
     broker = MemoryBroker()
     station = Station(broker.connect(), virtual_clock(), StationSetup(GAME))
     liar = broker.connect()
@@ -222,9 +267,10 @@ async def test_a_reply_in_the_name_of_another_vehicle_counts_for_nobody() -> Non
     liar.serve(COMMAND.key(GAME, 2), lies)
     running = asyncio.create_task(station.run())
     await asyncio.sleep(0.1)
-    station.command(CommandKind.ABORT, (2, 3))
+    abort(station)
     await asyncio.sleep(1.0)
     (shown,) = station.picture().commands
-    assert {leg.id: leg.state for leg in shown.legs} == dict.fromkeys((2, 3), LegState.SENT)
+    assert {leg.state for leg in shown.legs} == {LegState.SENT}
+    assert 3 in {leg.id for leg in shown.legs}
     running.cancel()
     await asyncio.gather(running, return_exceptions=True)

@@ -72,6 +72,10 @@ async def test_an_order_comes_by_datagram_from_either_station_and_from_no_vehicl
         assert await ground.request(ORDER, b"abort", 2.0) == [b"obeyed abort"]
         assert await second.request(ORDER, b"abort", 2.0) == [b"obeyed abort"]
         assert await mate.request(ORDER, b"abort", 0.5) == []
+        mate.serve(COMMAND.key(GAME, 3), lambda question: b"mate obeyed " + question)
+        everybody = COMMAND.key(GAME)
+        assert set(await second.request(everybody, b"abort", 2.0)) == {b"obeyed abort", b"mate obeyed abort"}
+        assert await mate.request(everybody, b"abort", 0.5) == []
     finally:
         for bus in buses[::-1]:
             await bus.close()
