@@ -52,7 +52,7 @@ class Session:
 
     def _links(self) -> str:
         """How many vehicles sign their MAVLink links; "" where none does and the bus has no keys either."""
-        locks = self.station.reducer.fleet.link_locks()
+        locks = self.station.reducer.fleet.link_locks(self.station.now_ns())
         signed = locks.count(LinkLock.SIGNED)
         if not locks or (not signed and self.lock.lock is not Lock.KEYS):
             return ""

@@ -20,6 +20,7 @@ from gcs.console.source import Source
 from gcs.console.vehicle_table import Row, rows
 from gcs.console.widgets import AlertBoard, Detail, LogPanel, Plan, Prompt, StatusBar, VehicleTable
 from gcs.picture.command_book import ENDS_A_FLIGHT
+from gcs.picture.current import current
 from gcs.picture.values import Picture
 from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus.messages import CommandKind
@@ -132,7 +133,7 @@ class Console(App[int]):
         picture = self.picture
         if self.selected is None and picture.vehicles:
             self.selected = picture.vehicles[0].id
-        self.table = rows(picture, self.sort, self.descending)
+        self.table = rows(current(picture), self.sort, self.descending)
         try:
             self._show_all(picture)
         except NoMatches:  # not composed yet, or on its way out

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import atan2, degrees, hypot
 
 from gcs.console.vehicle_table import GRADE_WORDS, STYLES, age, evader_position, grades
+from gcs.picture.current import current
 from gcs.picture.values import Picture, VehicleView
 from onboard.core.math.vectors import Vec, distance, dot, norm, scale, sub
 from onboard.wire.bus.messages import LinkLock, Role, SupervisorAction
@@ -19,9 +20,11 @@ LOCKS: dict[LinkLock, Line] = {
 
 
 def detail(picture: Picture, selected: int | None) -> list[Line]:
-    """Lines about the selected vehicle, the most important first."""
+    """Lines about the selected vehicle, the most important first; what is no longer fed says its age."""
+    known = picture.vehicle(selected) if selected is not None else None
+    picture = current(picture)
     vehicle = picture.vehicle(selected) if selected is not None else None
-    if vehicle is None:
+    if vehicle is None or known is None:
         return [("no vehicle selected", "dim")]
     grade = grades(picture)[vehicle.id]
     role = vehicle.role.value if vehicle.role else "role unknown"
@@ -29,8 +32,9 @@ def detail(picture: Picture, selected: int | None) -> list[Line]:
     kind = vehicle.health.autopilot if vehicle.health else None
     lines = [
         (f"{vehicle.id} {role}: {GRADE_WORDS[grade]}, heard {age(vehicle.age_s)} s ago", STYLES[grade]),
-        (f"{vehicle.mode or 'no mode'}, {armed}, {kind.value if kind else ''}", ""),
+        (f"{vehicle.mode}, {armed}, {kind.value if kind else ''}" if vehicle.mode else "mode unknown", ""),
     ]
+    lines += _last(known, vehicle)
     if vehicle.health is not None and vehicle.health.lacks:
         lines.append((f"waits for {', '.join(vehicle.health.lacks)}", "yellow"))
     lines += _decision(vehicle)
@@ -42,14 +46,36 @@ def detail(picture: Picture, selected: int | None) -> list[Line]:
     return lines
 
 
+def _last(known: VehicleView, now: VehicleView) -> list[Line]:
+    """What was last known of a vehicle and is no longer told, with its age."""
+    lines = []
+    if known.state is not None and now.state is None:
+        north, east, down = known.state.position
+        ago = f"{age(known.state_age_s)} s ago"
+        lines.append((f"last at N {north:.1f} E {east:.1f} up {-down:.1f} m, {ago}", "bold"))
+    if known.mode and not now.mode:
+        lines.append((f"last mode {known.mode}, {age(_mode_age(known))} s ago", ""))
+    battery_told = now.health is not None and now.health.battery >= 0
+    if known.health is not None and known.health.battery >= 0 and not battery_told:
+        told = known.health_age_s + min(known.health.telemetry_age_s, known.health.heartbeat_age_s)
+        lines.append((f"last battery {known.health.battery:.0%}, {age(told)} s ago", ""))
+    return lines
+
+
+def _mode_age(known: VehicleView) -> float:
+    """How old the last word on an autopilot's mode is [s]."""
+    if known.health is None or known.health_age_s >= known.state_age_s:
+        return known.state_age_s
+    return known.health_age_s + known.health.heartbeat_age_s
+
+
 def _decision(vehicle: VehicleView) -> list[Line]:
     decision = vehicle.decision
     if decision is None:
         return [("no decision reported", "dim")]
     north, east, down = decision.aim
-    old = f" ({age(vehicle.decision_age_s)} s ago)" if vehicle.decision_age_s > 1.0 else ""
     lines = [
-        (f"rule {decision.rule.replace('_', ' ')}{old}", "bold"),
+        (f"rule {decision.rule.replace('_', ' ')}", "bold"),
         (f"{decision.level.value}, {decision.module.value}, {decision.strategy}", ""),
         (f"aim N {north:.0f} E {east:.0f} up {-down:.0f} m", ""),
         (f"in {decision.time_to_aim:.1f} s, predicted miss {decision.miss:.1f} m", ""),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from gcs.console.status_line import clock
 from gcs.console.vehicle_table import GRADE_WORDS, age, grades
+from gcs.picture.current import current
 from gcs.picture.terminal_text import printable
 from gcs.picture.values import LogLine, Picture
 from onboard.core.math.constants import NS_PER_S
@@ -50,6 +51,7 @@ def _entry(entry: LogLine) -> str:
 
 def status(picture: Picture) -> list[str]:
     """How the game and each vehicle are, a line each."""
+    picture = current(picture)
     game = picture.game
     at = clock(picture.now_ns)
     phase = game.phase.value if game.phase else "no game"
@@ -66,6 +68,7 @@ def status(picture: Picture) -> list[str]:
             GRADE_WORDS[graded[vehicle.id]],
             vehicle.mode or "no mode",
             health.stage.value if health else "no health",
+            f"link {health.link_quality:.0%}" if health and health.autopilot else "link unknown",
             f"battery {health.battery:.0%}" if health and health.battery >= 0 else "battery unknown",
             f"heard {age(vehicle.age_s)} s ago",
         ]

@@ -10,6 +10,7 @@ from math import atan2, ceil, cos, floor, hypot, log10, pi, remainder, sin
 from typing import NamedTuple
 
 from gcs.console.vehicle_table import GRADE_WORDS, STYLES, Grade, grades
+from gcs.picture.current import MOTION_OLD_S, current
 from gcs.picture.values import Picture, Presence, VehicleView
 from onboard.game import palette
 from onboard.wire.bus.messages import Role
@@ -192,24 +193,27 @@ def plan(
             canvas.line(a, b, "dim", gap=2)
     chosen = picture.vehicle(selected) if selected is not None else None
     if options.circles:
-        _circles(canvas, picture, chosen)
+        _circles(canvas, current(picture), chosen)
     if options.trails:
         _trails(canvas, picture)
-    if chosen is not None and chosen.decision is not None and chosen.position is not None:
-        aim = chosen.decision.aim
-        canvas.line(chosen.position[:2], aim[:2], "bold", gap=3)
+    now = current(picture)
+    active = None if chosen is None else now.vehicle(chosen.id)
+    if active is not None and active.decision is not None and active.position is not None:
+        aim = active.decision.aim
+        canvas.line(active.position[:2], aim[:2], "bold", gap=3)
         canvas.sign(aim[0], aim[1], "×", "bold")
     if picture.game.target is not None:
         canvas.sign(picture.game.target[0], picture.game.target[1], "◎", f"bold {palette.TARGET.dark}")
-    own = {v.id for v in picture.vehicles if v.presence is Presence.PRESENT and v.position}
-    for track in picture.tracks:
+    own = {v.id for v in now.vehicles if v.position}
+    for track in now.tracks:
         if track.id not in own:
             canvas.sign(*track.track.position[:2], f"+{track.id}", _colour(picture, track.id))
     graded = grades(picture)
     for vehicle in sorted(picture.vehicles, key=lambda v: v.id == selected):
         if vehicle.position is not None:
             colour = _colour(picture, vehicle.id)
-            label, style = _label(vehicle, graded[vehicle.id], vehicle.id == selected, colour)
+            grade = graded[vehicle.id] if vehicle.state_age_s <= MOTION_OLD_S else Grade.LOST
+            label, style = _label(vehicle, grade, vehicle.id == selected, colour)
             canvas.sign(vehicle.position[0], vehicle.position[1], label, style)
     _scale(canvas)
     return canvas.rows()
@@ -221,7 +225,7 @@ def _circles(canvas: _Canvas, picture: Picture, chosen: VehicleView | None) -> N
             if vehicle.role is Role.PURSUER and vehicle.position is not None:
                 style = f"dim {_colour(picture, vehicle.id)}"
                 canvas.circle(*vehicle.position[:2], picture.game.setup.rules.R, style)
-    if chosen is not None and chosen.decision is not None and chosen.decision_age_s < 2.0:
+    if chosen is not None and chosen.decision is not None and chosen.decision_age_s <= MOTION_OLD_S:
         for north, east, _, radius in chosen.decision.circles:
             canvas.circle(north, east, radius, palette.APOLLONIUS.dark)
 
@@ -281,7 +285,7 @@ LEGEND = (
     ("E1", "the evader"),
     ("[2]", "the selected vehicle, with its line to its aim × and its Apollonius circles"),
     ("2!", f"an alert about it ({GRADE_WORDS[Grade.WARN]} or {GRADE_WORDS[Grade.ERROR]})"),
-    ("✕2", "lost: where it was last"),
+    ("✕2", "where it was last: lost, or its position is old"),
     ("+1", "a track of somebody who does not speak here"),
     ("◎", "the evader's target"),
 )

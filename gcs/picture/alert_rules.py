@@ -176,13 +176,14 @@ def _link(vehicle: VehicleView, in_force: InForce, limits: Thresholds) -> Iterat
     if health is None:
         return
     limit = limits.link_low + (limits.link_margin if in_force(f"link:{vehicle.id}") else 0.0)
-    if health.autopilot and health.link_quality < limit:
+    silent = health.telemetry_age_s > limits.telemetry_stale_s
+    silent = silent or health.heartbeat_age_s > limits.heartbeat_stale_s
+    if health.autopilot and health.link_quality < limit and not silent:
         yield Finding(
             "link", vehicle.id, WARNING, f"{name} gets {health.link_quality:.0%} of its telemetry",
             "bring it closer, or check antennas and interference", 1.0,
         )  # fmt: skip
-    silent = health.telemetry_age_s > limits.telemetry_stale_s
-    if health.autopilot and (silent or health.heartbeat_age_s > limits.heartbeat_stale_s):
+    if health.autopilot and silent:
         yield Finding(
             "autopilot_silent", vehicle.id, ERROR, f"{name}'s autopilot is silent",
             "check the link between agent and autopilot; the autopilot's failsafe acts",

@@ -13,6 +13,7 @@ from collections import Counter, deque
 from collections.abc import Callable
 from typing import Any
 
+from gcs.picture.current import HEALTH_OLD_S
 from gcs.picture.plausible import plausible
 from gcs.picture.records import TrackRecord, VehicleRecord, age_s
 from gcs.picture.station_journal import HEARD_HERE, PRESENCE, REMARK, Presence, Remark
@@ -268,9 +269,12 @@ class Fleet:
         """Every vehicle heard or expected, by id."""
         return tuple(self._entries[i].view(i, now_ns) for i in sorted(self._entries))
 
-    def link_locks(self) -> list[LinkLock]:
-        """What keeps strangers off the MAVLink links of each agent that was heard."""
-        return [entry.health.link_lock for entry in self._entries.values() if entry.health is not None]
+    def link_locks(self, now_ns: int) -> list[LinkLock]:
+        """What keeps strangers off the MAVLink links of each agent that is heard."""
+        return [
+            entry.health.link_lock for entry in self._entries.values()
+            if entry.health is not None and age_s(entry.health_ns, now_ns) <= HEALTH_OLD_S
+        ]  # fmt: skip
 
     def tracks(self, now_ns: int) -> tuple[TrackView, ...]:
         """Every track of the last half minute, by id."""

@@ -22,11 +22,13 @@ from onboard.wire.bus.messages import (
     Setup,
     Severity,
     State,
+    SupervisorAction,
     Triple,
 )
 from onboard.wire.bus.messages import Track as TrackMessage
 
 INF = float("inf")
+MASTER_OLD_S = 2.0  # a master that is silent for longer, and for its lease, keeps no clock
 
 
 class Value(msgspec.Struct, frozen=True, kw_only=True):
@@ -99,8 +101,13 @@ class VehicleView(Value, frozen=True):
 
     @property
     def rule(self) -> str:
-        """The rule in force, "" = none reported."""
-        return self.decision.rule if self.decision else ""
+        """The rule in force, or what the supervisor does instead of it and why; "" = none reported."""
+        if self.decision is None:
+            return ""
+        if self.decision.supervisor in (SupervisorAction.OK, SupervisorAction.CLIP):
+            return self.decision.rule
+        why = f": {self.decision.reason}" if self.decision.reason else ""
+        return f"{self.decision.supervisor.value.upper()}{why}"
 
 
 class TrackView(Value, frozen=True):
@@ -130,10 +137,22 @@ class GameView(Value, frozen=True):
 
     @property
     def clock(self) -> str:
-        """Time of the game for a person: `T−3.2 s`, `T+12.5 s`, `–`."""
+        """Time of the game for a person: `T−3.2 s`, `T+12.5 s`, `–`.
+
+        It stands still where the game has ended, and where its master has fallen silent, which it says.
+        """
         if not self.t0_ns:
             return "–"
-        return f"T{'−' if self.time_s < 0 else '+'}{abs(self.time_s):.1f} s"
+        if self.outcome is not None:
+            return _clock(self.outcome.time)
+        silent_s = self.master_age_s
+        if self.master is None or silent_s <= max(self.master.lease_s, MASTER_OLD_S):
+            return _clock(self.time_s)
+        return f"{_clock(self.time_s - silent_s)} when its master was last heard, {silent_s:.0f} s ago"
+
+
+def _clock(time_s: float) -> str:
+    return f"T{'−' if time_s < 0 else '+'}{abs(time_s):.1f} s"
 
 
 class Alert(Value, frozen=True):

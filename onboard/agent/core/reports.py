@@ -25,6 +25,7 @@ from onboard.wire.bus.messages import (
     SupervisorAction,
 )
 
+LINK_DEAD = 2.0  # [s] an autopilot that is silent for longer gives nothing of its telemetry
 UNSURE = 1e6  # stands for an error that is not known [m]
 
 
@@ -116,7 +117,7 @@ class Reports:
             mode=t.mode,
             armed=t.armed,
             battery=t.battery,
-            link_quality=t.link_quality,
+            link_quality=t.link_quality if now.s - max(t.position_at, t.heartbeat_at) < LINK_DEAD else 0.0,
             telemetry_rate_hz=vehicle.position_rate.value,
             setpoint_rate_hz=vehicle.setpoint_rate.value,
             clock_offset_s=self._bus.clock.offset_s,
