@@ -6,13 +6,25 @@ the emptiest speaks. What no BATTERY_STATUS of a flight battery tells, SYS_STATU
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from onboard.autopilot.plausibility import Recent
 from onboard.core.math.constants import NEVER
 from onboard.wire.mavlink.values import UNKNOWN, Battery, SysStatus
 
 FLIGHT = (0, 1, 2)  # MAV_BATTERY_FUNCTION: not said, all of the vehicle, propulsion
+FUNCTIONS = {0: "unknown", 1: "all", 2: "propulsion", 3: "avionics", 4: "payload"}
 MOST = 16  # batteries told apart
 STALE = 30.0  # [s] after which a battery that fell silent no longer speaks, where another one does
+
+
+class Gauged(NamedTuple):
+    """What one battery reports."""
+
+    id: int
+    function: int  # MAV_BATTERY_FUNCTION
+    share: float  # 0…1, or UNKNOWN
+    voltage: float  # [V], or UNKNOWN
 
 
 class _Gauge:
@@ -47,12 +59,16 @@ class Batteries:
 
     def __init__(self) -> None:
         self._gauges: dict[int, _Gauge] = {}
+        self._reports: dict[int, Gauged] = {}  # the last of each, whatever it is for
         self._status = _Gauge()
         self._now = NEVER
 
     def take(self, now: float, battery: Battery) -> None:
         """Take in a BATTERY_STATUS that came at `now` [s, monotonic]."""
         self._now = now
+        if battery.id in self._reports or len(self._reports) < MOST:
+            report = Gauged(battery.id, battery.function, battery.remaining, battery.voltage)
+            self._reports[battery.id] = report
         if battery.function not in FLIGHT:
             self._gauges.pop(battery.id, None)
         elif battery.id in self._gauges or len(self._gauges) < MOST:
@@ -73,6 +89,11 @@ class Batteries:
         """The voltage of the emptiest flight battery [V]; UNKNOWN where nobody says."""
         gauge = self._emptiest()
         return self._status.voltage if gauge is None or gauge.voltage == UNKNOWN else gauge.voltage
+
+    @property
+    def each(self) -> tuple[Gauged, ...]:
+        """The last report of every battery, by id."""
+        return tuple(self._reports[id] for id in sorted(self._reports))
 
     def _emptiest(self) -> _Gauge | None:
         """The battery that speaks: the emptiest; where no share is known, the lowest voltage."""

@@ -20,6 +20,7 @@ INSIST = 3.0  # [s] after which another clock counts though the silence before i
 LEAP_RATE = 10.0  # how much faster than ours a (simulated) clock may run
 WRAP = 2**32 * 1e-3  # [s] where 32 bits of milliseconds begin again
 STRANGERS, STRANGE_S = 10, (1.0, 3.0)  # odd stamps, and the [s] they span, that show two autopilots
+STRANGE_GAP = 0.12  # [s] within which several odd stamps count once: at 40 a second ten span too little
 
 JUMP = 10.0  # [m] between two samples that their velocities do not explain
 JUMP_RATE = 5.0  # [m/s²] more for the time between them: half of the acceleration that may have been
@@ -65,16 +66,25 @@ class ClockWatch:
             return self._keep(now, self.boot_s, Stamp.GOOD)
         if ahead < 0.0 and silence >= QUIET and stamp_s <= silence:
             return self._keep(now, stamp_s, Stamp.RESTART)  # no longer up than it was silent
-        self._odd.append(now)
+        self._strange(now)
         if self._other_clock(now, stamp_s):
             return self._keep(now, stamp_s, Stamp.RESTART if ahead < 0.0 else Stamp.GOOD)
         return Stamp.ODD
+
+    def passed_over(self, now: float, stamp_s: float) -> None:
+        """Look at the stamp of a frame that does not count: whether it is of this clock at all."""
+        if self._at != NEVER and abs(stamp_s - self.boot_s) > FALL + LEAP_RATE * (now - self._at):
+            self._strange(now)
 
     def two_clocks(self, now: float) -> bool:
         """Whether the stamps of lately come of two clocks at once."""
         least, most = STRANGE_S
         full = len(self._odd) == STRANGERS
         return full and now - self._odd[0] <= most and self._odd[-1] - self._odd[0] >= least
+
+    def _strange(self, now: float) -> None:
+        if not self._odd or now - self._odd[-1] >= STRANGE_GAP:
+            self._odd.append(now)
 
     def _keep(self, now: float, boot_s: float, stamp: Stamp) -> Stamp:
         self.boot_s, self._at, self._run = boot_s, now, 0

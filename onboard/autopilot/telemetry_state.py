@@ -11,7 +11,7 @@ from collections import Counter
 from typing import TypeVar, cast
 
 from onboard.autopilot.base import Telemetry
-from onboard.autopilot.batteries import Batteries
+from onboard.autopilot.batteries import Batteries, Gauged
 from onboard.autopilot.plausibility import FALL, LEAST, ClockWatch, EstimatorWatch, PlaceWatch, Recent, Stamp
 from onboard.core.math.constants import NEVER
 from onboard.core.math.vectors import ZERO, Vec
@@ -93,6 +93,8 @@ class Observer:
         kept = self._latest.get(type(value))
         late = kept is not None and now - kept[0] < OLD and (packet.sequence - kept[1]) % 256 > 128
         if late and kept is not None and kept[1] != NO_NUMBER:
+            if isinstance(value, (GlobalPosition, Attitude)):
+                self._clock.passed_over(now, value.time_boot_s)
             return None
         if isinstance(value, Home):
             self.home = value
@@ -112,6 +114,11 @@ class Observer:
     def doubt(self) -> str:
         """Why positions do not count now, as `odd` counts them; "" while they do."""
         return self._places.doubt
+
+    @property
+    def batteries(self) -> tuple[Gauged, ...]:
+        """What each battery said last."""
+        return self._batteries.each
 
     def two_clocks(self, now: float) -> bool:
         """Whether two autopilots seem to speak under this system id."""

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from hashlib import sha256
 from itertools import pairwise
 
 import pytest
 
 from onboard.agent.config import AgentConfig
-from onboard.agent.core.events import Instant, LinkBytes, LinkFacts, Send, Started, Tick
+from onboard.agent.core.events import Instant, LinkBytes, LinkFacts, Note, Send, Started, Tick
 from onboard.agent.core.machine import AgentCore, Facts
 from onboard.autopilot.telemetry_state import Observer
-from onboard.wire.mavlink.dialect import DialectSender, MavMessage, dialect
+from onboard.wire.mavlink.dialect import DialectSender, MavMessage, dialect, dialect_packet
 from onboard.wire.mavlink.frames import Framer
+from onboard.wire.mavlink.signing import MemoryStore, Signing
 
 T0 = 1_700_000_000_000_000_000
 FIRST, SECOND = 1, 2  # peers
@@ -51,12 +53,18 @@ def test_the_flight_battery_speaks(messages: tuple[MavMessage, ...], share: floa
     assert seen(*messages[::turn])[0] == pytest.approx(share)
 
 
+def signing_with(key: bytes) -> Signing:
+    return Signing(sha256(key).digest(), MemoryStore())
+
+
 class Agent:
     """One agent without input and output; what it sends goes to peers."""
 
-    def __init__(self) -> None:
-        self.core = AgentCore(AgentConfig(id=2), Facts(1, (LinkFacts("wire", False),)))
+    def __init__(self, key: bytes = b"") -> None:
+        signing = signing_with(key) if key else None
+        self.core = AgentCore(AgentConfig(id=2), Facts(1, (LinkFacts("wire", False),)), signing)
         self.sent: list[Send] = []
+        self.told: list[str] = []
         self.now = 0.0
         self._do(Started())
 
@@ -65,9 +73,15 @@ class Agent:
         for effect in [*self.core.handle(event, now), *self.core.idle(now)]:  # type: ignore[arg-type]
             if isinstance(effect, Send):
                 self.sent.append(effect)
+            elif isinstance(effect, Note):
+                self.told.append(effect.line)
 
     def hear(self, peer: int, sender: DialectSender, message: MavMessage) -> None:
-        self._do(LinkBytes(0, peer, sender.pack(message)))
+        self._do(LinkBytes(0, peer, sender.pack(message, T0 + int(self.now * 1e9))))
+
+    def text(self, kind: str) -> str:
+        """The lines that were told of a kind."""
+        return " ".join(line for line in self.told if f" {kind}: " in line)
 
     def pass_time(self, seconds: float) -> None:
         self.now += seconds
@@ -115,13 +129,15 @@ def test_a_second_autopilot_with_the_same_id_draws_nothing_and_is_told(
     assert agent.core.vehicle.telemetry.reboots == 0
 
 
-def test_two_autopilots_through_one_router_are_told() -> None:
-    agent, first, second = Agent(), DialectSender(2, 1), DialectSender(2, 1, sequence=77)
+@pytest.mark.parametrize("uids", [(111, 222), (0, 0)], ids=["uids", "no uids"])
+@pytest.mark.parametrize("ahead", [0, 77, 200])  # of the second's numbers
+def test_two_autopilots_through_one_router_are_told(uids: tuple[int, int], ahead: int) -> None:
+    agent, first, second = Agent(), DialectSender(2, 1), DialectSender(2, 1, sequence=ahead)
     for k in range(100):
-        for message in stream(k, 1_000_000, 473_977_000, uid=111):
+        for message in stream(k, 1_000_000, 473_977_000, uid=uids[0]):
             agent.hear(FIRST, first, message)
         agent.pass_time(0.02)
-        for message in stream(k, 5_000, 474_977_000, uid=222):
+        for message in stream(k, 5_000, 474_977_000, uid=uids[1]):
             agent.hear(FIRST, second, message)
         agent.pass_time(0.03)
     assert "second_autopilot" in agent.core.journal.kinds
@@ -147,6 +163,25 @@ def test_one_autopilot_that_changes_its_port_goes_on(ports: str) -> None:
     assert {send.peer for send in agent.sent} <= ({2} if ports == "moves once" else set(range(190, 201)))
 
 
+def test_the_agent_asks_which_board_it_flies_at_first_and_now_and_then_again() -> None:
+    agent, sender = Agent(), DialectSender(2, 1)
+    asked: list[float] = []
+    for k in range(20 * 75):
+        for message in stream(k, 60_000, 473_977_000, uid=111 if k >= 200 else 0):
+            agent.hear(FIRST, sender, message)
+        agent.pass_time(0.05)
+        for send in agent.sent:
+            for packet in Framer().feed(send.frame):
+                m = dialect_packet(packet.raw).message
+                if packet.name == "COMMAND_LONG" and m.command == 512 and m.param1 == 148:
+                    asked.append(agent.now)
+        agent.sent.clear()
+    assert 2 <= sum(at < 10.0 for at in asked) <= 6
+    assert 1 <= sum(at > 12.0 for at in asked) <= 3
+    assert agent.core.vehicle.version is not None
+    assert agent.core.vehicle.version.uid == 111
+
+
 def test_a_gimbal_that_beats_under_the_vehicles_id_is_named_once() -> None:
     agent, autopilot, gimbal = Agent(), DialectSender(2, 1), DialectSender(2, 154)
     beat = dialect.MAVLink_heartbeat_message(26, 8, 0, 0, 4, 3)
@@ -158,3 +193,24 @@ def test_a_gimbal_that_beats_under_the_vehicles_id_is_named_once() -> None:
         agent.pass_time(0.05)
     assert agent.core.journal.kinds["component"] == 1
     assert agent.core.vehicle.components == [154]
+
+
+@pytest.mark.parametrize(
+    ("theirs", "ours", "said"),
+    [
+        (b"theirs", b"", "its frames are signed and no key is set"),
+        (b"theirs", b"ours", "signed with another key"),
+        (b"", b"ours", "arrive unsigned while a key is set"),
+        (b"ours", b"ours", ""),
+        (b"", b"", ""),
+    ],
+)
+def test_the_running_agent_names_signing_as_the_cause_once(theirs: bytes, ours: bytes, said: str) -> None:
+    agent = Agent(ours)
+    sender = DialectSender(2, 1, signing=signing_with(theirs) if theirs else None)
+    for k in range(100):
+        for message in stream(k, 60_000, 473_977_000):
+            agent.hear(FIRST, sender, message)
+        agent.pass_time(0.05)
+    assert agent.core.journal.kinds.get("signing", 0) == (1 if said else 0)
+    assert said in agent.text("signing")

@@ -49,6 +49,7 @@ from onboard.agent.core.part import Part
 from onboard.agent.core.reports import Reports, Standing
 from onboard.agent.core.route_player import RoutePlayer
 from onboard.agent.core.schedule import EARLY_S, Grid
+from onboard.agent.core.signing_watch import SigningWatch
 from onboard.agent.core.vehicle_link import VehicleLink
 from onboard.autopilot.base import Stage
 from onboard.core.math.constants import NEVER
@@ -88,6 +89,7 @@ class AgentCore:
         self.radio = Radio(
             facts.links, config.id, self.out, signing=signing, link_id=link_id, mute=config.dry_run
         )
+        self.signing = SigningWatch(self.radio)
         self.vehicle = VehicleLink(config, self.radio, self.journal, self.out)
         self.bus = BusView(config, facts.nonce, self.out, self.journal, facts.master)
         self.orders = Orders(Action.RETURN if config.safety.abort is KnockOff.RETURN else Action.HOLD)
@@ -202,7 +204,8 @@ class AgentCore:
         if self._heartbeat.due(now.s):
             self.vehicle.heartbeat()
         if self._health.due(now.s):
-            self.vehicle.look(now.s)
+            t = self.vehicle.look(now.s)
+            self.signing.tell(now.s, t.heartbeat_at, self.journal)
             self.radio.flush(now)
             self.out.put(Count())
             return  # the report tells of this moment; what else is due comes with the next tick, at once

@@ -19,7 +19,7 @@ from onboard.autopilot.one_sender import Sender as Sent
 from onboard.core.math.constants import NEVER
 from onboard.wire.bus.messages import LinkLock
 from onboard.wire.mavlink.commands import Outgoing, SetpointMessage
-from onboard.wire.mavlink.frames import SIGNATURES, Framer, Packet, Sender
+from onboard.wire.mavlink.frames import SIGNATURES, Framer, Packet, Sender, marked_signed
 from onboard.wire.mavlink.ids import AUTOPILOT, COMPANION
 from onboard.wire.mavlink.signing import Signing
 
@@ -100,6 +100,8 @@ class Radio:
         took_over = second = False
         for packet in framer.feed(data, now.wall_ns):
             if packet.system == self._system and packet.component == AUTOPILOT:
+                if self._signing is None and marked_signed(packet.raw):
+                    self.causes["signed_without_key"] += 1
                 sender = line.sender.judge(now.s, peer, packet)
                 if sender in (Sent.OTHER, Sent.SECOND):
                     second = second or sender is Sent.SECOND

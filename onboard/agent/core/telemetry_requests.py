@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 
 from onboard.autopilot.flight_limits import still_wanted
-from onboard.autopilot.parameters import WANTED
+from onboard.autopilot.parameters import ALIASES, PX4, WANTED
 from onboard.autopilot.stream_rates import NEEDS, Need, StreamRates, capacity_of
 from onboard.autopilot.timesync import TimesyncEstimator
 from onboard.core.math.constants import NEVER, NS_PER_S
@@ -20,7 +20,9 @@ REVIEW_S = 1.0  # between two looks at the rates
 PARAM_RETRY = RetryPolicy(
     0.5, patience=6, slow=5.0
 )  # [s] without end: the limits must come
+VERSION_RETRY = RetryPolicy(1.0, patience=4, slow=30.0)  # [s] without end: a second autopilot answers, too
 CLOCK_EVERY_S = 2.0
+PARAMS_AT_ONCE = 16  # asked for together: a narrow link has more to carry
 FAST = ("GLOBAL_POSITION_INT", "ATTITUDE")  # follow the control rate above 20 Hz
 
 
@@ -28,7 +30,7 @@ def needs_of(kind: Kind, control_rate_hz: float) -> tuple[Need, ...]:
     """What a kind of autopilot is asked for, at a control rate."""
     return tuple(
         need._replace(rate=max(need.rate, control_rate_hz)) if need.message in FAST else need
-        for need in NEEDS[kind]
+        for need in NEEDS.get(kind, ())
     )
 
 
@@ -55,13 +57,14 @@ class Requests:
             needs=needs_of(kind, control_rate_hz),
         )
         self._to = to
-        self._px4 = kind is Kind.PX4_MULTICOPTER
+        self._px4 = kind in PX4
         self._arrived: Counter[str] = Counter()
         self._reviewed = self._clock_at = NEVER
         self._kind = kind
         self._wanted = frozenset(WANTED.get(kind, ()))
-        self._missing = list(WANTED.get(kind, ()))
+        self._missing = list(WANTED.get(kind, ()))  # the next to be asked for first
         self._params = CommandRetry(PARAM_RETRY)
+        self._version = CommandRetry(VERSION_RETRY)
         self._buffer_free = 1.0
 
     def arrived(self, message: str) -> None:
@@ -78,8 +81,15 @@ class Requests:
             return
         self.parameters[value.name] = value.bytewise if self._px4 else value.value
         if value.name in self._missing:
-            self._missing.remove(value.name)
+            names = next((names for names in ALIASES if value.name in names), (value.name,))
+            self._missing = [name for name in self._missing if name not in names]
             self._missing = still_wanted(self._kind, self.parameters, self._missing)
+
+    def read_also(self, names: tuple[str, ...]) -> None:
+        """Ask for more parameters than an agent needs; those that are asked for already are not again."""
+        more = [name for name in names if name not in self._wanted]
+        self._wanted |= frozenset(more)
+        self._missing += more
 
     def again(self) -> None:
         """Ask for everything anew: the autopilot has started again, or another link is used."""
@@ -102,7 +112,11 @@ class Requests:
             self._arrived.clear()
             self._reviewed = now
         if self._missing and self._params.due(now):
-            messages += [ParamRead(self._to, name) for name in self._missing]
+            asked = self._missing[:PARAMS_AT_ONCE]
+            self._missing = self._missing[PARAMS_AT_ONCE:] + asked
+            messages += [ParamRead(self._to, name) for name in asked]
+        if self._version.due(now):
+            messages.append(commands.request_message(self._to, MessageId.AUTOPILOT_VERSION))
         if now - self._clock_at >= CLOCK_EVERY_S:
             self._clock_at = now
             messages.append(self.clock.ask(round(now * NS_PER_S)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Mapping
 from enum import Enum
 from math import radians
 
@@ -24,6 +25,7 @@ from onboard.wire.bus.messages import Severity
 from onboard.wire.mavlink.commands import OwnHeartbeat, Target
 from onboard.wire.mavlink.frames import Packet
 from onboard.wire.mavlink.ids import AUTOPILOT, COMPANION
+from onboard.wire.mavlink.modes import Kind
 from onboard.wire.mavlink.values import (
     CommandAck,
     GlobalPosition,
@@ -151,6 +153,16 @@ class VehicleLink:
         said = {"speed_min": e.speed_min, "speed_max": e.speed_max, "climb_max": e.climb_max,
                 "sink_max": e.sink_max}  # fmt: skip
         return unread(self.adapter.kind, self.limits, said)
+
+    @property
+    def second_heard(self) -> bool:
+        """Whether another autopilot was ever heard under this system id."""
+        return self._second_at != NEVER
+
+    def read_also(self, names: Mapping[Kind, tuple[str, ...]]) -> None:
+        """Read more parameters than flying needs, by kind of autopilot; for the preflight check."""
+        if self._asking is not None and self._heartbeat is not None:
+            self._asking.read_also(names.get(self._heartbeat.kind, ()))
 
     def hear(self, packet: Packet, now: float) -> bool:
         """Take one packet; True for a new position of the own vehicle."""

@@ -169,6 +169,11 @@ class Framer:
 _WHOLE = frozenset({*SIGNATURES, "setup_signing"})
 
 
+def marked_signed(raw: bytes) -> bool:
+    """Return whether a whole frame says that it carries a signature, right or wrong."""
+    return raw[0] == MAGIC_2 and bool(raw[2] & SIGNED)
+
+
 def _declared(data: bytes, at: int) -> int:
     """The length that a misfit's header claims, as far as it can be read."""
     header = HEADER_2 if data[at] == MAGIC_2 else HEADER_1

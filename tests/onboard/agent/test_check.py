@@ -11,7 +11,8 @@ import msgspec
 import pytest
 
 from onboard.agent.config import AgentConfig
-from onboard.agent.preflight import Mark, Row, Sight, judge, look, table
+from onboard.agent.preflight import look
+from onboard.agent.preflight_rows import Mark, Row, Sight, judge, table
 from onboard.autopilot.base import Telemetry
 from onboard.runtime.bus_security import BusSecurity, Lock
 from onboard.runtime.bus_zenoh import open_zenoh
@@ -31,7 +32,13 @@ GOOD = Sight(
         gps_at=9.0, ekf_ok=True, ekf_at=9.0,
     ),
     position_rate=20.0,
-    parameters={"FS_GCS_ENABLE": 1.0, "SYSID_MYGCS": 2.0, "FENCE_ENABLE": 1.0, "GUID_TIMEOUT": 1.0},
+    parameters={
+        "FS_GCS_ENABLE": 1.0, "SYSID_MYGCS": 2.0, "FENCE_ENABLE": 1.0, "FENCE_ACTION": 1.0,
+        "GUID_TIMEOUT": 1.0, "FS_OPTIONS": 0.0, "ARMING_CHECK": 1.0, "FS_EKF_ACTION": 1.0,
+        "BATT_MONITOR": 4.0, "BATT_LOW_VOLT": 10.5, "BATT_FS_LOW_ACT": 2.0,
+    },
+    signed=True,
+    link_lock=LinkLock.SIGNED,
     connected=True,
     bus="tcp/127.0.0.1:7447",
     master=True,
@@ -67,8 +74,8 @@ def test_all_in_order_is_all_pass() -> None:
         ({"telemetry": GOOD.telemetry._replace(ekf_ok=False)}, "estimate", Mark.FAIL, "not healthy"),
         ({"telemetry": GOOD.telemetry._replace(battery=0.3)}, "battery", Mark.FAIL, "30%"),
         ({"telemetry": GOOD.telemetry._replace(battery=-1.0)}, "battery", Mark.WARN, "not reported"),
-        ({"parameters": {**WATCHED, "FS_GCS_ENABLE": 0.0}}, "parameter FS_GCS_ENABLE", Mark.FAIL, "0"),
-        ({"parameters": {**WATCHED, "FENCE_ENABLE": 0.0}}, "parameter FENCE_ENABLE", Mark.WARN, "off"),
+        ({"parameters": {**WATCHED, "FS_GCS_ENABLE": 0.0}}, "agent dies", Mark.FAIL, "FS_GCS_ENABLE is 0"),
+        ({"parameters": {**WATCHED, "FENCE_ENABLE": 0.0}}, "fence crossed", Mark.WARN, "off"),
         ({"connected": False}, "bus", Mark.FAIL, "nobody"),
         ({"bus_trouble": "no such file"}, "bus", Mark.FAIL, "no such file"),
         ({"master": False}, "clock", Mark.WARN, "no master"),
@@ -87,8 +94,9 @@ def test_each_trouble_has_its_row_with_what_to_do(
     assert "→" in table([found])[0]
 
 
-def test_in_the_field_an_unsigned_link_is_a_warning() -> None:
-    assert row(GOOD, "signing key", AgentConfig(field=True)).mark is Mark.WARN
+@pytest.mark.parametrize("field", [False, True])
+def test_no_key_is_a_warning(field: bool) -> None:
+    assert row(GOOD._replace(signed=False), "signing key", AgentConfig(field=field)).mark is Mark.WARN
 
 
 @pytest.mark.parametrize(
@@ -103,7 +111,7 @@ def test_the_lock_of_the_links_has_a_row_of_its_own(lock: LinkLock, mark: Mark, 
     bad = {"signature_wrong": 4, "signature_unsigned": 9, "bad_crc": 1}
     found = row(GOOD._replace(signed=True, link_lock=lock, bad_frames=bad), "link lock")
     assert (found.mark, said in found.found) == (mark, True)
-    assert all(other.name != "link lock" for other in judge(AgentConfig(), GOOD._replace(link_lock=lock)))
+    assert all(other.name != "link lock" for other in judge(AgentConfig(), GOOD._replace(signed=False, link_lock=lock)))
 
 
 def test_a_listener_that_lets_one_in_and_answers_nothing_is_a_failure() -> None:

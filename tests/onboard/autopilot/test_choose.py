@@ -6,7 +6,7 @@ import pytest
 
 from onboard.autopilot.base import Refusal
 from onboard.autopilot.choose import AdapterOptions, adapter_for
-from onboard.autopilot.parameters import findings, gcs_failsafe
+from onboard.autopilot.parameters import gcs_failsafe
 from onboard.wire.mavlink.commands import Target
 from onboard.wire.mavlink.dialect import dialect
 from onboard.wire.mavlink.modes import Kind
@@ -99,11 +99,4 @@ def test_a_mode_to_hold_in_that_the_autopilot_does_not_have_is_refused(
 
 def test_parameters_that_defeat_a_failsafe_are_found() -> None:
     assert gcs_failsafe(Kind.ARDUPLANE, WATCHED, 2) is None
-    names = {finding.name for finding in findings(Kind.ARDUCOPTER, {"FS_GCS_ENABLE": 0.0}, 2)}
-    assert names == {"FS_GCS_ENABLE", "FENCE_ENABLE"}
-    px4 = {"COM_OF_LOSS_T": 30.0, "COM_OBL_RC_ACT": 7.0, "GF_ACTION": 3.0}
-    assert [finding.name for finding in findings(Kind.PX4_MULTICOPTER, px4, 2)] == [
-        "COM_OF_LOSS_T",
-        "COM_OBL_RC_ACT",
-    ]
-    assert findings(Kind.PX4_MULTICOPTER, {"COM_OF_LOSS_T": 1.0, "GF_ACTION": 2.0}, 2) == ()
+    assert gcs_failsafe(Kind.PX4_MULTICOPTER, {}, 2) is None  # it watches the targets themselves
