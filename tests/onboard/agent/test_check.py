@@ -111,7 +111,8 @@ def test_the_lock_of_the_links_has_a_row_of_its_own(lock: LinkLock, mark: Mark, 
     bad = {"signature_wrong": 4, "signature_unsigned": 9, "bad_crc": 1}
     found = row(GOOD._replace(signed=True, link_lock=lock, bad_frames=bad), "link lock")
     assert (found.mark, said in found.found) == (mark, True)
-    assert all(other.name != "link lock" for other in judge(AgentConfig(), GOOD._replace(signed=False, link_lock=lock)))
+    without = judge(AgentConfig(), GOOD._replace(signed=False, link_lock=lock))
+    assert all(other.name != "link lock" for other in without)
 
 
 def test_a_listener_that_lets_one_in_and_answers_nothing_is_a_failure() -> None:
@@ -130,7 +131,7 @@ async def test_the_check_of_a_member_that_was_revoked_says_so(tmp_path: Path) ->
     ground = await open_zenoh(listen=True, config_file=field.config("ground"))
     try:
         config = AgentConfig(
-            id=3, game="range", link="udpin://127.0.0.1:0", zenoh=str(old / "zenoh.json5")
+            id=3, game="range", link=("udpin://127.0.0.1:0",), zenoh=str(old / "zenoh.json5")
         )
         seen = await look(config, 0.2)
         assert row(seen, "bus").mark is Mark.FAIL
