@@ -217,10 +217,17 @@ def _autopilot(vehicle: VehicleView, in_force: InForce, limits: Thresholds) -> I
                 f"{name}'s battery is at {health.battery:.0%}",
                 "land it now" if critical else "bring it home soon: return", 1.0,
             )  # fmt: skip
+    if health.hold_lost:
+        yield Finding(
+            "hold_lost", vehicle.id, ERROR, f"{name} was left to hold, and {health.hold_lost}",
+            f"take it by hand, or `return {vehicle.id}`, `land {vehicle.id}`",
+        )  # fmt: skip
     if health.stage is AgentStage.HANDED_OVER:
         yield Finding(
-            "handed_over", vehicle.id, WARNING, f"{name} is in its pilot's hands",
-            "the strategy is out of it; `resume` when the pilot gives it back",
+            "handed_over", vehicle.id, WARNING,
+            f"{name} is flown by its own failsafe" if health.failsafe else f"{name} is in its pilot's hands",
+            f"look why; only then `resume {vehicle.id}`" if health.failsafe
+            else "the strategy is out of it; `resume` when the pilot gives it back",
         )  # fmt: skip
     elif health.stage is AgentStage.ACTING and vehicle.mode not in GUIDED_MODES:
         yield Finding(

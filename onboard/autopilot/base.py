@@ -7,7 +7,7 @@ An adapter flies one autopilot and does no I/O. The agent calls
 and sends the messages it gets back, in order, at once; notes it publishes as events. All instants are
 local monotonic seconds. An adapter never arms unless it was made with `may_arm`, enters the autopilot's
 guided mode only after `enter`, leaves it whenever told, and lets go at once and for good (until `enter`, or
-until the pilot selects the guided mode again) when the mode changes by another hand.
+until the pilot's switch selects the guided mode again) when the mode changes by another hand.
 """
 
 from __future__ import annotations
@@ -88,6 +88,14 @@ class Stage(Enum):
     TAKEN = "taken"  # somebody else changed the mode: hands off
 
 
+class Pilot(Enum):
+    """Who holds the transmitter of a vehicle in a mode that its sticks move."""
+
+    NONE = "none"  # no transmitter, or a mode that no stick moves
+    PRESENT = "present"  # a transmitter that somebody holds, its sticks at rest
+    FLYING = "flying"  # its sticks have moved lately
+
+
 class ReleaseMode(Enum):
     """What the autopilot shall do alone when this agent leaves."""
 
@@ -134,6 +142,20 @@ class Adapter(Protocol):
     @property
     def stage(self) -> Stage:
         """Who flies."""
+        ...
+
+    @property
+    def failsafe(self) -> bool:
+        """Whether, in TAKEN, the autopilot's own failsafe took it, and no person."""
+        ...
+
+    @property
+    def handed(self) -> bool:
+        """Whether the pilot's switch chose the guided mode that the vehicle is in."""
+        ...
+
+    def pilot(self, now: float) -> Pilot:
+        """Return whether a pilot flies by his sticks."""
         ...
 
     @property

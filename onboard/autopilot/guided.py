@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import NamedTuple, Protocol
 
-from onboard.autopilot.base import Note, ReleaseMode, Setpoint, Stage, Step, Telemetry
+from onboard.autopilot.base import Note, Pilot, ReleaseMode, Setpoint, Stage, Step, Telemetry
 from onboard.autopilot.mode_machine import ModeMachine, ModeStep
+from onboard.autopilot.pilot_hands import flown_by_hand, live
 from onboard.autopilot.release_modes import Release, chain
 from onboard.wire.mavlink import commands
 from onboard.wire.mavlink.commands import Outgoing, Target
@@ -94,6 +95,25 @@ class GuidedAdapter:
     def stage(self) -> Stage:
         """Who flies."""
         return self._machine.stage
+
+    @property
+    def failsafe(self) -> bool:
+        """Whether the autopilot's own failsafe took it."""
+        return self._machine.failsafe
+
+    @property
+    def handed(self) -> bool:
+        """Whether the pilot's switch chose the guided mode."""
+        return self._machine.handed
+
+    def pilot(self, now: float) -> Pilot:
+        """Whether a pilot flies by his sticks."""
+        hands = self._machine.hands
+        if not flown_by_hand(self._telemetry) or not live(
+            now, self._telemetry, self._release.parameters, hands
+        ):
+            return Pilot.NONE
+        return Pilot.FLYING if hands.moving(now) else Pilot.PRESENT
 
     def enter(self, now: float) -> None:
         """Ask for the guided mode; give setpoints meanwhile (zero to hover)."""

@@ -1,10 +1,11 @@
 """Modes and arming of one autopilot: runs the table of `mode_table` and says what to ask the autopilot for.
 
-A mode is asked for every 80 ms, or at the pace at which this autopilot answers, until the heartbeat reports
-it. From the second try on the heartbeat that proves it is asked for at the same pace (it comes by itself only
-once a second, and may be lost); after an accepted answer it alone. To leave there is a chain of modes: what
-is refused gives way to the next at once, what an autopilot that is heard leaves unanswered for 0.5 s (or
-twice its usual time) gives way to the second alone: silence is no reason to land.
+A mode is asked for until the heartbeat reports it: again when the request before counts as lost, which it
+does after 1.5 times the measured round trip, 80 ms at least; where a sound link brings no answer the wait
+doubles with each try. From the second try on the heartbeat that proves it is asked for at the same pace (it
+comes by itself only once a second, and may be lost); after an accepted answer it alone. To leave there is a
+chain of modes: what is refused gives way to the next at once, what an autopilot that is heard leaves
+unanswered for 0.5 s (or twice its usual time) gives way to the second alone: silence is no reason to land.
 Sans I/O, and without any message of MAVLink.
 """
 
@@ -14,15 +15,20 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from onboard.autopilot.base import Note, ReleaseMode, Stage, Telemetry
-from onboard.autopilot.mode_requests import ModeRequests
+from onboard.autopilot.mode_requests import LATE, ModeRequests
 from onboard.autopilot.mode_table import ModeAction, ModeEvent, transition
+from onboard.autopilot.pilot_hands import PilotHands, flown_by_hand
 from onboard.core.math.constants import NEVER
 from onboard.wire.mavlink.ids import COMPANION, CommandId
 from onboard.wire.mavlink.values import CommandAck
 from onboard.wire.retry import CommandRetry, RetryPolicy
 
+CRITICAL = 5  # MAV_STATE of a vehicle in a failsafe, and of worse
+SILENT_S = 1.0  # a link silent for longer, or an agent that did not run, explains a failsafe …
+SILENCE_S = 8.0  # … for so long afterwards: the slowest (ArduPilot's) acts after 5 s
+UNCONFIRMED_S = 2.0  # after which a mode that is not confirmed is an error
 SOUND = 0.95  # share of frames that arrive on a link whose delays are the autopilot's
-MODE_RETRY = RetryPolicy(0.08, patience=25, slow=0.5, after_accepted=1.5, after_refused=1.0)  # [s]
+MODE_RETRY = RetryPolicy(0.08, patience=25, slow=1.0, after_accepted=1.5, after_refused=1.0)  # [s]
 ARM_RETRY = MODE_RETRY._replace(after_refused=2.0)  # refused for many seconds although the pre-arm bit is set
 UNANSWERED = 0.5  # [s] at least, after which the next mode of a chain is asked for
 RESTART = 3.0  # [s] between the first mode and the first clock of an autopilot that started again
@@ -48,10 +54,15 @@ class ModeMachine:
         self.guided = guided  # the mode in which setpoints count, in the autopilot's words
         self.stage = Stage.IDLE
         self.leaving_by = ReleaseMode.HOLD  # what was asked for on leaving last
+        self.handed = False  # the guided mode was chosen by the pilot's switch
+        self.failsafe = False  # TAKEN: by the autopilot's own failsafe, not by a person
+        self.hands = PilotHands()
         self._may_arm = may_arm
         self._chain: tuple[str, ...] = ()  # the modes to leave into; empty: not leaving, or forgotten
         self._link = 0  # of the chain: which is asked for
         self._asked_at = NEVER  # since when the present mode is asked for on a link that works
+        self._first_asked = NEVER  # when the present mode, or the first of its chain, was asked for
+        self._complained = False
         self._requests = ModeRequests()
         self._from = ""  # the mode it was in when the asking began
         self._mode = CommandRetry(MODE_RETRY)
@@ -60,6 +71,13 @@ class ModeMachine:
         self._notes: list[Note] = []
         self._heard = (NEVER, "")  # arrival and mode of the heartbeat last judged
         self._guided_beats = 0  # heartbeats in a row that report the guided mode
+        self._guided_at = NEVER  # of the first of them
+        self._crossed = False  # they began with an older request of ours, obeyed after another hand's choice
+        self._foreign_told = False
+        self._elsewhere = False  # another mode than the guided one was heard once
+        self._left_in = ""  # LEFT: the mode that was confirmed
+        self._mode_heard = ""
+        self._silent_at = self._stepped_at = NEVER
         self._reboots = 0
         self._taken_at = NEVER
 
@@ -100,6 +118,8 @@ class ModeMachine:
     def step(self, now: float, telemetry: Telemetry, *, ready: bool = True) -> ModeStep:
         """Judge what was heard and return what is due. `ready` False holds back the request to enter."""
         self._quality = telemetry.link_quality
+        self.hands.take(telemetry)
+        self._listen(now, telemetry)
         if telemetry.reboots != self._reboots:
             self._reboots = telemetry.reboots
             soon = now - self._taken_at < RESTART  # its new mode may have been heard before its new clock
@@ -111,22 +131,28 @@ class ModeMachine:
             if self._arm is not None and telemetry.armed:
                 self._arm = None
                 self._tell("info", "armed", "the autopilot reports armed")
-            self._happened(self._meaning(now, telemetry.mode), telemetry.mode, now)
+            event = self._meaning(now, telemetry)
+            if telemetry.mode != self._mode_heard or self.stage is not Stage.TAKEN:  # who took it stays known
+                self.failsafe = self._by_failsafe(now, telemetry)
+            self._mode_heard = telemetry.mode
+            self._happened(event, telemetry.mode, now)
+            if event is ModeEvent.RELEASED and self.stage is Stage.LEFT:
+                self._left_in = telemetry.mode
         mode, prove = "", False
         silent = now - max(telemetry.heartbeat_at, telemetry.position_at) > UNANSWERED
         if self._asked_at == NEVER or silent:  # without a link there is no time to answer in
             self._asked_at = now
+            self._first_asked = now if self._first_asked != NEVER else NEVER
         if known and (self.stage is Stage.LEAVING or (self.stage is Stage.ENTERING and ready)):
             if self._mode.due(now):
                 self._give_way(now)
                 mode = self._wanted
                 self._requests.sent(now, mode)
+                self._first_asked = now if self._first_asked == NEVER else self._first_asked
                 prove = self._mode.unanswered  # it may have been obeyed, and heartbeat and answer lost
-                if self._mode.impatient:
-                    asked = f"{mode} asked for {self._mode.tries} times"
-                    self._tell("error", "mode_unconfirmed", f"{asked}, {telemetry.mode} reported: asking on")
             else:
                 prove = self._mode.proof_due(now)
+            self._complain(now, telemetry.mode)
         arm_tries = self._arm.tries if known and self._arm is not None and self._arm.due(now) else 0
         notes, self._notes = tuple(self._notes), []
         return ModeStep(notes, mode, self._mode.tries, prove, arm_tries)
@@ -135,23 +161,64 @@ class ModeMachine:
     def _wanted(self) -> str:
         return self._chain[self._link] if self.stage is Stage.LEAVING and self._chain else self.guided
 
-    def _meaning(self, now: float, mode: str) -> ModeEvent:
-        """The event that a new heartbeat in `mode` is."""
+    def _listen(self, now: float, telemetry: Telemetry) -> None:
+        """Notice a link that was silent, or an agent that did not run: the autopilot's failsafes may act."""
+        heard_at = max(telemetry.heartbeat_at, telemetry.position_at)
+        stood = self._stepped_at != NEVER and now - self._stepped_at > SILENT_S
+        if stood or (telemetry.heartbeat_at != NEVER and now - heard_at > SILENT_S):
+            self._silent_at = now
+        self._stepped_at = now
+
+    def _by_failsafe(self, now: float, telemetry: Telemetry) -> bool:
+        """Whether a mode that is not ours is the autopilot's own doing: it says so, or our silence was."""
+        if telemetry.mode == self.guided or telemetry.status >= CRITICAL:
+            return telemetry.mode != self.guided
+        silence = self._silent_at != NEVER and now - self._silent_at <= SILENCE_S
+        return silence and not flown_by_hand(telemetry) and not self.hands.turned(now, now)
+
+    def _complain(self, now: float, reported: str) -> None:
+        """Say once that a mode that is asked for is not reported."""
+        asked_long = self._mode.tries > 1 and now - self._first_asked >= UNCONFIRMED_S
+        if asked_long and not (self._complained or self._mode.declined):
+            self._complained = True
+            asked = f"{self._wanted} asked for {self._mode.tries} times"
+            self._tell("error", "mode_unconfirmed", f"{asked}, {reported} reported: asking on")
+
+    def _meaning(self, now: float, telemetry: Telemetry) -> ModeEvent:
+        """The event that a new heartbeat is."""
+        mode = telemetry.mode
         self._guided_beats = self._guided_beats + 1 if mode == self.guided else 0
+        if self._guided_beats == 1:
+            self._guided_at, self._crossed, self._foreign_told = now, False, False
         self._from = self._from or mode
         wanted = mode == self._wanted and self.stage in (Stage.ENTERING, Stage.LEAVING)
         echo = self._requests.echoed(now, mode, wanted=wanted)
         if echo and mode != self.guided and self.stage is Stage.ACTIVE:
             return ModeEvent.ECHO
         if mode == self.guided:
-            if echo and self.stage is Stage.LEFT:
-                return ModeEvent.ECHO
-            return ModeEvent.GUIDED if self._guided_beats == 1 else ModeEvent.GUIDED_AGAIN
+            return self._guided_heard(now, echo=echo)
+        self._elsewhere, self.handed = True, False
+        if self.stage is Stage.LEFT and mode != self._left_in and not echo:
+            return ModeEvent.OTHER if telemetry.armed else ModeEvent.UNCHANGED  # on the ground it is nobody's
         if mode in self._chain[: self._link + 1]:
             return ModeEvent.RELEASED
         if echo and self.stage in (Stage.ENTERING, Stage.LEAVING):
             self._from = mode
         return ModeEvent.UNCHANGED if mode == self._from else ModeEvent.OTHER
+
+    def _guided_heard(self, now: float, *, echo: bool) -> ModeEvent:
+        """What the guided mode means: whose it is depends on who asked for it."""
+        if echo and self.stage in (Stage.LEFT, Stage.TAKEN):
+            self._crossed = self._foreign_told = True
+            return ModeEvent.ECHO
+        if self.stage is Stage.IDLE and not self._elsewhere:
+            return ModeEvent.FOUND
+        if self._guided_beats == 1 or self.stage in (Stage.ENTERING, Stage.ACTIVE, Stage.LEAVING):
+            return ModeEvent.GUIDED if self._guided_beats == 1 else ModeEvent.GUIDED_AGAIN
+        if not self._crossed and self.hands.turned(now, self._guided_at):
+            self.handed = True
+            return ModeEvent.GUIDED_AGAIN
+        return ModeEvent.FOREIGN
 
     def _mode_answered(self, now: float, result: int) -> None:
         """An answer to a request for a mode: the oldest that is open, which need not be the present wish."""
@@ -214,13 +281,22 @@ class ModeMachine:
             case ModeAction.TELL_FOUND:
                 self._tell("info", "control", f"found in {mode}: setpoints count")
             case ModeAction.TELL_HANDED_BACK:
-                self._tell("info", "handed_back", f"{mode} chosen by another hand: setpoints count")
+                self._tell("info", "handed_back", f"{mode} chosen by the pilot's switch: setpoints count")
+            case ModeAction.TELL_FOREIGN:
+                if not self._foreign_told:
+                    self._foreign_told = True
+                    text = f"{mode}, chosen neither by this agent nor by the pilot's switch: not flown in it"
+                    self._tell("warning", "foreign_guided", text)
+            case ModeAction.TELL_CROSSED:
+                text = f"{mode}, by an older request of this agent: choose the other mode again; hands off"
+                self._tell("error", "late_answer", text)
             case ModeAction.TELL_RELEASED:
                 self._tell("info", "released", f"{mode} confirmed: the autopilot flies alone")
             case ModeAction.TELL_TAKE_OVER:
                 self._taken_at = now
-                text = f"{mode} in place of {was}, not by this agent: hands off"
-                self._tell("warning", "take_over", text)
+                whose = "by the autopilot's own failsafe" if self.failsafe else "not by this agent"
+                kind = "failsafe" if self.failsafe else "take_over"
+                self._tell("warning", kind, f"{mode} in place of {was}, {whose}: hands off")
             case ModeAction.TELL_ECHO:
                 self._tell("info", "late_answer", f"{mode} is an earlier request of this agent, obeyed late")
             case ModeAction.TELL_REBOOT:
@@ -229,9 +305,11 @@ class ModeMachine:
     def _ask(self) -> None:
         self._from = ""
         # A link that loses answers makes the measured round trip grow without cause: no reason to ask slower.
-        slow = min(1.0, self._requests.round_trip) if self._quality >= SOUND else 0.0
-        pace = max(MODE_RETRY.every, slow)
-        self._mode = CommandRetry(MODE_RETRY._replace(every=pace))
+        sound = self._quality >= SOUND
+        pace = max(MODE_RETRY.every, min(LATE, 1.5 * self._requests.round_trip) if sound else 0.0)
+        growth = 2.0 if sound else 1.0
+        self._mode = CommandRetry(MODE_RETRY._replace(every=pace, slow=max(1.0, pace), growth=growth))
+        self._complained, self._first_asked = False, NEVER
         self._asked_at = NEVER
         self._heard = (NEVER, "")  # judge the present mode again in the light of the new wish
 

@@ -21,8 +21,10 @@ class ModeEvent(Enum):
     Of each new heartbeat exactly one event is made: the first that fits, in this order.
     """
 
-    GUIDED_AGAIN = "guided mode, twice in a row"
+    FOUND = "guided mode, and none other before"
+    GUIDED_AGAIN = "guided mode, twice in a row"  # asked for by this agent, or chosen by the pilot's switch
     GUIDED = "guided mode"
+    FOREIGN = "guided mode of another hand, twice in a row"  # a ground station's, another companion's
     RELEASED = "mode asked for on leaving"
     ECHO = "a request of ours, obeyed late"
     UNCHANGED = "mode as before"  # the one in which the asking began
@@ -44,10 +46,12 @@ class ModeAction(Enum):
     STOP_ARMING = auto()  # no longer ask for arming
     TELL_CONTROL = auto()  # note: the guided mode is confirmed
     TELL_FOUND = auto()  # note: found in the guided mode without having asked
-    TELL_HANDED_BACK = auto()  # note: another hand chose the guided mode
+    TELL_HANDED_BACK = auto()  # note: the pilot's switch chose the guided mode
+    TELL_FOREIGN = auto()  # note: neither this agent nor the pilot's switch chose the guided mode
     TELL_RELEASED = auto()  # note: the mode to leave into is confirmed
-    TELL_TAKE_OVER = auto()  # note: somebody else changed the mode
+    TELL_TAKE_OVER = auto()  # note: somebody else, or the autopilot's failsafe, changed the mode
     TELL_ECHO = auto()  # note: an older request of ours was obeyed late
+    TELL_CROSSED = auto()  # note: an older request of ours was obeyed after another hand's choice
     TELL_REBOOT = auto()  # note: control ended because the autopilot started again
 
 
@@ -69,14 +73,16 @@ _TAKEN = Transition(S.TAKEN, (A.TELL_TAKE_OVER, A.STOP_ARMING))
 _REBOOT = Transition(S.IDLE, (A.FORGET, A.TELL_REBOOT))
 _AGAIN = Transition(S.ENTERING, (A.TELL_ECHO, A.ASK_GUIDED))
 _LEAVE_AGAIN = Transition(S.LEAVING, (A.TELL_ECHO, A.ASK_RELEASE))
+_ELSEWHERE = Transition(S.TAKEN, (A.TELL_FOREIGN, A.STOP_ARMING))
 _GIVE_UP = Transition(S.IDLE, (A.FORGET, A.STOP_ARMING))
 
 TABLE: dict[tuple[Stage, ModeEvent], Transition] = {
     (S.IDLE, E.ENTER): _ENTER,
     (S.IDLE, E.LEAVE): _LEAVE,
     (S.IDLE, E.LEAVE_AGAIN): _LEAVE,
-    (S.IDLE, E.GUIDED): _FOUND,
-    (S.IDLE, E.GUIDED_AGAIN): _FOUND,
+    (S.IDLE, E.FOUND): _FOUND,
+    (S.IDLE, E.GUIDED_AGAIN): _BACK,
+    (S.IDLE, E.FOREIGN): Transition(S.IDLE, (A.TELL_FOREIGN,)),
     (S.ENTERING, E.GUIDED): _CONFIRMED,
     (S.ENTERING, E.GUIDED_AGAIN): _CONFIRMED,
     (S.ENTERING, E.RELEASED): _TAKEN,
@@ -97,10 +103,14 @@ TABLE: dict[tuple[Stage, ModeEvent], Transition] = {
     (S.LEAVING, E.ENTER): _ENTER,
     (S.LEAVING, E.LEAVE): _LEAVE,
     (S.LEFT, E.GUIDED_AGAIN): _BACK,
+    (S.LEFT, E.FOREIGN): _ELSEWHERE,
+    (S.LEFT, E.OTHER): _TAKEN,
     (S.LEFT, E.ECHO): _LEAVE_AGAIN,
     (S.LEFT, E.ENTER): _ENTER,
     (S.LEFT, E.LEAVE): _LEAVE,
     (S.TAKEN, E.GUIDED_AGAIN): _BACK,
+    (S.TAKEN, E.FOREIGN): Transition(S.TAKEN, (A.TELL_FOREIGN,)),
+    (S.TAKEN, E.ECHO): Transition(S.TAKEN, (A.TELL_CROSSED,)),
     (S.TAKEN, E.ENTER): _ENTER,
     (S.TAKEN, E.LEAVE): _LEAVE,
     (S.TAKEN, E.LEAVE_AGAIN): _LEAVE,

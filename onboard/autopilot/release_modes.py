@@ -13,15 +13,12 @@ from typing import NamedTuple
 
 from onboard.autopilot.base import ReleaseMode, Telemetry
 from onboard.autopilot.parameters import gcs_failsafe
+from onboard.autopilot.pilot_hands import FLOWN_BY_HAND, throttle
 from onboard.core.math.constants import NEVER
 from onboard.wire.mavlink.modes import Kind
 
-STICK_AGE = 2.0  # [s] after which the throttle stick is unknown
 GPS_3D = 3
-RECEIVER_BAD = 65536  # MAV_SYS_STATUS_SENSOR_RC_RECEIVER, among the unhealthy
 CONTINUE_PILOTED = 16  # FS_OPTIONS: the GCS failsafe leaves pilots' modes alone, BRAKE among them
-BY_STICK = frozenset(("LOITER", "ALT_HOLD", "POSHOLD", "STABILIZE", "ACRO", "SPORT", "DRIFT", "FLOWHOLD"))
-"""ArduCopter's modes in which the throttle stick commands the climb."""
 
 Chain = tuple[str, ...]
 HOLD, RETURN, LAND, DEPART = ReleaseMode.HOLD, ReleaseMode.RETURN, ReleaseMode.LAND, ReleaseMode.DEPART
@@ -70,16 +67,10 @@ class Release(NamedTuple):
 
 def stick_centred(now: float, telemetry: Telemetry, parameters: Mapping[str, float]) -> bool:
     """Return whether a pilot's throttle stick is seen in the middle; what is unknown counts as no stick."""
-    if telemetry.channels_at == NEVER or not 0.0 <= now - telemetry.channels_at <= STICK_AGE:
+    stick, dead_zone = throttle(now, telemetry, parameters), parameters.get("THR_DZ")
+    if stick is None or dead_zone is None:
         return False
-    if telemetry.unhealthy & RECEIVER_BAD:
-        return False
-    dead_zone, channel = parameters.get("THR_DZ"), round(parameters.get("RCMAP_THROTTLE", 3.0))
-    if dead_zone is None or not 1 <= channel <= len(telemetry.channels):
-        return False
-    least, most = parameters.get("RC3_MIN", 1000.0), parameters.get("RC3_MAX", 2000.0)
-    middle = 0.5 * (least + most) if channel == 3 else 1500.0
-    return abs(telemetry.channels[channel - 1] - middle) <= dead_zone
+    return abs(stick.pulse - 0.5 * (stick.least + stick.most)) <= dead_zone
 
 
 def positioned(telemetry: Telemetry) -> bool:
@@ -103,7 +94,7 @@ def chain(purpose: ReleaseMode, now: float, telemetry: Telemetry, release: Relea
     else:
         found = PX4[purpose]
     wished = release.hold_mode
-    if purpose is HOLD and wished and (stick or wished not in BY_STICK):
+    if purpose is HOLD and wished and (stick or wished not in FLOWN_BY_HAND[kind]):
         found = (wished, *(mode for mode in found if mode != wished))
     return found
 

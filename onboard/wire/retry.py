@@ -20,6 +20,7 @@ class RetryPolicy(NamedTuple):
     most: int = 0  # tries in all; 0: without end
     after_accepted: float = 0.0  # until what was accepted is tried again: meanwhile its proof is asked for
     after_refused: float = 0.0  # until what was refused is tried again
+    growth: float = 1.0  # at the quick pace each wait is so many times the one before, up to `slow`
 
 
 class CommandRetry:
@@ -45,9 +46,9 @@ class CommandRetry:
         return self._accepted or self._refused is not None
 
     @property
-    def impatient(self) -> bool:
-        """Whether the newest try was the last one at the quick pace."""
-        return self.tries == self._policy.patience
+    def declined(self) -> bool:
+        """Whether it was refused."""
+        return self._refused is not None
 
     def due(self, now: float) -> bool:
         """Return whether to send now, and count it as sent."""
@@ -56,7 +57,10 @@ class CommandRetry:
             return False
         self.tries += 1
         quick = policy.patience == 0 or self.tries < policy.patience
-        self._due_at = now + (policy.every if quick else policy.slow)
+        wait = policy.every if quick else policy.slow
+        if quick and policy.growth != 1.0:
+            wait = min(wait * policy.growth ** (self.tries - 1), policy.slow)
+        self._due_at = now + wait
         return True
 
     def proof_due(self, now: float) -> bool:

@@ -31,9 +31,6 @@ async def test_the_end_of_a_game_holds_copters_that_have_no_transmitter(transmit
             assert -place(game, id).z > height - 2.0
 
 
-@pytest.mark.xfail(
-    strict=True, reason="an agent in a game takes an OFFBOARD that another companion chose for its own"
-)
 @virtual
 async def test_an_agent_without_control_never_takes_px4_out_of_its_failsafe() -> None:
     """For whoever decides what is streamed: silence where no control was given."""

@@ -41,7 +41,7 @@ class CommandDesk:
             return
         fresh = self._fresh(command, now.s)
         historic = command.kind not in SETS_OFF and not fresh and not self._vehicle.flown
-        refusal = self._refusal(command, fresh=fresh, historic=historic)
+        refusal = self._refusal(command, now.s, fresh=fresh, historic=historic)
         entry, new = self._orders.give(command, refusal, historic=historic)
         if new:
             text = f"{command.kind.value} from {command.sender}"
@@ -79,7 +79,7 @@ class CommandDesk:
         words = masters.quoted if masters.holds(now) else self._said.fresh
         return words(quote.nonce, quote.number, now)
 
-    def _refusal(self, command: Command, *, fresh: bool, historic: bool) -> str:
+    def _refusal(self, command: Command, now: float, *, fresh: bool, historic: bool) -> str:
         """Why a command cannot be obeyed; '' if it can."""
         if self.config.dry_run:
             return "dry run: this agent sends nothing"
@@ -87,4 +87,4 @@ class CommandDesk:
         if unfit or historic:
             return unfit
         takes = command.kind in SETS_OFF
-        return why_no_order(self._vehicle, takes=takes) or self._flight.objection(command)
+        return why_no_order(self._vehicle, takes=takes) or self._flight.objection(now, command)

@@ -8,8 +8,9 @@ from typing import NamedTuple
 from onboard.agent.config import AgentConfig
 from onboard.agent.core.bus_view import BusView
 from onboard.agent.core.clocks import JumpWatch
-from onboard.agent.core.command_book import Orders
+from onboard.agent.core.command_book import SETS_OFF, Orders
 from onboard.agent.core.events import Answered, Instant, Think
+from onboard.agent.core.hands import Hands
 from onboard.agent.core.hold_alert import HoldAlert
 from onboard.agent.core.journal import Journal
 from onboard.agent.core.part import Part, PartState
@@ -36,10 +37,7 @@ from onboard.wire.bus.messages import Severity
 
 SILENT_S = 1.0  # a link silent for longer explains that the autopilot changed to hold by itself
 REGAIN_S = 6.0  # … for so long afterwards
-GIVEN_S = 5.0  # so long after control was given back the agent sets off, if the supervisor lets it
 WIND_FRESH_S = 10.0
-CRITICAL = 5  # MAV_STATE of a vehicle in a failsafe, and of worse
-HOMEWARD = frozenset(("RTL", "SMART_RTL", "AUTO_RTL", "LAND", "AUTOLAND", "PRECLAND", "QRTL", "QLAND"))
 RELEASES = {
     Command.RELEASE_TO_HOLD: ReleaseMode.HOLD,
     Command.RELEASE_TO_RETURN: ReleaseMode.RETURN,
@@ -83,14 +81,13 @@ class Flight:
         self._state = SupervisorState()
         self._policy = part.policy
         self._jumps = JumpWatch(config.safety.clock_jump_s)
-        self._hold = HoldAlert(journal)
+        self.hands = Hands(config, vehicle, orders)
+        self.hold = HoldAlert(journal)
         self._number = 0
-        self._resumed = False  # the master alone let this process in
         self._failing = False
-        self._took = False  # this process has entered the guided mode, or has played
         self._alive_at = NEVER  # the strategy's last sign of life [s]
         self._silent_at = NEVER  # when the link was last found silent [s]
-        self._given_at = NEVER  # when control was given back, and the guided mode is not asked for yet [s]
+        self._ran_at = NEVER  # the last control step [s]
 
     # ------------------------------------------------------------------ the control step
 
@@ -103,21 +100,24 @@ class Flight:
         self.part.follow(now)  # it may fix the frame in which positions count
         telemetry = self.vehicle.look(now.s)
         state = self.part.state(now.wall_ns)
-        self._resumed = state.resumed
+        self.hands.follow(state)
         if self.part.policy is not self._policy:
             if not _only_limits(self._policy, self.part.policy):  # another game: what is latched stays
                 self._state = in_another_game(self._state)
             self._policy = self.part.policy
         heard_at = max(telemetry.heartbeat_at, telemetry.position_at)
-        if telemetry.heartbeat_at != NEVER and now.s - heard_at > SILENT_S:
+        stood = self._ran_at != NEVER and now.s - self._ran_at > SILENT_S
+        if stood or (telemetry.heartbeat_at != NEVER and now.s - heard_at > SILENT_S):
             self._silent_at = now.s
+        self._ran_at = now.s
         self.setpoint = ZERO
         if not state.on:
             self.decision = self.output = self.open = None
             self.playing = False
             self._stand_by(now.s, telemetry, state)
             return None
-        self.playing = self._took = True
+        self.playing = True
+        self.hands.took = self.hands.took or self.hands.leave
         return self._ask(now, telemetry)
 
     def answered(self, answer: Answered) -> bool:
@@ -188,12 +188,12 @@ class Flight:
             return
         telemetry = self.vehicle.look(now)
         if self._orders.order is Action.PASS:
-            self._given_at = now
+            self.hands.give(now)
             self.part.let_in()
             self.resumed()
             self._judge(ZERO, self._input(now, telemetry), streams=False)
         else:
-            self._given_at = NEVER
+            self.hands.entered()
             self._state = reordered(self._state)
             self._judge(ZERO, self._input(now, telemetry))
 
@@ -217,7 +217,8 @@ class Flight:
             battery=t.battery,
             ekf_ok=t.ekf_ok or t.ekf_at == NEVER,
             gps_fix=t.gps_fix if t.gps_at != NEVER else 3,
-            pilot=self.vehicle.stage is Stage.TAKEN and not self._given(now),
+            pilot=self.vehicle.stage is Stage.TAKEN and not self.hands.given(now),
+            failsafe=self.vehicle.by_failsafe,
             order=max(self._orders.order, Action.HOLD) if self.ending else self._orders.order,
         )
 
@@ -226,8 +227,10 @@ class Flight:
         """Why the vehicle is not flown until a person gives control back; '' where nothing is latched."""
         return "" if self._state.floor is Action.PASS else CAUSES[self._state.floor_cause]
 
-    def _given(self, now: float) -> bool:
-        return now - self._given_at < GIVEN_S
+    @property
+    def unasked(self) -> bool:
+        """Whether the vehicle is in the guided mode without this process's leave to fly it."""
+        return self.vehicle.stage is Stage.ACTIVE and not self.hands.leave
 
     def _thresholds(self) -> Policy:
         """The part's, for the kind of vehicle that was found."""
@@ -255,17 +258,18 @@ class Flight:
         adapter = self.vehicle.adapter
         if adapter is None:
             return
-        ours = adapter.stage in (Stage.ACTIVE, Stage.ENTERING)
+        unasked = self.unasked
+        ours = adapter.stage in (Stage.ACTIVE, Stage.ENTERING) and not unasked
         command = output.command
         known = not self.vehicle.unread  # of what its limits are; until then no setpoint leaves
         if command is Command.STREAM:
             if enters and known:
-                free = adapter.stage is not Stage.TAKEN and self.may_control
-                if not ours and (free or self._given(now)):
-                    self._took = True
+                free = adapter.stage is not Stage.TAKEN and self.hands.may_control
+                if not ours and not unasked and (free or self.hands.given(now)):
+                    self.hands.took = True
                     adapter.enter(now)
-                self._given_at = NEVER
-            if streams and known:
+                self.hands.entered()
+            if streams and known and not unasked:
                 self.setpoint = output.ground
         elif command is Command.END_STREAM:
             adapter.end(now)
@@ -276,7 +280,7 @@ class Flight:
                 ends = self.ending and self._orders.order is Action.PASS
                 departs = ends and command is Command.RELEASE_TO_HOLD
                 adapter.leave(now, ReleaseMode.DEPART if departs else RELEASES[command])
-        flown = known and streams and (command is Command.STREAM or ours)
+        flown = known and streams and not unasked and (command is Command.STREAM or ours)
         self.drive(now, output if flown else None)
 
     # ------------------------------------------------------------------ before and after the part
@@ -287,8 +291,7 @@ class Flight:
         if adapter is None:
             return
         held = self._orders.order is not Action.PASS
-        # Found in the guided mode, and not this process's yet.
-        unasked = not self._orders.granted and (state.late or not (state.engaged or self._took))
+        unasked = not self.hands.leave  # found in the guided mode, and not this process's yet
         ours = not unasked and adapter.stage in (Stage.ENTERING, Stage.ACTIVE, Stage.LEAVING)
         wanted = not held and not state.over and self._wanted(now, adapter, state)
         climbs = not held and not state.over and self._climbs(t, state)
@@ -314,55 +317,35 @@ class Flight:
     def _wanted(self, now: float, adapter: Adapter, state: PartState) -> bool:
         """Whether control is to be taken, if the supervisor lets it."""
         idle = adapter.stage in (Stage.IDLE, Stage.LEFT)
-        return self._given(now) or (state.engaged and state.near and idle and self.may_control)
+        return self.hands.given(now) or (state.engaged and state.near and idle and self.hands.may_control)
 
     def _climbs(self, t: Telemetry, state: PartState) -> bool:
         """Whether a ground start is this agent's to do, and is not done."""
-        return self.config.may_arm and state.engaged and self.may_control and self.take_off.pending(t)
+        return self.config.may_arm and state.engaged and self.hands.may_control and self.take_off.pending(t)
 
     # ------------------------------------------------------------------ whose hands fly
 
-    @property
-    def may_control(self) -> bool:
-        """Whether this agent may enter the guided mode, by a person's word since its start or by itself.
+    def objection(self, now: float, command: messages.Command) -> str:
+        """Why a command cannot be obeyed as things stand; "" where it can.
 
-        By itself it ends neither a way home nor a failsafe, and where it was started while the game runs it
-        enters nothing: then it flies a vehicle that it finds in the guided mode.
-        """
-        t = self.vehicle.telemetry
-        bound = t.mode in HOMEWARD or t.status >= CRITICAL
-        return (self._orders.granted or (self._trusted and not bound)) and not self._orders.blocked
-
-    def objection(self, command: messages.Command) -> str:
-        """Why the hands that fly now stand against a command; "" where they do not.
-
-        Who takes a vehicle out of a way home, a landing or a failsafe must have named it alone and seen its
-        mode: one word to all does not do. What this agent was ordered itself it may be ordered out of.
-        """
-        t = self.vehicle.telemetry
-        if command.kind not in (messages.CommandKind.RESUME, messages.CommandKind.START):
-            return f"a pilot flies it, in {t.mode}" if self.vehicle.stage is Stage.TAKEN else ""
-        failsafe = t.status >= CRITICAL
-        bound = failsafe or (t.mode in HOMEWARD and self._orders.order is Action.PASS)
-        if not bound or command.mode == t.mode:
-            return ""
-        why = f"{t.mode}, by a failsafe" if failsafe else t.mode
-        shown = f" (it was shown in {command.mode})" if command.mode else ""
-        return f"it is in {why}{shown}: resume this vehicle alone, by its id"
-
-    @property
-    def _trusted(self) -> bool:
-        """Whether the configuration lets this process take control of what it began with."""
-        return self.config.take_control and not self._resumed
+        Control is not given where the supervisor would take it away in the same moment, and for long."""
+        why = self.hands.objection(now, command)
+        if why or command.kind not in SETS_OFF:
+            return why
+        free = self._input(now, self.vehicle.telemetry)._replace(pilot=False, order=Action.PASS)
+        verdict = supervise(ZERO, free, self._thresholds(), SupervisorState())
+        return f"{CAUSES[verdict.cause]}: it would not fly" if verdict.action >= Action.RETURN else ""
 
     def drive(self, now: float, verdict: SupervisorOutput | None = None) -> None:
         """Let the adapter do what is due, with the verdict on this step or without a setpoint."""
         change = self.vehicle.step(now, verdict)
-        self._hold.look(now, self.vehicle, self.part.policy.envelope)
+        self.hold.look(now, self.vehicle, self.part.policy.envelope)
         if change is Control.TAKEN:
             self._taken(now)
         elif change is not Control.SAME:
-            self._orders.handed_back()
+            if change is Control.HANDED_BACK:
+                self.part.let_in()
+            self.hands.handed_back()
             self.resumed()
 
     def resumed(self) -> None:
@@ -372,12 +355,11 @@ class Flight:
     def _taken(self, now: float) -> None:
         t = self.vehicle.telemetry
         fell_back = t.mode == "HOLD" and now - self._silent_at < REGAIN_S
-        if fell_back and (self._orders.granted or self._trusted):
+        if fell_back and (self._orders.granted or self.hands.trusted):
             self._journal.warning("regain", f"{t.mode} while the link was silent: asking again")
-            self._given_at = now
+            self.hands.give(now)
         else:
-            self._given_at = NEVER
-            self._orders.taken()
+            self.hands.taken()
 
     # ------------------------------------------------------------------ inside
 

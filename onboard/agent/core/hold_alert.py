@@ -4,19 +4,21 @@ from __future__ import annotations
 
 from onboard.agent.core.journal import Journal
 from onboard.agent.core.vehicle_link import VehicleLink
-from onboard.autopilot.base import Stage
+from onboard.autopilot.base import Pilot, Stage
 from onboard.core.math.constants import NEVER
 from onboard.core.safety.hold_watch import HoldLimits, HoldState, HoldWatch, of_plane
 from onboard.core.safety.policy import Envelope
 
 HOLDING = frozenset(("LOITER", "BRAKE", "HOLD", "POSHOLD"))
 FRESH_S = 0.5
+SINKING = 0.5  # [m/s; down]
 
 
 class HoldAlert:
     """Watches each hold from its mode's confirmation on."""
 
     def __init__(self, journal: Journal) -> None:
+        self.lost = ""  # why it does not hold, until somebody moves it; "": it does, or is not left to hold
         self._journal = journal
         self._watch: HoldWatch | None = None
         self._left = False
@@ -33,7 +35,9 @@ class HoldAlert:
             self._watch, self._mode = HoldWatch(now, limits), t.mode
         self._left = left
         if not left or t.mode != self._mode:
-            self._watch = None  # it is in other hands
+            self._end("in other hands")
+        elif self._watch is not None and _moved_by_hand(now, vehicle):
+            self._end("moved by its pilot's sticks")
         if self._watch is None or not t.placed or now - t.position_at > FRESH_S:
             return
         airspeed = None if t.airspeed_at == NEVER or envelope.hovers else t.airspeed
@@ -42,4 +46,17 @@ class HoldAlert:
             if self._watch.state is HoldState.HELD:
                 self._journal.info("held", f"{t.mode} holds, {here}")
             else:
-                self._journal.error("hold_lost", f"{t.mode} does not hold: {here}")
+                self.lost = f"{t.mode} does not hold: {here}"
+                self._journal.error("hold_lost", self.lost)
+
+    def _end(self, why: str) -> None:
+        if self.lost:
+            self._journal.info("hold_over", f"it is {why}")
+        self._watch, self.lost = None, ""
+
+
+def _moved_by_hand(now: float, vehicle: VehicleLink) -> bool:
+    """Whether a pilot's sticks move it in the mode in which it was left. Sinking is told, whoever does it."""
+    adapter = vehicle.adapter
+    flying = adapter is not None and adapter.pilot(now) is Pilot.FLYING
+    return flying and vehicle.telemetry.velocity.z < SINKING

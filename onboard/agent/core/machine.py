@@ -336,6 +336,8 @@ class AgentCore:
             lacks = (*lacks, f"its height of {self.flight.take_off.height:g} m")
         if self.flight.latched:
             lacks = (*lacks, f"a person's resume after: {self.flight.latched}")
+        if self.flight.unasked:
+            lacks = (*lacks, f"a person's resume: found in {self.vehicle.telemetry.mode}, not chosen by it")
         if self.orders.blocked:
             lacks = (*lacks, f"a person's resume after: {self.orders.blocked}")
         self.lacks = (*lacks, "the master's resume") if state.late else lacks
@@ -353,7 +355,8 @@ class AgentCore:
             return AgentStage.ENDED
         if self.orders.order is not Action.PASS or (output is not None and not output.stream):
             return AgentStage.HELD
-        if output is not None and (self.vehicle.stage is Stage.ACTIVE or self.config.dry_run):
+        flies = self.vehicle.stage is Stage.ACTIVE and not self.flight.unasked
+        if output is not None and (flies or self.config.dry_run):
             return AgentStage.ACTING
         return AgentStage.WAITING if self.lacks else AgentStage.READY
 

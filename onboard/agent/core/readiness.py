@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from onboard.agent.core.bus_view import BusView
 from onboard.agent.core.vehicle_link import VehicleLink
-from onboard.autopilot.base import Stage
 from onboard.autopilot.health import Thresholds, read
 from onboard.core.math.constants import NEVER
 from onboard.core.safety.policy import Policy
@@ -45,8 +44,6 @@ def why_no_order(vehicle: VehicleLink, *, takes: bool) -> str:
     """Why an order from the ground cannot be obeyed, in words; "" if it can. `takes`: it takes control."""
     if vehicle.adapter is None:
         return vehicle.refusal or "no autopilot"
-    if vehicle.stage is Stage.TAKEN and not takes:
-        return f"a pilot flies it, in {vehicle.telemetry.mode}"
     if vehicle.unread and takes:
         return f"lacks {unread_words(vehicle.unread)}"
     return ""

@@ -132,6 +132,8 @@ class Reports:
             number=standing.number,
             stopped_by=standing.stopped_by,
             link_lock=standing.link_lock,
+            failsafe=vehicle.by_failsafe,
+            hold_lost=self._flight.hold.lost,
         )
 
 

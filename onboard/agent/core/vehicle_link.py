@@ -57,10 +57,10 @@ class Control(Enum):
     RESTARTED = "restarted"  # what looked like a take-over was the autopilot starting again
 
 
-def _change(before: Stage, after: Stage) -> Control:
+def _change(before: Stage, after: Stage, *, handed: bool) -> Control:
     if after is Stage.TAKEN and before is not Stage.TAKEN:
         return Control.TAKEN
-    if after is Stage.ACTIVE and before in (Stage.TAKEN, Stage.LEFT):
+    if after is Stage.ACTIVE and (before in (Stage.TAKEN, Stage.LEFT) or (handed and before is Stage.IDLE)):
         return Control.HANDED_BACK
     if after is Stage.IDLE and before is Stage.TAKEN:
         return Control.RESTARTED
@@ -133,6 +133,11 @@ class VehicleLink:
     def stage(self) -> Stage:
         """Who flies."""
         return Stage.IDLE if self.adapter is None else self.adapter.stage
+
+    @property
+    def by_failsafe(self) -> bool:
+        """Whether the autopilot's own failsafe took it, and no person."""
+        return self.adapter is not None and self.stage is Stage.TAKEN and self.adapter.failsafe
 
     @property
     def parameters(self) -> dict[str, float]:
@@ -270,7 +275,7 @@ class VehicleLink:
             self.sent_at = now
         for note in step.notes:
             self._journal.say(_SEVERITIES.get(note.severity, Severity.INFO), note.kind, note.text)
-        return _change(before, adapter.stage)
+        return _change(before, adapter.stage, handed=adapter.handed)
 
     def chores(self, now: float) -> None:
         """Everything that is due beside setpoints: requests, and the adapter's own retries."""

@@ -26,7 +26,7 @@ def health(seen: SupervisorInput, policy: Policy, far_outside: bool) -> HealthAc
     Comparisons are written so that NaN counts as a fault. Order within one gravity: the first rule speaks.
     """
     if seen.pilot:
-        return HealthAction(Action.END, Cause.PILOT, True)
+        return HealthAction(Action.END, Cause.FAILSAFE if seen.failsafe else Cause.PILOT, True)
     fresh = seen.telemetry_age <= policy.telemetry_age
     if not seen.heartbeat_age <= (policy.heartbeat_alone if fresh else policy.heartbeat_age):
         return HealthAction(Action.END, Cause.HEARTBEAT, False)

@@ -30,7 +30,7 @@ class Command(IntEnum):
     RELEASE_TO_RETURN = 3  # … to fly home
     RELEASE_TO_LAND = 4  # … to land
     END_STREAM = 5  # send nothing more
-    HANDS_OFF = 6  # a pilot flies: ask for nothing
+    HANDS_OFF = 6  # a pilot, or the autopilot's own failsafe, flies: ask for nothing
 
 
 class Cause(IntEnum):
@@ -61,6 +61,7 @@ class Cause(IntEnum):
     ORDER = 22
     FAR_OUTSIDE_FENCE = 23
     OVER = 24
+    FAILSAFE = 25
 
 
 class Envelope(NamedTuple):
@@ -136,5 +137,6 @@ class SupervisorInput(NamedTuple):
     ekf_ok: bool = True
     gps_fix: int = 3
     pilot: bool = False  # somebody else changed the autopilot's mode
+    failsafe: bool = False  # … and that was the autopilot's own failsafe
     order: Action = Action.PASS  # what the ground ordered
     over: bool = False  # what the vehicle was to do is done: nothing is left to fly

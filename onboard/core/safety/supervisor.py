@@ -94,11 +94,12 @@ def supervise(wanted: Vec, seen: SupervisorInput, policy: Policy, state: Supervi
 def commanded(action: Action, cause: Cause, order: Action, hovers: bool) -> Command:
     """What the adapter is to do where no decision goes out.
 
-    Against a pilot's hands nothing is asked for. An order from the ground leaves the guided mode even where a
-    fault ends the stream: of an order and a graver rule that also leaves it, the graver one is followed.
+    Against a pilot's hands, and the autopilot's own failsafe, nothing is asked for. An order from the ground
+    leaves the guided mode even where a fault ends the stream: of an order and a graver rule that also leaves
+    it, the graver one is followed.
     A multicopter's autopilot stops by itself when the stream ends; a plane's flies on: it is left to loiter.
     """
-    if cause == Cause.PILOT:
+    if cause in (Cause.PILOT, Cause.FAILSAFE):
         return Command.HANDS_OFF
     release = max(order, action) if action < Action.END else order
     if release == Action.LAND:

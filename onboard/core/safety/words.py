@@ -36,6 +36,7 @@ CAUSES: dict[Cause, str] = {
     Cause.EKF: "the autopilot's position estimate is not healthy",
     Cause.GPS: "the autopilot has no GPS fix",
     Cause.PILOT: "somebody else changed the mode: hands off until control is handed back",
+    Cause.FAILSAFE: "the autopilot's own failsafe flies: hands off until control is given back",
     Cause.ORDER: "ordered from the ground",
     Cause.FAR_OUTSIDE_FENCE: "far outside the fence",
     Cause.OVER: "the vehicle's part is over",

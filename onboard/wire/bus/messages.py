@@ -277,6 +277,8 @@ class Health(Message, frozen=True):
     number: int = 0  # counts up in each process: what an order quotes where there is no master
     stopped_by: str = ""  # id of the last order obeyed that stops; '' = none by this process
     link_lock: LinkLock = LinkLock.OPEN
+    failsafe: bool = False  # handed over: to the autopilot's own failsafe, not to a person
+    hold_lost: str = ""  # why the mode in which it was left does not hold it; '' = it does, or none was left
 
 
 class Severity(Enum):

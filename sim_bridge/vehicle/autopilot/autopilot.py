@@ -118,6 +118,7 @@ class Autopilot(AutopilotState):
         """The safety pilot's switch: the mode is entered whatever the ground station wants.
 
         Raises KeyError where this kind has no mode of that name."""
+        self.transmitter.choose(name)
         self._change(now_ns, self.modes[name])
 
     def fail(self, fault: Fault, failed: bool = True) -> None:

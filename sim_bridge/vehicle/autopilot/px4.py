@@ -120,6 +120,7 @@ class Px4(Autopilot):
 
     def pilot_mode(self, now_ns: int, name: str) -> None:
         """The safety pilot's switch: the mode is entered whatever the ground station wants."""
+        self.transmitter.choose(name)
         self._change(now_ns, M[name])
 
     def request_mode(self, now_ns: int, mode: int) -> str:

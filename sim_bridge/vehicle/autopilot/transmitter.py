@@ -13,6 +13,8 @@ class Transmitter:
     def __init__(self, throttle: float | None) -> None:
         self._throttle = throttle
         self._was_heard = throttle is not None
+        self._switch = 1800  # [µs] of channel 5, which chooses the mode
+        self._places: dict[str, int] = {}  # of that switch, by mode
         self._silent_ns = -1  # since when nothing is heard; −1: it is heard, or never was
 
     @property
@@ -28,6 +30,10 @@ class Transmitter:
             self._silent_ns = -1
             self._was_heard = True
         self._throttle = None if throttle is None else min(1.0, max(0.0, throttle))
+
+    def choose(self, mode: str) -> None:
+        """Turn the mode switch to a mode's place, one of six."""
+        self._switch = 1165 + 133 * (self._places.setdefault(mode, len(self._places)) % 6)
 
     def lost(self, now_ns: int) -> bool:
         """Whether it was heard once and has been silent for LOST_S."""
@@ -51,5 +57,5 @@ class Transmitter:
         if self._throttle is None:
             return [0] * 18
         stick = round(PWM_LOW + self._throttle * (PWM_HIGH - PWM_LOW))
-        told = [PWM_MID, PWM_MID, stick, PWM_MID, 1800, PWM_LOW, PWM_LOW, 1800]
+        told = [PWM_MID, PWM_MID, stick, PWM_MID, self._switch, PWM_LOW, PWM_LOW, 1800]
         return told + [0] * (18 - len(told))

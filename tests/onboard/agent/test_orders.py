@@ -123,6 +123,11 @@ async def test_under_a_pilots_hands_an_order_is_refused_with_the_reason() -> Non
         assert "a pilot flies it" in reply.reason
         assert mode(game, PURSUER) == "LOITER"
         reply = await order(game, PURSUER, command(CommandKind.RESUME, "c-2"))
+        assert "a pilot with live sticks flies it, in LOITER" in reply.reason
+        autopilot(game, PURSUER).set_throttle(game.bridge.world.elapsed_ns, None)  # he switches it off
+        choose_mode(game, PURSUER, "BRAKE")
+        await game.forward(3.0)
+        reply = await order(game, PURSUER, command(CommandKind.RESUME, "c-3"))
         await game.forward(4.0, until=lambda: flies(game.agents[PURSUER]))
 
 

@@ -8,7 +8,8 @@ import pytest
 
 from onboard.autopilot.base import ReleaseMode, Stage, Telemetry
 from onboard.autopilot.mode_machine import ModeMachine
-from onboard.autopilot.release_modes import BY_STICK, Release, chain, stick_centred
+from onboard.autopilot.pilot_hands import FLOWN_BY_HAND
+from onboard.autopilot.release_modes import Release, chain, stick_centred
 from onboard.wire.mavlink.modes import MODES, Kind
 from onboard.wire.mavlink.values import CommandAck
 from tests.support.paths import ROOT
@@ -89,7 +90,7 @@ def test_no_chain_asks_for_what_the_vehicle_cannot_fly(kind: Kind, purpose: Rele
             if telemetry in blind:
                 assert not NEEDS_POSITION & set(modes)
             if kind is COPTER and not stick_centred(10.5, telemetry, SET):
-                assert not BY_STICK & set(modes)
+                assert not FLOWN_BY_HAND[Kind.ARDUCOPTER] & set(modes)
 
 
 class Answering:

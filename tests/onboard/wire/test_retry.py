@@ -19,9 +19,9 @@ def test_quick_until_patience_ends_then_slow_without_end() -> None:
     assert retry.tries == 8
 
 
-def test_the_last_quick_try_is_told_once() -> None:
-    retry = CommandRetry(POLICY)
-    assert [retry.impatient for now in range(0, 8000, 1000) if retry.due(now)] == [k == 4 for k in range(8)]
+def test_each_wait_may_be_longer_than_the_one_before() -> None:
+    retry = CommandRetry(POLICY._replace(growth=2.0, patience=9))
+    assert sent(retry, 0, 4000) == [0, 100, 300, 700, 1500, 2500, 3500]
 
 
 def test_no_more_tries_than_allowed() -> None:
