@@ -62,10 +62,9 @@ class Session:
         """A live station has no keys of its own."""
         return ""
 
-    def command(self, kind: CommandKind, ids: Iterable[int]) -> str:
-        """Give a command."""
-        whom = tuple(ids)
-        self.station.command(kind, whom, named=len(whom) == 1)
+    def command(self, kind: CommandKind, ids: Iterable[int], *, named: bool = False) -> str:
+        """Give a command; `named`: a person has named the one vehicle."""
+        self.station.command(kind, ids, named=named)
         return ""
 
     def acknowledge(self, alert: str) -> None:

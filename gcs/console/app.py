@@ -184,7 +184,7 @@ class Console(App[int]):
         if self.selected is None:
             self.say("no vehicle is known yet", "bold yellow")
             return
-        order = command_parser.Order(CommandKind(kind), (self.selected,))
+        order = command_parser.Order(CommandKind(kind), (self.selected,), named=True)
         if self.asked == order:
             self.action_yes()
         else:
@@ -342,6 +342,6 @@ class Console(App[int]):
             self.say("not done")
 
     def _give(self, order: command_parser.Order) -> None:
-        said = self.source.command(order.kind, order.ids)
+        said = self.source.command(order.kind, order.ids, named=order.named)
         self.say(said or f"{order.kind.value} to {command_parser.names(order.ids, self.picture)}", "bold")
         self.refresh_picture()

@@ -28,6 +28,7 @@ class Order(NamedTuple):
 
     kind: CommandKind
     ids: tuple[int, ...]
+    named: bool = False  # one vehicle, by its id or selected: no word that means many
 
 
 class Do(NamedTuple):
@@ -76,7 +77,9 @@ def _order(
     if not whom:
         if kind is CommandKind.ABORT:
             return Order(kind, known)
-        return Order(kind, (selected,)) if selected is not None else Wrong(f"{kind.value} whom? {WHOM}")
+        if selected is None:
+            return Wrong(f"{kind.value} whom? {WHOM}")
+        return Order(kind, (selected,), named=True)
     ids: set[int] = set()
     for word in whom:
         if word == "all":
@@ -96,7 +99,7 @@ def _order(
             if not span or strangers:
                 return Wrong(f"no vehicle {strangers[0] if strangers else word}")
             ids.update(span)
-    return Order(kind, tuple(sorted(ids)))
+    return Order(kind, tuple(sorted(ids)), named=len(ids) == 1 and whom == [str(*ids)])
 
 
 def names(ids: tuple[int, ...], picture: Picture) -> str:

@@ -42,8 +42,10 @@ class Source(Protocol):
         """A key of its own was pressed; what to tell the user, "" = nothing."""
         ...
 
-    def command(self, kind: CommandKind, ids: Iterable[int]) -> str:
-        """Give a command; what to tell the user. A recording refuses in words."""
+    def command(self, kind: CommandKind, ids: Iterable[int], *, named: bool = False) -> str:
+        """Give a command; what to tell the user. A recording refuses in words.
+
+        `named`: a person has named the one vehicle, and confirms the mode that is shown of it."""
         ...
 
     def acknowledge(self, alert: str) -> None:

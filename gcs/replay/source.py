@@ -84,7 +84,7 @@ class ReplaySource:
             player.seek(player.start_ns if action == "start" else player.end_ns)
         return ""
 
-    def command(self, kind: CommandKind, ids: Iterable[int]) -> str:
+    def command(self, kind: CommandKind, ids: Iterable[int], *, named: bool = False) -> str:
         """Refused: nobody hears it."""
         return f"this is a recording: {kind.value} goes to nobody"
 

@@ -60,9 +60,10 @@ class ModeMachine:
         self._may_arm = may_arm
         self._chain: tuple[str, ...] = ()  # the modes to leave into; empty: not leaving, or forgotten
         self._link = 0  # of the chain: which is asked for
-        self._asked_at = NEVER  # since when the present mode is asked for on a link that works
+        self._asked_at = NEVER  # since when the present mode is asked for without silence on the link
         self._first_asked = NEVER  # when the present mode, or the first of its chain, was asked for
         self._complained = False
+        self._deaf = False  # nothing was heard lately
         self._requests = ModeRequests()
         self._from = ""  # the mode it was in when the asking began
         self._mode = CommandRetry(MODE_RETRY)
@@ -140,14 +141,18 @@ class ModeMachine:
                 self._left_in = telemetry.mode
         mode, prove = "", False
         silent = now - max(telemetry.heartbeat_at, telemetry.position_at) > UNANSWERED
-        if self._asked_at == NEVER or silent:  # without a link there is no time to answer in
-            self._asked_at = now
-            self._first_asked = now if self._first_asked != NEVER else NEVER
+        if silent:  # without a link there is no time to answer in
+            self._asked_at = self._first_asked = NEVER
+            self._deaf = True
+        elif self._deaf:
+            self._deaf = False
+            self._mode = self._retry()  # at once, and quickly
         if known and (self.stage is Stage.LEAVING or (self.stage is Stage.ENTERING and ready)):
+            self._give_way(now)
             if self._mode.due(now):
-                self._give_way(now)
                 mode = self._wanted
                 self._requests.sent(now, mode)
+                self._asked_at = now if self._asked_at == NEVER else self._asked_at
                 self._first_asked = now if self._first_asked == NEVER else self._first_asked
                 prove = self._mode.unanswered  # it may have been obeyed, and heartbeat and answer lost
             else:
@@ -178,7 +183,7 @@ class ModeMachine:
 
     def _complain(self, now: float, reported: str) -> None:
         """Say once that a mode that is asked for is not reported."""
-        asked_long = self._mode.tries > 1 and now - self._first_asked >= UNCONFIRMED_S
+        asked_long = self._first_asked != NEVER and now - self._first_asked >= UNCONFIRMED_S
         if asked_long and not (self._complained or self._mode.declined):
             self._complained = True
             asked = f"{self._wanted} asked for {self._mode.tries} times"
@@ -233,7 +238,8 @@ class ModeMachine:
 
     def _give_way(self, now: float) -> None:
         """Go on in the chain where an autopilot that is heard has not answered."""
-        if self.stage is not Stage.LEAVING or self._link > 0 or self._mode.answered:
+        open_ = self._asked_at != NEVER and not self._mode.answered
+        if self.stage is not Stage.LEAVING or self._link > 0 or not open_:
             return
         lands = self._chain[1:2] in ((), ("LAND",))
         if lands or self.leaving_by not in (ReleaseMode.HOLD, ReleaseMode.DEPART):
@@ -241,7 +247,6 @@ class ModeMachine:
         patience = max(UNANSWERED, 2.0 * self._requests.round_trip)
         if now - self._asked_at >= patience:
             self._next(self._chain[0], f"not answered for {now - self._asked_at:.1f} s")
-            self._mode.due(now)  # this try is the new mode's
 
     def _next(self, mode: str, why: str) -> None:
         """Ask for the next mode of the chain; after the last one for the first again, a second later."""
@@ -304,14 +309,18 @@ class ModeMachine:
 
     def _ask(self) -> None:
         self._from = ""
+        self._mode = self._retry()
+        self._complained, self._first_asked = False, NEVER
+        self._asked_at = NEVER
+        self._heard = (NEVER, "")  # judge the present mode again in the light of the new wish
+
+    def _retry(self) -> CommandRetry:
+        """When to ask again: never while the request before may still be on its way."""
         # A link that loses answers makes the measured round trip grow without cause: no reason to ask slower.
         sound = self._quality >= SOUND
         pace = max(MODE_RETRY.every, min(LATE, 1.5 * self._requests.round_trip) if sound else 0.0)
         growth = 2.0 if sound else 1.0
-        self._mode = CommandRetry(MODE_RETRY._replace(every=pace, slow=max(1.0, pace), growth=growth))
-        self._complained, self._first_asked = False, NEVER
-        self._asked_at = NEVER
-        self._heard = (NEVER, "")  # judge the present mode again in the light of the new wish
+        return CommandRetry(MODE_RETRY._replace(every=pace, slow=max(1.0, pace), growth=growth))
 
     def _tell(self, severity: str, kind: str, text: str) -> None:
         self._notes.append(Note(severity, kind, text))

@@ -42,7 +42,7 @@ class Still:
     def act(self, action: str) -> str:
         return ""
 
-    def command(self, kind: CommandKind, ids: Iterable[int]) -> str:
+    def command(self, kind: CommandKind, ids: Iterable[int], *, named: bool = False) -> str:
         return ""
 
     def acknowledge(self, alert: str) -> None:

@@ -40,7 +40,7 @@ class Desk:
         self.acted.append(action)
         return f"did {action}"
 
-    def command(self, kind: CommandKind, ids: Iterable[int]) -> str:
+    def command(self, kind: CommandKind, ids: Iterable[int], *, named: bool = False) -> str:
         self.given.append((kind.value, tuple(ids)))
         order = Command(f"c{len(self.given)}", kind, "anna", self.tower.now_ns)
         self.tower.note(station_journal.SENT, station_journal.Sent(order, tuple(ids)))

@@ -150,3 +150,13 @@ def test_every_command_of_the_bus_can_be_typed():
     assert isinstance(command_parser.parse("hold", picture, None), command_parser.Wrong)
     assert command_parser.parse("abort", picture, 2) == command_parser.Order(CommandKind.ABORT, (1, 2))
     assert command_parser.names((1, 2), picture) == "all 2"
+
+
+def test_only_an_id_or_the_selected_vehicle_is_named():
+    """Out of RTL, LAND or a failsafe a resume must name its vehicle: `all` of one vehicle does not."""
+    picture = field((0.0, 0.0))
+    told = (("resume 1", True), ("resume", True), ("resume all", False), ("resume evader", False))
+    for typed, named in told:
+        order = command_parser.parse(typed, picture, 1)
+        assert isinstance(order, command_parser.Order)
+        assert (order.ids, order.named) == ((1,), named), typed

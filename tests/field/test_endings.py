@@ -1,0 +1,289 @@
+"""Every way in which a flight of the agent ends: the vehicle then holds, returns or lands, as its row says.
+
+The rows are what is demanded of a real vehicle, not what the code has: docs/safety.md prints them. Each is
+flown on the simulated autopilot, on virtual time: within 3 s of the ending (6 s where the autopilot's own
+failsafe acts) the vehicle is in the row's mode, and for the ten seconds after that it holds, comes home or
+lands. Before and after, it sinks in no other mode than LAND, RTL or the autopilot's own descent.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable, Callable
+from math import hypot, inf
+from typing import NamedTuple
+
+import pytest
+
+from onboard.agent.config import AgentConfig
+from onboard.agent.preflight import Ears, Sight
+from onboard.game.scenario import Kind, SimulatedSpec, Transmitter
+from onboard.pilot.predictor_choice import Predicting
+from onboard.wire.bus.messages import CommandKind
+from sim_bridge.vehicle.autopilot.health import Fault
+from tests.support.small_scenarios import PURSUER, chase
+from tests.support.virtual_time import virtual
+from tests.support.whole_games import (
+    WholeGame,
+    autopilot,
+    command,
+    game_of,
+    mode,
+    order,
+    place,
+    under_way,
+)
+
+pytestmark = pytest.mark.game
+
+STICK, LOW, NONE = Transmitter.CENTRED, Transmitter.LOW, Transmitter.NONE
+COPTER, PLANE, PX4 = Kind.ARDUCOPTER, Kind.ARDUPLANE, Kind.PX4
+WITHOUT = (LOW, NONE)
+ALL = (STICK, LOW, NONE)
+SINKS_IN = frozenset(("LAND", "RTL"))
+HELD, RETURNING, LANDING = "held", "returning", "landing"
+# Parameters of a vehicle that was set up as `onboard-agent check` demands.
+SET_UP = {
+    COPTER: {"FS_GCS_ENABLE": 1.0, "SYSID_MYGCS": float(PURSUER), "FS_EKF_ACTION": 1.0, "FS_OPTIONS": 16.0},
+    PLANE: {"FS_GCS_ENABL": 1.0, "SYSID_MYGCS": float(PURSUER), "FS_LONG_ACTN": 1.0},
+    PX4: {"COM_OBL_RC_ACT": 5.0},
+}
+
+
+class Row(NamedTuple):
+    """One line of the table."""
+
+    ending: str
+    kind: Kind
+    sticks: tuple[Transmitter, ...]
+    mode: str  # in which the vehicle is left
+    what: str  # held, returning or landing
+    more: tuple[tuple[str, float], ...] = ()  # parameters that differ from SET_UP
+
+
+ORDERS = {
+    (COPTER, (STICK,)): ("LOITER", "RTL", "LAND"),
+    (COPTER, WITHOUT): ("BRAKE", "RTL", "LAND"),
+    (PLANE, ALL): ("LOITER", "RTL", "RTL"),  # how a plane lands is its mission's business
+    (PX4, ALL): ("HOLD", "RTL", "LAND"),
+}
+TABLE = [
+    *(Row(ending, kind, sticks, modes[0], HELD)
+      for (kind, sticks), modes in ORDERS.items()
+      for ending in ("hold", "abort", "game end")),
+    *(Row("return", kind, sticks, modes[1], RETURNING) for (kind, sticks), modes in ORDERS.items()),
+    *(Row("land", kind, sticks, modes[2], LANDING if modes[2] == "LAND" else RETURNING)
+      for (kind, sticks), modes in ORDERS.items()),
+    # The agent itself leaves: ctrl-C and SIGTERM are one event to it.
+    Row("ctrl-C, SIGTERM", COPTER, (STICK,), "LOITER", HELD),  # a pilot is there
+    Row("ctrl-C, SIGTERM", COPTER, WITHOUT, "RTL", RETURNING),
+    Row("ctrl-C, SIGTERM, FS_OPTIONS 0", COPTER, WITHOUT, "RTL", RETURNING, (("FS_OPTIONS", 0.0),)),
+    Row("ctrl-C, SIGTERM", PLANE, ALL, "RTL", RETURNING),
+    Row("ctrl-C, SIGTERM", PX4, ALL, "HOLD", HELD),
+    # The agent falls silent: the autopilot's own failsafe.
+    *(Row(ending, kind, ALL, left, what)
+      for ending in ("kill", "crash")
+      for kind, left, what in ((COPTER, "RTL", RETURNING), (PLANE, "RTL", RETURNING), (PX4, "HOLD", HELD))),
+    *(Row("check ends", kind, sticks, left, HELD)  # it was never flown by us: nothing changes
+      for kind, sticks, left in ((COPTER, (STICK,), "LOITER"), (COPTER, WITHOUT, "BRAKE"),
+                                 (PLANE, ALL, "LOITER"), (PX4, ALL, "HOLD"))),
+    # The agent lives, and cannot go on.
+    *(Row("lost bus", kind, ALL, left, HELD)
+      for kind, left in ((COPTER, "GUIDED"), (PLANE, "LOITER"), (PX4, "OFFBOARD"))),
+    *(Row("strategy fault", kind, ALL, left, HELD)
+      for kind, left in ((COPTER, "GUIDED"), (PLANE, "LOITER"), (PX4, "HOLD"))),
+    *(Row("battery", kind, ALL, "RTL", RETURNING) for kind in (COPTER, PLANE, PX4)),
+    # Without position: the autopilot's own failsafe, and no mode that needs position.
+    *(Row(ending, kind, ALL, left, what)
+      for ending in ("GPS", "EKF", "hold without GPS", "ctrl-C without GPS")
+      for kind, left, what in ((COPTER, "LAND", LANDING), (PLANE, "CIRCLE", HELD), (PX4, "LAND", LANDING))),
+]  # fmt: skip
+NEEDS_NO_POSITION = frozenset(("LAND", "CIRCLE"))
+EVERYWHERE = {  # what the suite flies each time; all else is `long`
+    ("abort", COPTER, NONE), ("ctrl-C, SIGTERM", COPTER, LOW), ("crash", PLANE, NONE), ("GPS", PX4, NONE),
+}  # fmt: skip
+
+
+async def _killed(game: WholeGame) -> None:
+    game.kill_agent(PURSUER)
+
+
+async def _crashed(game: WholeGame) -> None:
+    """An error inside the machine: the process ends, with its words, and says no more to the autopilot."""
+
+    def handle(*_: object) -> None:
+        raise RuntimeError("a fault of the program")
+
+    game.agents[PURSUER].core.handle = handle  # type: ignore[method-assign,assignment]
+    (crashed,) = await asyncio.gather(game._tasks.pop(PURSUER), return_exceptions=True)
+    assert str(crashed) == "a fault of the program"
+
+
+async def _checked(game: WholeGame) -> None:
+    """A preflight check listens for five seconds, asks what it asks, and ends."""
+    bus = game.broker.connect("check")
+    ears = Ears(AgentConfig(id=PURSUER), [game.links[PURSUER]], bus, None, game.clock)
+    seen = await ears.listen(Sight(bytecode=True, free_bytes=1e9), 5.0)
+    assert seen.kind
+    game.links[PURSUER].receive(lambda data, peer: None)
+
+
+async def _stopped(game: WholeGame) -> None:
+    game.agents[PURSUER].stop()
+
+
+async def _bus_lost(game: WholeGame) -> None:
+    game.broker.kill()
+
+
+async def _strategy_failed(game: WholeGame) -> None:
+    def ask(*_: object) -> None:
+        raise ZeroDivisionError("a fault of the strategy")
+
+    game.agents[PURSUER].core.part.ask = ask  # type: ignore[method-assign,assignment]
+
+
+async def _battery_low(game: WholeGame) -> None:
+    autopilot(game, PURSUER).set_battery(0.1)
+
+
+async def _over(game: WholeGame) -> None:
+    game.bridge.master.abort("the day is over")  # type: ignore[union-attr]
+
+
+def _fails(fault: Fault) -> Callable[[WholeGame], Awaitable[None]]:
+    async def fail(game: WholeGame) -> None:
+        autopilot(game, PURSUER).fail(fault)
+
+    return fail
+
+
+def _ordered(kind: CommandKind) -> Callable[[WholeGame], Awaitable[None]]:
+    async def give(game: WholeGame) -> None:
+        await order(game, PURSUER, command(kind))
+
+    return give
+
+
+def _blind_then(then: Callable[[WholeGame], Awaitable[None]]) -> Callable[[WholeGame], Awaitable[None]]:
+    async def both(game: WholeGame) -> None:
+        autopilot(game, PURSUER).fail(Fault.GPS)
+        await game.forward(0.7)  # known to the agent, and not yet acted upon by the autopilot
+        await then(game)
+
+    return both
+
+
+ENDINGS: dict[str, Callable[[WholeGame], Awaitable[None]]] = {
+    **{kind.value: _ordered(kind) for kind in (CommandKind.HOLD, CommandKind.RETURN, CommandKind.LAND,
+                                               CommandKind.ABORT)},
+    "game end": _over, "ctrl-C, SIGTERM": _stopped, "ctrl-C, SIGTERM, FS_OPTIONS 0": _stopped,
+    "kill": _killed, "crash": _crashed, "check ends": _checked, "lost bus": _bus_lost,
+    "strategy fault": _strategy_failed, "battery": _battery_low, "GPS": _fails(Fault.GPS),
+    "EKF": _fails(Fault.EKF), "hold without GPS": _blind_then(_ordered(CommandKind.HOLD)),
+    "ctrl-C without GPS": _blind_then(_stopped),
+}  # fmt: skip
+
+
+class Sinking:
+    """Watches the truth from now on: how far a vehicle sinks in modes in which it must not."""
+
+    def __init__(self, game: WholeGame) -> None:
+        self._game = game
+        self._high = -inf  # the greatest height in the present mode [m]
+        self._mode = ""
+        self.worst = ("", 0.0)
+
+    def look(self) -> bool:
+        """Look once; False, so that a wait goes on."""
+        now, height = mode(self._game, PURSUER), -place(self._game, PURSUER).z
+        if now != self._mode:
+            self._mode, self._high = now, height
+        self._high = max(self._high, height)
+        if now not in SINKS_IN and self._high - height > self.worst[1]:
+            self.worst = (now, self._high - height)
+        return False
+
+
+async def flown(row: Row, sticks: Transmitter) -> None:
+    """The story of one row."""
+    around = SimulatedSpec(transmitter=sticks, parameters=SET_UP[row.kind] | dict(row.more))
+    scenario = chase(row.kind, simulated=around, prediction=Predicting.CONSTANT_VELOCITY)
+    async with game_of(scenario, any_error=True) as game:
+        game.expects_abort()
+        if row.ending == "check ends":
+            game.kill_agent(PURSUER)  # at once: it has said nothing
+            await game.forward(2.0)
+        else:
+            await under_way(game, 3.0)
+        sinking = Sinking(game)
+        asked: list[str] = []
+        own = autopilot(game, PURSUER)
+        request = own.request_mode
+        names = {number: name for name, number in own.modes.items()}
+        own.request_mode = lambda now, wanted: (  # type: ignore[method-assign]
+            asked.append(names[wanted]) or request(now, wanted)  # type: ignore[func-returns-value]
+        )
+        await ENDINGS[row.ending](game)
+        await game.forward(9.0, until=lambda: sinking.look() or mode(game, PURSUER) == row.mode)
+        await _then(game, row, sinking)
+        if "GPS" in row.ending or row.ending == "EKF":
+            assert set(asked) <= NEEDS_NO_POSITION, asked
+
+
+async def _then(game: WholeGame, row: Row, sinking: Sinking) -> None:
+    """What the vehicle does from the row's mode on."""
+    plane = row.kind is PLANE
+    await _for(game, 4.0, sinking)
+    begun, places = place(game, PURSUER), []
+    for _ in range(20):
+        await _for(game, 0.5, sinking)
+        places.append(place(game, PURSUER))
+    left = mode(game, PURSUER)
+    assert left == row.mode or (row.what == LANDING and left == "HOLD")
+    worst = sinking.worst
+    assert worst[1] < (15.0 if plane else 2.0), f"sank {worst[1]:.1f} m in {worst[0]}"
+    if row.what == LANDING:
+        assert -places[-1].z < -begun.z - 3.0
+    elif row.what == HELD:
+        low, high = min(-p.z for p in places), max(-p.z for p in places)
+        assert high - low < (15.0 if plane else 2.0)
+        wide = max(hypot(p.x - q.x, p.y - q.y) for p in places for q in places)
+        assert wide < (600.0 if plane else 3.0), f"{wide:.1f} m wide"
+    else:
+        home = autopilot(game, PURSUER).game_position(*autopilot(game, PURSUER).home)
+        far = [hypot(p.x - home.x, p.y - home.y) for p in (begun, *places)]
+        assert far[-1] < far[0] or far[-1] < (600.0 if plane else 3.0), f"{far[0]:.0f} to {far[-1]:.0f} m"
+
+
+async def _for(game: WholeGame, seconds: float, sinking: Sinking) -> None:
+    end = game.clock.monotonic_ns() + round(seconds * 1e9)
+    await game.until(lambda: sinking.look() or game.clock.monotonic_ns() >= end, seconds + 1.0)
+
+
+def cases() -> list[object]:
+    """Each row with each state of the sticks."""
+    found = []
+    for row in TABLE:
+        for sticks in row.sticks:
+            here = (row.ending, row.kind, sticks) in EVERYWHERE
+            marks = () if here else (pytest.mark.long,)
+            name = f"{row.ending}-{row.kind.value}-{sticks.value}"
+            found.append(pytest.param(row, sticks, id=name, marks=marks))
+    return found
+
+
+@pytest.mark.parametrize(("row", "sticks"), cases())
+@virtual
+async def test_the_vehicle_is_left_as_its_row_says(row: Row, sticks: Transmitter) -> None:
+    await flown(row, sticks)
+
+
+def test_every_ending_is_in_the_table_for_every_kind_with_every_state_of_the_sticks() -> None:
+    covered = {(row.ending, row.kind, sticks) for row in TABLE for sticks in row.sticks}
+    special = "ctrl-C, SIGTERM, FS_OPTIONS 0"
+    for ending in ENDINGS:
+        for kind in (COPTER, PLANE, PX4):
+            for sticks in ALL:
+                assert (ending, kind, sticks) in covered or ending == special, (ending, kind, sticks)
+    assert len(covered) == sum(len(row.sticks) for row in TABLE)
