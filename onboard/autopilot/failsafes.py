@@ -31,7 +31,8 @@ from onboard.autopilot.failsafe_actions import (
     Ending,
 )
 from onboard.autopilot.parameters import PX4, Finding, Parameters, either, gcs_failsafe
-from onboard.autopilot.release_modes import STICK_AGE, stick_centred
+from onboard.autopilot.pilot_hands import HEARD_S
+from onboard.autopilot.release_modes import stick_centred
 from onboard.wire.mavlink.modes import Kind
 
 AGENT, HELD, BATTERY, STICKS, PLACE, FENCE, ARMING = (
@@ -58,7 +59,7 @@ def sticks_heard(now: float, telemetry: Telemetry, parameters: Parameters) -> bo
     middle tells. PX4 is silent about channels that it does not hear.
     """
     if telemetry.kind in PX4:
-        fresh = 0.0 <= now - telemetry.channels_at <= STICK_AGE
+        fresh = 0.0 <= now - telemetry.channels_at <= HEARD_S
         return fresh and any(telemetry.channels)
     return stick_centred(now, telemetry, parameters)
 
