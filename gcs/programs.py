@@ -8,7 +8,7 @@ import sys
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING
 
 from gcs.console.plain_lines import PlainLines
 from gcs.console.plain_lines import status as status_lines
@@ -24,6 +24,7 @@ from onboard.core.math.constants import NS_PER_S
 from onboard.game.scenario import Scenario
 from onboard.runtime.bus_security import Lock
 from onboard.runtime.clock import RealClock
+from onboard.runtime.progress import Progress
 from onboard.wire.bus.messages import Role
 
 if TYPE_CHECKING:
@@ -159,45 +160,18 @@ def decide_again(run: Path, strategies: dict[Role, str]) -> int:
     """The agents of a run fed again: where they do or decide otherwise. 1 where an agent does."""
     from gcs.replay.decide import decide
 
-    progress = Progress(sys.stderr)
-    comparison = decide(run, strategies, progress.show)
-    progress.end()
+    with Progress("gcs") as progress:
+        comparison = decide(run, strategies, progress.show)
     print("\n".join(comparison.lines()))
     return 1 if any(fed.otherwise for fed in comparison.fed) else 0
-
-
-class Progress:
-    """Tells how far a long command is: on one line of a terminal, else on a line every few seconds."""
-
-    def __init__(self, stream: TextIO) -> None:
-        self._stream = stream
-        self._terminal = stream.isatty()
-        self._clock = RealClock()
-        self._said_ns = self._clock.monotonic_ns()
-        self._open = False
-
-    def show(self, share: float, what: str) -> None:
-        """Tell that `share` of the work is done."""
-        now = self._clock.monotonic_ns()
-        if now - self._said_ns < (0.2 if self._terminal else 3.0) * NS_PER_S:
-            return
-        self._said_ns = now
-        text = f"gcs: {100 * share:3.0f} % ({what})"
-        self._open = self._terminal
-        print(f"\r{text}" if self._terminal else text, end="" if self._terminal else "\n", file=self._stream,
-              flush=True)  # fmt: skip
-
-    def end(self) -> None:
-        """The work is done."""
-        if self._open:
-            print(file=self._stream)
 
 
 def report(run: Path, limits: Thresholds) -> int:
     """The report of a run."""
     from gcs.report.program import write_report
 
-    written = write_report(run, limits, version())
+    with Progress("gcs") as progress:
+        written = write_report(run, limits, version(), progress.show)
     for note in written.notes:
         print(f"gcs: {note}", file=sys.stderr)
     print(written.page)

@@ -13,6 +13,7 @@ import typer  # noqa: E402  (threads are set before anything imports NumPy)
 
 from onboard.config.bounds import Epochs, PositiveDuration, Seed, TimeStep  # noqa: E402
 from onboard.config.printable import printable  # noqa: E402
+from onboard.config.strict import ConfigError  # noqa: E402
 from onboard.runtime import options  # noqa: E402
 from onboard.runtime.options import VersionOption  # noqa: E402
 from onboard.runtime.program import run  # noqa: E402
@@ -123,6 +124,8 @@ def fly(
     """Fly a whole game, agents included, and leave a run folder; exit 1 when it ended without a verdict."""
     from sim_bridge.programs import fly as room
 
+    if fast and bus:
+        raise ConfigError("--bus: found with --fast, whose bus is within the one process")
     path, chosen = shipped_file(scenario, SCENARIOS), room.Options(fast, seed, runs, bus, report, quiet)
     flown = room.fly(path, chosen, lambda line: print(printable(line), flush=True))
     print(room.story(flown))
@@ -233,14 +236,18 @@ def predict(
         bool, typer.Option("--printed", help="Train the example by the printed rule (27)-(28).")
     ] = False,
     epochs: Annotated[
-        int, options.value(Epochs, "--epochs", words="Epochs of the paper's training.", unit="N")
-    ] = 1000,
+        int | None,
+        options.value(Epochs, "--epochs", words="Epochs of the example's training [1000].", unit="N"),
+    ] = None,
 ) -> None:
     """Compare predictors on a recorded or simulated track: a table and a figure."""
     from sim_bridge.studies.predict import predict as run_predict
 
+    if source is not None and (printed or epochs is not None):
+        name = "--printed" if printed else "--epochs"
+        raise ConfigError(f"{name}: found with {source}, expected only with the example, without a file")
     source = None if source is None else shipped_file(source, SCENARIOS)
-    run_predict(source, figures, json, seed, printed, epochs)
+    run_predict(source, figures, json, seed, printed, epochs or 1000)
 
 
 def main() -> None:

@@ -23,6 +23,7 @@ from onboard.game.scenario import Scenario
 from onboard.runtime.bus_memory import MemoryBroker, MemoryBus
 from onboard.runtime.impairment import Impaired, Impairment
 from onboard.runtime.links import memory_pair
+from onboard.runtime.progress import Tell, silent
 from onboard.runtime.protocols import Bus, Clock, Link, Sample
 from onboard.wire.bus.messages import Event, Health, Outcome, Phase, Role
 from onboard.wire.bus.topics import everything
@@ -164,11 +165,17 @@ class Rehearsal:
             await asyncio.sleep(LOOK_S)
         return True
 
-    async def until_ended(self) -> Outcome:
-        """Let the game go to its end; the master's patience bounds the wait."""
+    async def until_ended(self, tell: Tell = silent) -> Outcome:
+        """Let the game go to its end, telling how far it is; the master's patience bounds the wait."""
         flight, horizon = self.scenario.flight, self.scenario.parameters.horizon
         bound = flight.timeout_s + 10.0 * flight.ready_s + horizon + 30.0
-        await self.until(lambda: self.phase is Phase.RECOVERY, bound)
+
+        def over() -> bool:
+            now = max(self.now, 0.0)
+            tell(now / horizon, f"{now:.0f} s of at most {horizon:g} s flown")
+            return self.phase is Phase.RECOVERY
+
+        await self.until(over, bound)
         if self.outcome is None:
             raise RuntimeError("the game did not end: " + "; ".join(self.told[-3:]))
         return self.outcome

@@ -175,6 +175,21 @@ def test_commands_take_the_names_of_what_is_shipped(command: str, said: str) -> 
 
 
 @pytest.mark.parametrize(
+    ("command", "said"),
+    [
+        ("sim-bridge fly --fast one-on-one --bus tcp/127.0.0.1:9", "--bus: found with --fast"),
+        ("sim-bridge predict one-on-one --epochs 5", "--epochs: found with one-on-one, expected only"),
+        ("sim-bridge predict one-on-one --printed", "--printed: found with one-on-one, expected only"),
+    ],
+)
+def test_an_option_that_would_do_nothing_is_refused(command: str, said: str) -> None:
+    program, *arguments = command.split()
+    told = run(program, *arguments)
+    assert (told.returncode, told.stdout, told.stderr.count("\n")) == (2, "", 1)
+    assert said in told.stderr
+
+
+@pytest.mark.parametrize(
     ("line", "words"),
     [
         ("gcs com", ["command"]),

@@ -10,7 +10,6 @@ flown stays the course of events.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
 from math import degrees
 from pathlib import Path
 from typing import NamedTuple
@@ -27,6 +26,7 @@ from onboard.core.strategy.knowledge import Decision
 from onboard.core.strategy.registry import DEFAULT
 from onboard.pilot.setup import Side
 from onboard.runtime.clock import RealClock
+from onboard.runtime.progress import Tell, silent
 from onboard.runtime.signing_keys import read_key
 from onboard.wire.bus.messages import Role
 from onboard.wire.mavlink.signing import MemoryStore, Signing
@@ -36,7 +36,6 @@ SPEED = 0.5  # [m/s] and speeds
 PAUSE_S = 0.5  # differences farther apart are told apart
 SHOWN = 200  # characters of an effect that are shown
 
-Progress = Callable[[float, str], None]  # (share done, of what)
 
 
 class Difference(NamedTuple):
@@ -123,7 +122,7 @@ def files_of(run: Path) -> list[Path]:
 
 
 def decide(
-    run: Path, strategies: dict[Role, str] | None = None, progress: Progress = lambda share, what: None
+    run: Path, strategies: dict[Role, str] | None = None, tell: Tell = silent
 ) -> Comparison:
     """Feed every agent of a run again. `strategies` names others for a role; without, the recorded ones.
 
@@ -140,7 +139,7 @@ def decide(
         story = read(path)
         again = _Again(story, path.name, others.get(story.head.config.role, ""), thinker)
         for share, record in story.records:
-            progress((number + share) / len(files), f"vehicle {story.head.config.id}")
+            tell((number + share) / len(files), f"vehicle {story.head.config.id}")
             if not again.take(record):
                 break
         fed.append(again.result())

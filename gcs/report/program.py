@@ -15,7 +15,9 @@ from gcs.report.from_recording import from_recording
 from gcs.report.from_tlog import from_tlogs
 from gcs.report.page import page
 from onboard.config.strict import ConfigError
+from onboard.runtime.progress import Tell, silent
 
+READ = 0.3  # of the work, about
 PAGE, FIGURES = "report.html", "figures"
 
 
@@ -49,13 +51,17 @@ def read_run(run: Path, limits: Thresholds | None = None, version: str = "") -> 
         recording.close()
 
 
-def write_report(run: Path, limits: Thresholds | None = None, version: str = "") -> Written:
+def write_report(
+    run: Path, limits: Thresholds | None = None, version: str = "", tell: Tell = silent
+) -> Written:
     """Write `report.html` and `figures/*.png` into the run folder. Raises ConfigError with one line.
 
     Of a recording with a name of its own, `x.mcap`, they are `x-report.html` and `x-figures/*.png` beside it,
     so that no report takes another's place.
     """
+    tell(0.0, "reading")
     values = read_run(run, limits, version)
+    tell(READ, "drawing")
     folder = values.folder
     before = "" if run.is_dir() or run.name == RECORDING else f"{run.stem}-"
     html, room = folder / f"{before}{PAGE}", folder / f"{before}{FIGURES}"
@@ -66,7 +72,8 @@ def write_report(run: Path, limits: Thresholds | None = None, version: str = "")
         drawings = figures(values)
         html.write_text(page(values, drawings), encoding="utf-8")
         pictures = [room / f"{drawing.name}.png" for drawing in drawings]
-        for drawing, picture in zip(drawings, pictures, strict=True):
+        for number, (drawing, picture) in enumerate(zip(drawings, pictures, strict=True)):
+            tell(READ + (1.0 - READ) * (1 + number) / (1 + len(pictures)), f"drawing {drawing.name}")
             write_png(drawing, values, picture)
     except OSError as error:
         raise ConfigError(f"{error.filename or folder}: {(error.strerror or str(error)).lower()}") from None

@@ -25,6 +25,7 @@ from onboard.config.derive import Key, struct_from
 from onboard.config.names import GameName
 from onboard.config.strict import StrictConfig, demand
 from onboard.core.safety.policy import Action, Policy
+from onboard.game.plugins import demand_name
 from onboard.pilot.predictor_choice import Predicting
 from onboard.wire.bus.messages import Role
 from onboard.wire.bus.topics import DEFAULT_GAME
@@ -185,6 +186,13 @@ class AgentConfig(StrictConfig, frozen=True):
     def __post_init__(self) -> None:
         demand(len(set(self.link)) == len(self.link), "link", "the same link twice", "two that differ")
         demand(self.role is not Role.TRACKER or bool(self.route), "route", "none", "a tracker's route file")
+        demand(self.role is Role.TRACKER or not self.route, "route", repr(self.route),
+               f"none: a {self.role.value} follows no route")  # fmt: skip
+        demand(self.autopilot is AdapterChoice.MAVSDK or not self.mavsdk, "mavsdk", repr(self.mavsdk),
+               'none, or autopilot = "mavsdk"')  # fmt: skip
+        plane = self.autopilot in (AdapterChoice.ARDUPLANE, AdapterChoice.ARDUPLANE_PLAIN)
+        demand(not (plane and self.hold_mode), "hold_mode", repr(self.hold_mode),
+               f'none with autopilot = "{self.autopilot.value}": a plane circles')  # fmt: skip
 
     @property
     def links(self) -> tuple[str, ...]:
@@ -195,6 +203,10 @@ class AgentConfig(StrictConfig, frozen=True):
 def load(path: Path | None, options: dict[str, Any]) -> AgentConfig:
     """The configuration of a file (or the defaults) with the command line's options over it.
 
-    Raises ConfigError, one line.
+    A strategy of a name that nobody has is refused here, not when the game is staged. Raises ConfigError, one
+    line.
     """
-    return config.load(path, AgentConfig, options)
+    found = config.load(path, AgentConfig, options)
+    if found.strategy and found.role is not Role.TRACKER:  # a tracker's is looked up where its route is
+        demand_name(found.strategy, found.role.value, "options" if "strategy" in options else str(path))
+    return found

@@ -36,6 +36,17 @@ def evader_strategy(name: str) -> EvaderStrategy:
     return found
 
 
+def demand_name(name: str, role: str, where: str) -> None:
+    """Demand that a strategy of this name is known for a role ("evader" or "pursuer"), without loading a
+    plug-in: what that is for is seen where it is loaded. Raises ConfigError that begins with `where`."""
+    known = list(EVADERS if role == "evader" else PURSUERS)
+    if (name or DEFAULT) not in known and name not in plugin_names():
+        names = [*known, *plugin_names()]
+        words = f"{', '.join(names)}{nearest(name, names)}"
+        role_words = "an evader" if role == "evader" else f"a {role}"
+        raise ConfigError(f"{where}: strategy: found '{name}', expected one of {role_words}'s: {words}")
+
+
 def plugin_names() -> tuple[str, ...]:
     """Names that other distributions add."""
     return tuple(sorted({point.name for point in entry_points(group=GROUP)}))

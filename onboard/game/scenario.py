@@ -186,6 +186,10 @@ class ImpairmentSpec(StrictConfig, frozen=True):
     bit_error: Share = 0.0  # share of datagrams with a flipped bit
     bus: bool = False
 
+    def __post_init__(self) -> None:
+        demand((self.burst_rate > 0) == (self.burst_s > 0), "burst_rate", f"{self.burst_rate:g} with burst_s"
+               f" {self.burst_s:g}", "both or neither")  # fmt: skip
+
 
 class WindSpec(StrictConfig, frozen=True):
     """Wind. `from_deg` is the direction it comes from, as pilots say it."""
@@ -196,6 +200,14 @@ class WindSpec(StrictConfig, frozen=True):
     gust_sigma: Speed = 0.0  # σ of the Dryden gusts [m/s]
     correlation_m: Distance = 0.0  # 0 = each vehicle its own gusts
     recorded: str = ""  # CSV file in place of the model
+
+    def __post_init__(self) -> None:
+        modelled = self.speed or self.gust_sigma or self.correlation_m or self.shear
+        demand(not (self.recorded and modelled), "recorded", f"{self.recorded!r} beside a modelled wind",
+               "either of them")  # fmt: skip
+        demand(self.gust_sigma > 0 or self.correlation_m == 0, "correlation_m", self.correlation_m,
+               "0: there are no gusts (gust_sigma = 0)")  # fmt: skip
+        demand(self.speed > 0 or not self.shear, "shear", "true", "false: there is no mean wind (speed = 0)")
 
 
 class SimulatedSpec(StrictConfig, frozen=True):
@@ -282,6 +294,12 @@ class Scenario(StrictConfig, frozen=True):
         for index, v in enumerate(self.pursuers):
             demand(v.target is None, f"pursuers[{index}].target", v.target,
                    "no target: only the evader has one")  # fmt: skip
+        axes = len(self.evader.position)
+        places = {f"pursuers[{i}].position": one.position for i, one in enumerate(self.pursuers)}
+        places |= {"evader.target": self.evader.target} if self.evader.target else {}
+        for key, place in places.items():
+            demand(len(place) == axes, key, f"{len(place)} numbers",
+                   f"{axes} as in evader.position: a game is plane or in space")  # fmt: skip
         ids = self.ids
         demand(len(set(ids)) == len(ids), "pursuers.id", list(ids), "ids that differ")
         demand(max(ids) <= 250, "pursuers", f"{len(self.pursuers)} pursuers", "system ids up to 250")
@@ -289,8 +307,7 @@ class Scenario(StrictConfig, frozen=True):
     @property
     def planar(self) -> bool:
         """Whether every position has two numbers."""
-        points = [v.position for v in self.vehicles] + [self.evader.target or (0.0, 0.0)]
-        return all(len(point) == 2 for point in points)
+        return len(self.evader.position) == 2
 
     @property
     def vehicles(self) -> tuple[VehicleSpec, ...]:

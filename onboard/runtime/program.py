@@ -44,8 +44,8 @@ def run(app: Callable[..., Any], name: str) -> NoReturn:
         if not mistakes or len(mistakes) < sum(1 for _ in _leaves(group)):
             raise
         fail(name, str(mistakes[0]))
-    except KeyboardInterrupt:
-        _end(name, "interrupted", INTERRUPTED)
+    except KeyboardInterrupt as error:  # its words say what was left behind
+        _end(name, ": ".join(("interrupted", *map(str, error.args[:1]))), INTERRUPTED)
     except BrokenPipeError:
         _discard_output()
         sys.exit(READER_LEFT)

@@ -15,6 +15,7 @@ import typer  # noqa: E402  (threads are set before anything imports NumPy)
 
 from onboard.config.bounds import Count, Flights, Seed  # noqa: E402
 from onboard.runtime.options import group, shipped, value  # noqa: E402
+from onboard.runtime.progress import Progress, over, part  # noqa: E402
 from onboard.runtime.resources import ROUTES, SCENARIOS, shipped_file  # noqa: E402
 from onboard.runtime.run_folder import made  # noqa: E402
 
@@ -69,10 +70,13 @@ def tracking(
         f"\nRoute {flown.name}, mean wind 5 m/s from a direction drawn by the seed, gusts of 3 m/s rms;"
         f" {seeds} seeds, the same for every way. J = mean deviation / 10 m + mean |time error| / 1 s.\n"
     )
-    for aircraft in ("nose", "coordinated", "slip"):
-        rows = compare(flown, aircraft, range(seeds), WindSpec(speed=5.0, gust_sigma=3.0))
-        text += f"\n## {aircraft}\n\n{table(rows)}\n"
-        print(f"\n{aircraft}\n{table(rows)}")
+    with Progress(NAME) as progress:
+        say = progress.aside(print)
+        for number, aircraft in enumerate(("nose", "coordinated", "slip")):
+            tell = part(progress.show, number, 3)
+            rows = compare(flown, aircraft, range(seeds), WindSpec(speed=5.0, gust_sigma=3.0), tell)
+            text += f"\n## {aircraft}\n\n{table(rows)}\n"
+            say(f"\n{aircraft}\n{table(rows)}")
     print(f"written: {output(out, 'tracking.md', text)}")
 
 
@@ -103,7 +107,8 @@ def games(
     contests = []
     for name, one in zip(names, scenarios, strict=True):
         print(f"{one.name}: {seeds} seeds, both ways", file=sys.stderr)
-        contests.append(contest(one, range(seeds)))
+        with Progress(NAME) as progress:
+            contests.append(contest(one, range(seeds), tell=progress.show))
         if figures is not None:
             for path in draw_stages(one, play_seed(one, 0, Evasion.STRATEGY), figures, f"spatial-{name}"):
                 print(f"drawn: {path}")
@@ -127,7 +132,8 @@ def encircled(
     from sim_bridge.campaign.spatial_campaign import output
 
     made(out)
-    found = room.table(room.shares(games, seed))
+    with Progress(NAME) as progress:
+        found = room.table(room.shares(games, seed, tell=progress.show))
     command = f"python -m sim_bridge.campaign encircled --games {games} --seed {seed}"
     text = preface("Encircled, and then?", command)
     text += (
@@ -162,7 +168,8 @@ def flown(
         " smallest distance [m] |",
         "|---|---|---|---|---|---|---|---|",
     ]
-    for seed in range(1, seeds + 1):
+    progress = Progress(NAME)
+    for seed in over(range(1, seeds + 1), progress.show, "games flown"):
         for evasion in Evasion:
             game = fly_game(path, seed, evasion, runs)
             kernel = play_seed(one, seed, evasion)
@@ -170,7 +177,7 @@ def flown(
                 f"| {seed} | {game.way} | {game.verdict} | {game.time:.1f} | {game.smallest:.0f} |"
                 f" {kernel.verdict.name.lower()} | {kernel.time:.1f} | {kernel.smallest:.0f} |"
             )
-            print(lines[-1], flush=True)
+            progress.aside(print)(lines[-1])
             text = preface("The spatial game, flown", f"python -m sim_bridge.campaign flown --seeds {seeds}")
             output(out, "games-flown.md", text + f"\n{one.name}\n\n" + "\n".join(lines))
 

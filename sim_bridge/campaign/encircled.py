@@ -18,6 +18,7 @@ from onboard.core.geometry.assessment import assess
 from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import NORTH, ZERO, Vec, scale
 from onboard.core.strategy.registry import EVADERS, PURSUERS
+from onboard.runtime.progress import Tell, over, part, silent
 from sim_bridge.campaign.compiled import campaign, starts_of
 
 R = 2.0  # [m] capture
@@ -66,13 +67,17 @@ def draw_game(
     return None
 
 
-def shares(games: int, seed: int, sizes: tuple[int, ...] = (5, 6), compiled: bool = True) -> list[Shares]:
+def shares(
+    games: int, seed: int, sizes: tuple[int, ...] = (5, 6), compiled: bool = True, tell: Tell = silent
+) -> list[Shares]:
     """Games of every kind with each number of pursuers, played by the paper's strategies."""
     rng = np.random.default_rng(seed)
     found = []
-    for pursuers in sizes:
+    for number, pursuers in enumerate(sizes):
+        tell(number / len(sizes), f"compiling for {pursuers} pursuers")
         play = campaign(EVADERS["paper"].decide, PURSUERS["paper"].decide, pursuers, compiled)
-        for ring, encircled in ((False, False), (False, True), (True, True)):
+        kinds = ((False, False), (False, True), (True, True))
+        for ring, encircled in over(kinds, part(tell, number, len(sizes)), f"{pursuers} pursuers"):
             for target in (NO_TARGET, Target(True, TARGET)):
                 drawn = [draw_game(rng, pursuers, ring, encircled, target) for _ in range(games)]
                 kept = [game for game in drawn if game is not None]

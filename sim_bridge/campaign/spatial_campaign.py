@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from onboard.core.game.referee import GameResult
 from onboard.core.math.vectors import Vec, add, yaw_of
 from onboard.game.scenario import Scenario, load
+from onboard.runtime.progress import Tell, over, part, silent
 from onboard.runtime.resources import configs
 from onboard.runtime.run_folder import made
 from sim_bridge.campaign.compiled import KERNELS as CORE
@@ -239,10 +240,11 @@ class Contest(NamedTuple):
     p_value: float  # exact McNemar test on those pairs, two-sided
 
 
-def contest(scenario: Scenario, seeds: range, compiled: bool = True) -> Contest:
+def contest(scenario: Scenario, seeds: range, compiled: bool = True, tell: Tell = silent) -> Contest:
     """Play all seeds both ways."""
-    with_it = [play_seed(scenario, seed, Evasion.STRATEGY, compiled) for seed in seeds]
-    straight = [play_seed(scenario, seed, Evasion.STRAIGHT, compiled) for seed in seeds]
+    first, second = over(seeds, part(tell, 0, 2), scenario.name), over(seeds, part(tell, 1, 2), scenario.name)
+    with_it = [play_seed(scenario, seed, Evasion.STRATEGY, compiled) for seed in first]
+    straight = [play_seed(scenario, seed, Evasion.STRAIGHT, compiled) for seed in second]
     pairs = [
         (a.verdict == GameResult.CAPTURED, b.verdict == GameResult.CAPTURED)
         for a, b in zip(with_it, straight, strict=True)

@@ -20,6 +20,7 @@ from onboard.core.route.choice import Fix, follow, fresh
 from onboard.core.route.tracking import Setting, Strategy, Waypoint, pseudo_target
 from onboard.game.route_file import Route
 from onboard.game.scenario import WindSpec
+from onboard.runtime.progress import Tell, over, part, silent
 from sim_bridge.campaign.compiled import register
 from sim_bridge.campaign.plane_in_wind import (
     GUST_EVERY,
@@ -186,11 +187,14 @@ class Row(NamedTuple):
     missed: int  # waypoints never passed
 
 
-def compare(route: Route, aircraft: str, seeds: range, wind: WindSpec) -> list[Row]:
+def compare(
+    route: Route, aircraft: str, seeds: range, wind: WindSpec, tell: Tell = silent
+) -> list[Row]:
     """All four ways over the same seeds."""
     rows = []
-    for way, ordered in WAYS.items():
-        flights = [fly_seed(route, aircraft, ordered, seed, wind) for seed in seeds]
+    for number, (way, ordered) in enumerate(WAYS.items()):
+        flown = over(seeds, part(tell, number, len(WAYS)), f"{aircraft}, {way}")
+        flights = [fly_seed(route, aircraft, ordered, seed, wind) for seed in flown]
         deviation = np.array([f.deviations for f in flights])  # (seeds, waypoints)
         error = np.abs(np.array([f.time_errors for f in flights]))
         each = np.mean(deviation, axis=1) / 10.0 + np.mean(error, axis=1)

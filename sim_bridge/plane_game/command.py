@@ -8,6 +8,7 @@ from typing import NamedTuple
 import msgspec
 
 from onboard.game.plugins import pursuer_strategy
+from onboard.runtime.progress import Progress, over
 from onboard.runtime.run_folder import made
 from sim_bridge.plane_game import program
 
@@ -38,13 +39,14 @@ def planar(options: Options) -> bool:
     if options.figures is not None:
         made(options.figures)
     results: list[program.Result] = []
-    for scenario in games:
-        for name in names:
+    pairs = [(scenario, name) for scenario in games for name in names]
+    with Progress("sim-bridge") as progress:
+        for scenario, name in over(pairs, progress.show, "games"):
             first = not results
             played = program.play(scenario, name, options.dt, keep=pictures)
             results.append(program.result(played))
             if options.json:
-                print(msgspec.json.encode(results[-1]).decode())
+                progress.aside(print)(msgspec.json.encode(results[-1]).decode())
             if options.figures is not None:
                 drawing.draw_game(played, options.figures)
             if options.film is not None and first:

@@ -19,6 +19,7 @@ from onboard.game.plugins import evader_strategy, pursuer_strategy
 from onboard.game.scenario import Scenario, load
 from onboard.runtime.clock import RealClock
 from onboard.runtime.loop import run_virtual, virtual_clock
+from onboard.runtime.progress import Progress, silent
 from onboard.runtime.run_folder import new_run
 from sim_bridge.programs import run_folder
 from sim_bridge.world.summary import Summary
@@ -68,6 +69,8 @@ def fly(path: Path, options: Options, say: Callable[[str], None] = print) -> Flo
     except ConfigError:
         run_folder.discard(folder)
         raise
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(f"{folder} holds an unfinished game") from None
     wall_s = (clock.monotonic_ns() - began) / NS_PER_S
     run_folder.write(folder / "summary.json", summary)
     timing = {"wall_s": round(wall_s, 3), **timing}
@@ -82,7 +85,7 @@ def _fast(
     from sim_bridge.rehearsal import Options as RehearsalOptions
     from sim_bridge.rehearsal import Rehearsal
 
-    clock = RealClock()
+    clock, tell = RealClock(), silent
 
     async def play() -> tuple[Summary, float]:
         virtual = virtual_clock()
@@ -92,12 +95,14 @@ def _fast(
         )  # fmt: skip
         async with Rehearsal(scenario, virtual, chosen) as game:
             run_folder.write(folder / "configuration.json", game.configuration())
-            await game.until_ended()
+            await game.until_ended(tell)
             await game.land_agents()
             return game.summary(), virtual.monotonic_ns() / NS_PER_S
 
     began = clock.monotonic_ns()
-    summary, virtual_s = run_virtual(play())
+    with Progress("sim-bridge") as progress:
+        say, tell = progress.aside(say), silent if options.quiet else progress.show
+        summary, virtual_s = run_virtual(play())
     took = max((clock.monotonic_ns() - began) / NS_PER_S, 1e-9)
     return summary, {
         "virtual_s": round(virtual_s, 3),

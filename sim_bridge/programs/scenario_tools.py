@@ -141,6 +141,8 @@ def _duration(scenario: Scenario) -> list[str]:
     if target.exists:
         straight = distance(evader.position, target.position) / evader.speed
         lines.append(f"straight to the target: {straight:.1f} s; the game lasts at most {rules.horizon:g} s")
+        if straight > rules.horizon:
+            lines.append("warning: the evader cannot reach its target within the horizon, even straight")
     else:
         lines.append(f"no target: the game lasts until a capture, at most {rules.horizon:g} s")
     turn = radians(scenario.evader.turn_rate_deg)

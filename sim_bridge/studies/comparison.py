@@ -13,6 +13,7 @@ from onboard.config.strict import ConfigError
 from onboard.core.math.vectors import ZERO, Vec, along, distance
 from onboard.pilot.predictor import PredictorKind, TrackPredictor, Trainer
 from onboard.pilot.predictor.paper import PaperNetwork, PaperSettings
+from onboard.runtime.progress import Tell, over, silent
 from sim_bridge.studies.paper_example import STEP
 from sim_bridge.studies.tracks import Array, Recording
 
@@ -58,7 +59,7 @@ class Instant(NamedTuple):
     source: PredictorKind  # what spoke for the s-parabola predictor 1 s ahead
 
 
-def compare(recording: Recording, seed: int = 1, paper: bool = True) -> Drawn:
+def compare(recording: Recording, seed: int = 1, paper: bool = True, tell: Tell = silent) -> Drawn:
     """Let every predictor follow the track as it arrives and predict from the second half on.
 
     `paper` False leaves out the paper's network; `seed` is that of all networks' training.
@@ -73,7 +74,7 @@ def compare(recording: Recording, seed: int = 1, paper: bool = True) -> Drawn:
     networks: list[PaperNetwork] = []
     at: list[float] = []
     said: list[Instant] = []
-    for sample in samples:
+    for sample in over(samples, tell, f"following {recording.name}"):
         track.add(sample.t, sample.position, sample.velocity, sample.variance)
         now = sample.arrival
         trainer.advance(now, {1: track}, 2)

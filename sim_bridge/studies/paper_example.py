@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import msgspec
@@ -9,6 +10,7 @@ import numpy as np
 
 from onboard.pilot.predictor.paper import PaperNetwork, PaperSettings
 from onboard.runtime.clock import RealClock
+from onboard.runtime.progress import Tell, part, silent
 from sim_bridge.studies.tracks import Array
 
 STEP = 0.2  # of the paper's series [s]
@@ -34,7 +36,9 @@ class Figure4(NamedTuple):
     predicted: Array  # (n, 2); the first five are NaN
 
 
-def example(seed: int = 3, epochs: int = 1000, printed: bool = False) -> Figure4:
+def example(
+    seed: int = 3, epochs: int = 1000, printed: bool = False, tell: Tell = silent
+) -> Figure4:
     """Predict the next point of a smooth plane trajectory, a network for x and one for y (3.5.2)."""
     clock = RealClock()
     t = STEP * np.arange(FIGURE4_POINTS)
@@ -49,7 +53,7 @@ def example(seed: int = 3, epochs: int = 1000, printed: bool = False) -> Figure4
         series = truth[:, column]
         network = PaperNetwork(np.random.default_rng([seed, column]), settings)
         begun = clock.monotonic_ns()
-        done = network.fit(series[:FIGURE4_TRAINED])
+        done = network.fit(series[:FIGURE4_TRAINED], _after(part(tell, column, 2), epochs, name))
         spent = (clock.monotonic_ns() - begun) * 1e-9
         with np.errstate(over="ignore", invalid="ignore"):
             for k in range(n, len(series)):
@@ -58,6 +62,10 @@ def example(seed: int = 3, epochs: int = 1000, printed: bool = False) -> Figure4
         trained, test = misses[n:FIGURE4_TRAINED], misses[FIGURE4_TRAINED:]
         results.append(Example(name, float(trained.mean()), float(test.mean()), len(done), spent))
     return Figure4((results[0], results[1]), truth, predicted)
+
+
+def _after(tell: Tell, epochs: int, name: str) -> Callable[[int], None]:
+    return lambda epoch: tell(epoch / epochs, f"example of 3.5.2: training for {name}")
 
 
 def example_table(figure: Figure4) -> str:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import msgspec
 
+from onboard.runtime.progress import Progress
 from onboard.runtime.run_folder import made
 from sim_bridge.studies.comparison import compare, table
 from sim_bridge.studies.paper_example import example, example_table
@@ -27,8 +28,9 @@ def predict(
     recording = None if source is None else recording_of(source, seed)
     if figures is not None:
         made(figures)
-    if source is None:
-        played = example(epochs=epochs, printed=printed)
+    with Progress("sim-bridge") as progress:
+        played = example(epochs=epochs, printed=printed, tell=progress.show) if source is None else None
+    if played is not None:
         for one in played.results if json else ():
             print(msgspec.json.encode(one).decode())
         if not json:
@@ -38,7 +40,8 @@ def predict(
 
             draw_activation(figures)
             draw_example(played, figures)
-    drawn = compare(recording or weave(), seed)
+    with Progress("sim-bridge") as progress:
+        drawn = compare(recording or weave(), seed, tell=progress.show)
     print(msgspec.json.encode(drawn.comparison).decode() if json else table(drawn.comparison))
     if figures is not None:
         from sim_bridge.studies.predict_figures import draw_comparison

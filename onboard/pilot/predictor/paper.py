@@ -9,6 +9,7 @@ can be switched off.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -78,8 +79,11 @@ class PaperNetwork:
         second[0] += eta * delta2 / k2
         return abs(wanted - out)
 
-    def fit(self, series: Array) -> list[Epoch]:
-        """Train on a series, shape (samples,); returns the epochs, the last with error NaN if it diverged."""
+    def fit(self, series: Array, after: Callable[[int], None] = lambda epoch: None) -> list[Epoch]:
+        """Train on a series, shape (samples,); returns the epochs, the last with error NaN if it diverged.
+
+        `after` is called with the number of epochs that are done.
+        """
         inputs, targets = self._scaled(np.asarray(series, dtype=np.float64))
         epochs: list[Epoch] = []
         with np.errstate(over="ignore", invalid="ignore"):
@@ -87,6 +91,7 @@ class PaperNetwork:
                 eta = self.settings.eta * (1.0 - k / self.settings.epochs)
                 errors = [self.step(x, float(y), eta) for x, y in zip(inputs, targets, strict=True)]
                 epochs.append(Epoch(float(np.mean(errors)), eta))
+                after(len(epochs))
                 if not epochs[-1].error < 1e6:
                     epochs[-1] = Epoch(float("nan"), eta)
                     break

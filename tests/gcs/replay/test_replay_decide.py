@@ -83,7 +83,7 @@ def test_a_changed_machine_is_found_out_with_the_first_effect_that_differs(
 
 def test_how_far_it_is_is_told_from_nothing_to_all(flown: Path) -> None:
     told: list[tuple[float, str]] = []
-    decide(flown, progress=lambda share, what: told.append((share, what)))
+    decide(flown, tell=lambda share, what: told.append((share, what)))
     shares = [share for share, _ in told]
     assert shares == sorted(shares)
     assert shares[0] < 0.01

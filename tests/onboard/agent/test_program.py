@@ -69,6 +69,11 @@ def test_help_imports_neither_numpy_nor_the_dialect() -> None:
         (["--config", "/nowhere/agent.toml"], "/nowhere/agent.toml"),
         (["--game", "a/b"], "game: found 'a/b', expected a name without"),
         (["--autopilot", "horse"], "autopilot"),
+        (["--strategy", "papr"], "options: strategy: found 'papr', expected one of a pursuer's: paper"),
+        (["--strategy", "straight"], "options: strategy: found 'straight', expected one of a pursuer's"),
+        (["--role", "evader", "--strategy", "pure-pursuit"], "expected one of an evader's: paper, straight"),
+        (["--route", "x.toml"], "route: found 'x.toml', expected none: a pursuer follows no route"),
+        (["check", "--seconds", "0"], "--seconds: found 0, expected 0.5 to 600 s"),
     ],
 )
 def test_a_wrong_option_is_one_line_and_exit_code_2(arguments: list[str], said: str) -> None:

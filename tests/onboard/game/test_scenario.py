@@ -16,14 +16,14 @@ SHIPPED = sorted((configs() / "scenarios").rglob("*.toml"))
 PLAIN = """
 name = "plain"
 [evader]
-position = [0, 0]
+position = [0, 0, 20]
 speed = 5
 [[pursuers]]
 position = [30, 40, 25]
 speed = 4
 pitch_min_deg = -20
 [[pursuers]]
-position = [30, -40]
+position = [30, -40, 20]
 speed = 3.5
 """
 
@@ -65,7 +65,7 @@ def test_a_plain_file_becomes_values_with_defaults(tmp_path: Path) -> None:
     assert scenario.pursuers[0].limits().pitch_min == pytest.approx(radians(-20.0))
     assert scenario.pursuers[0].limits().speed_max == 4.0
     assert not scenario.planar
-    assert load(written(tmp_path, PLAIN.replace(", 25]", "]"))).planar
+    assert load(written(tmp_path, PLAIN.replace(", 25]", "]").replace(", 20]", "]"))).planar
 
 
 def test_the_hash_is_of_the_contents_not_of_the_layout(tmp_path: Path) -> None:
@@ -92,8 +92,8 @@ def test_the_hash_is_of_the_contents_not_of_the_layout(tmp_path: Path) -> None:
             "speed = 5\nspeed_max = 4",
             "evader.speed_max: found 4.0, expected at least speed = 5 m/s",
         ),
-        ("position = [0, 0]\n", "", "evader.position: missing, but required"),
-        ("position = [0, 0]", "position = [0, 0, 0, 0]", "evader.position: found [0, 0, 0, 0], expected"),
+        ("position = [0, 0, 20]\n", "", "evader.position: missing, but required"),
+        ("position = [0, 0, 20]", "position = [0, 0, 0, 0]", "evader.position: found [0, 0, 0, 0], expected"),
         (
             "pitch_min_deg = -20",
             "pitch_min_deg = 95",
@@ -134,6 +134,29 @@ def test_the_hash_is_of_the_contents_not_of_the_layout(tmp_path: Path) -> None:
             "flight.autopilot: found 'betaflight', expected one of: px4, px4-plane, arducopter, arduplane",
         ),
         ('name = "plain"', 'name = "plain"\nflight.sensor.dropout = 1.0', "flight.sensor.dropout: found 1.0"),
+        ("40, 25]", "40]", "pursuers[0].position: found 2 numbers, expected 3 as in evader.position"),
+        ("[0, 0, 20]", "[0, 0]", "pursuers[0].position: found 3 numbers, expected 2 as in evader.position"),
+        ("speed = 5", "speed = 5\ntarget = [1, 2]", "evader.target: found 2 numbers, expected 3"),
+        (
+            'name = "plain"',
+            'name = "plain"\nflight.wind = {recorded = "w.csv", speed = 3}',
+            "flight.wind.recorded: found 'w.csv' beside a modelled wind, expected either",
+        ),
+        (
+            'name = "plain"',
+            'name = "plain"\nflight.wind.correlation_m = 30',
+            "flight.wind.correlation_m: found 30.0, expected 0: there are no gusts",
+        ),
+        (
+            'name = "plain"',
+            'name = "plain"\nflight.wind.shear = true',
+            "flight.wind.shear: found true, expected false: there is no mean wind",
+        ),
+        (
+            'name = "plain"',
+            'name = "plain"\nflight.impairment.burst_s = 0.5',
+            "flight.impairment.burst_rate: found 0 with burst_s 0.5, expected both or neither",
+        ),
         (
             'name = "plain"',
             'name = "plain"\nflight.wind.speed = -1',
@@ -156,7 +179,7 @@ def test_a_fault_names_its_key_and_what_was_expected(tmp_path: Path, old: str, n
     ("old", "new", "said"),
     [
         ("speed = 5", "speed = 1e300", "evader.speed: found 1e+300, expected zero or more"),
-        ("position = [0, 0]", "position = [1e300, 0]", "evader.position[0]: found 1e+300, expected"),
+        ("position = [0, 0, 20]", "position = [1e300, 0]", "evader.position[0]: found 1e+300, expected"),
         ('"plain"', f'"plain"\nseed = {2**63}', f"seed: found {2**63}, expected a whole number from 0"),
         ('"plain"', '"plain"\nflight.origin.latitude_deg = 90', "flight.origin.latitude_deg: found 90, exp"),
         ('"plain"', '"plain"\nflight.origin.longitude_deg = 181', "flight.origin.longitude_deg: found 181"),
