@@ -32,7 +32,8 @@ from onboard.runtime.protocols import Bus, Clock, Link, Sample
 from onboard.runtime.zenoh_config import DEFAULT_ENDPOINT
 from onboard.wire.mavlink.signing import Signing
 
-HARMLESS = ("no_peer", "muted", "twin", "signed_without_key")  # counted, but no bad frames
+HARMLESS = ("no_peer", "muted", "twin", "signed_without_key", "unknown_id")
+"""Counted, but no bad frames: a message newer than the dialect is none."""
 DIALECT = "pymavlink.dialects.v20.ardupilotmega"
 UNSERVED_S = 4.0  # a listener that answers nothing is known by then
 PEERS_MAX = 64  # of one link that are told apart
@@ -164,6 +165,7 @@ class Ears:
             sticks=sticks_heard(now.s, telemetry, vehicle.parameters),
             signing_trouble=self._signing.trouble(now.s, telemetry.heartbeat_at),
             position_rate=vehicle.position_rate.value,
+            shortfall=vehicle.shortfall,
             parameters=vehicle.parameters,
             bad_frames={cause: n for cause, n in self._radio.causes.items() if cause not in HARMLESS},
         )

@@ -10,6 +10,7 @@ from onboard.agent.core.signing_watch import SIGNING_REMEDY
 from onboard.autopilot.base import Telemetry
 from onboard.autopilot.batteries import FLIGHT, FUNCTIONS, Gauged
 from onboard.autopilot.failsafes import Around, findings
+from onboard.autopilot.stream_rates import REMEDIES, Shortfall
 from onboard.core.math.constants import NEVER
 from onboard.runtime.bus_security import BusSecurity, Lock
 from onboard.wire.bus.messages import LinkLock
@@ -55,6 +56,7 @@ class Sight(NamedTuple):
     batteries: tuple[Gauged, ...] = ()
     telemetry: Telemetry = Telemetry()
     position_rate: float = 0.0  # [Hz]
+    shortfall: Shortfall = Shortfall.NONE  # why it is below what was asked for
     parameters: dict[str, float] | None = None
     bad_frames: dict[str, int] | None = None
     bus_trouble: str = ""
@@ -165,8 +167,10 @@ def _rates(config: AgentConfig, seen: Sight) -> Row:
     found = f"position at {seen.position_rate:.1f} Hz of {wanted:g}"
     if seen.position_rate >= ENOUGH * wanted:
         return Row("rates", Mark.PASS, found)
-    remedy = "see signing" if seen.signing_trouble else "a faster link, or a lower control_rate_hz"
-    return Row("rates", Mark.FAIL, found, remedy)
+    if seen.signing_trouble:
+        return Row("rates", Mark.FAIL, found, "see signing")
+    cause = seen.shortfall if seen.shortfall is not Shortfall.NONE else Shortfall.LINK
+    return Row("rates", Mark.FAIL, f"{found}: {cause.value}", REMEDIES[cause])
 
 
 def _battery(config: AgentConfig, seen: Sight) -> Row:

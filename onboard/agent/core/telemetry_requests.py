@@ -6,17 +6,19 @@ from collections import Counter
 
 from onboard.autopilot.flight_limits import still_wanted
 from onboard.autopilot.parameters import ALIASES, PX4, WANTED
-from onboard.autopilot.stream_rates import NEEDS, Need, StreamRates, capacity_of
+from onboard.autopilot.stream_rates import NEEDS, Need, Shortfall, StreamRates, capacity_of
 from onboard.autopilot.timesync import TimesyncEstimator
+from onboard.autopilot.unread_streams import UnreadStreams
 from onboard.core.math.constants import NEVER, NS_PER_S
 from onboard.wire.mavlink import commands
 from onboard.wire.mavlink.commands import Outgoing, ParamRead, Target
 from onboard.wire.mavlink.ids import MessageId
 from onboard.wire.mavlink.modes import Kind
-from onboard.wire.mavlink.values import ParamValue
+from onboard.wire.mavlink.values import MessageInterval, ParamValue
 from onboard.wire.retry import CommandRetry, RetryPolicy
 
 REVIEW_S = 1.0  # between two looks at the rates
+LATE = 1.5  # times that, after which this process was late itself
 PARAM_RETRY = RetryPolicy(
     0.5, patience=6, slow=5.0
 )  # [s] without end: the limits must come
@@ -49,15 +51,12 @@ class Requests:
         baud = baud_of(link)
         self.parameters: dict[str, float] = {}
         self.clock = TimesyncEstimator()
-        self._rates = StreamRates(
-            kind,
-            to,
-            capacity_of(baud) if baud else None,
-            signed=signed,
-            needs=needs_of(kind, control_rate_hz),
-        )
+        capacity, needs = capacity_of(baud) if baud else None, needs_of(kind, control_rate_hz)
+        self._rates = StreamRates(kind, to, capacity, signed=signed, needs=needs)
+        self._unread = UnreadStreams(to, [need.message for need in needs], capacity, signed)
         self._to = to
         self._px4 = kind in PX4
+        self._taken_back: list[Outgoing] = []  # requests to be sent at once
         self._arrived: Counter[str] = Counter()
         self._reviewed = self._clock_at = NEVER
         self._kind = kind
@@ -74,6 +73,16 @@ class Requests:
     def radio(self, buffer_free: float) -> None:
         """The telemetry radio's transmit buffer, as it reports it."""
         self._buffer_free = buffer_free
+
+    def interval(self, now: float, value: MessageInterval) -> None:
+        """The autopilot's word on how often it sends a message."""
+        self._rates.granted(now, value.number, value.interval_s)
+        self._taken_back += self._rates.taken_back(now)
+
+    @property
+    def shortfall(self) -> Shortfall:
+        """Why less comes than was asked for."""
+        return self._rates.cause
 
     def parameter(self, value: ParamValue) -> None:
         """Keep a parameter's value."""
@@ -94,19 +103,22 @@ class Requests:
     def again(self) -> None:
         """Ask for everything anew: the autopilot has started again, or another link is used."""
         self._rates.forget()
+        self._unread.forget()
         self._reviewed = NEVER
 
     def due(self, now: float, quality: float) -> list[Outgoing]:
         """What to send at `now` [s, monotonic]; `quality`: share of the autopilot's frames that arrive.
 
         What is lost on the way is no reason to ask for less: rates are judged by what was sent."""
-        messages: list[Outgoing] = []
+        messages, self._taken_back = self._taken_back, []
         span = now - self._reviewed
         if span >= REVIEW_S:
             first = self._reviewed == NEVER
+            late = not first and span > LATE * REVIEW_S
             share = max(0.1, quality)
             rates = {name: count / span / share for name, count in self._arrived.items()}
-            messages += self._rates.step(now, rates, self._buffer_free, share)
+            messages += self._rates.step(now, rates, self._buffer_free, share, late)
+            messages += self._unread.step(now, self._arrived, span)
             if first:
                 messages.append(commands.request_message(self._to, MessageId.HOME_POSITION))
             self._arrived.clear()

@@ -16,6 +16,7 @@ from onboard.agent.core.telemetry_requests import Requests
 from onboard.autopilot.base import Adapter, Refusal, Setpoint, Stage, Telemetry
 from onboard.autopilot.choose import AdapterOptions, adapter_for
 from onboard.autopilot.flight_limits import FlightLimits, read_limits, unread
+from onboard.autopilot.stream_rates import REMEDIES, Shortfall
 from onboard.autopilot.telemetry_state import Observer
 from onboard.core.math.constants import NEVER, NS_PER_S
 from onboard.core.math.vectors import ZERO
@@ -30,6 +31,7 @@ from onboard.wire.mavlink.values import (
     CommandAck,
     GlobalPosition,
     Heartbeat,
+    MessageInterval,
     ParamValue,
     RadioStatus,
     StatusText,
@@ -43,6 +45,7 @@ DOUBTS = {  # why positions do not count, in words
 }
 DOUBT_S = 0.5  # a doubt that lasts for longer is told [s]
 SECOND_S = 10.0  # without a second autopilot, until one is news again [s]
+SHORT_S = 60.0  # between two words on one cause of slow telemetry [s]
 COMPONENTS_MAX = 8
 RATE_WINDOW_S = 2.0  # over which rates are measured
 _SEVERITIES = {"info": Severity.INFO, "warning": Severity.WARNING, "error": Severity.ERROR}
@@ -123,6 +126,7 @@ class VehicleLink:
         self._doubt = ""  # told last
         self._undoubted_at = NEVER  # when positions counted last [s]
         self._stepped_at = NEVER
+        self._short_at: dict[Shortfall, float] = {}  # causes of slow telemetry, and when they were told [s]
 
     @property
     def hovers(self) -> bool | None:
@@ -171,6 +175,10 @@ class VehicleLink:
 
     def hear(self, packet: Packet, now: float) -> bool:
         """Take one packet; True for a new position of the own vehicle."""
+        if isinstance(packet.value, RadioStatus):  # a telemetry radio at our end: of any system
+            if self._asking is not None:
+                self._asking.radio(packet.value.buffer_free)
+            return False
         if packet.system != self.config.id:
             self.foreign["foreign_system"] += 1
             if packet.component == AUTOPILOT and len(self.heard_systems) < 16:
@@ -198,8 +206,8 @@ class VehicleLink:
             answer = self._asking.clock.take(round(now * NS_PER_S), value)
             if answer is not None:
                 self.radio.send(answer)
-        elif isinstance(value, RadioStatus) and self._asking is not None:
-            self._asking.radio(value.buffer_free)
+        elif isinstance(value, MessageInterval) and self._asking is not None:
+            self._asking.interval(now, value)
         elif isinstance(value, Version):
             if self.version is not None and 0 != value.uid != self.version.uid != 0:
                 self.second_autopilot(now, f"their uids are {self.version.uid:x} and {value.uid:x}")
@@ -282,8 +290,22 @@ class VehicleLink:
         if self._asking is not None:
             for message in self._asking.due(now, self.telemetry.link_quality):
                 self.radio.send(message)
+            self._tell_shortfall(now, self._asking.shortfall)
         self.position_rate.review(now)
         self.setpoint_rate.review(now)
+
+    @property
+    def shortfall(self) -> Shortfall:
+        """Why less telemetry comes than was asked for."""
+        return Shortfall.NONE if self._asking is None else self._asking.shortfall
+
+    def _tell_shortfall(self, now: float, cause: Shortfall) -> None:
+        """Say why telemetry comes too slowly: each cause once, and again a minute after it was told."""
+        if cause is Shortfall.NONE or now - self._short_at.get(cause, NEVER) < SHORT_S:
+            return
+        self._short_at[cause] = now
+        rate = f"position at {self.position_rate.value:.1f} Hz of {self.config.control_rate_hz:g}"
+        self._journal.warning("rates", f"{rate}: {cause.value}; {REMEDIES[cause]}")
 
     def other_link(self) -> None:
         """Another link is used from now on: what was asked for on the last one is asked for again."""

@@ -88,6 +88,11 @@ def set_message_interval(to: Target, message: int, rate_hz: float) -> CommandLon
     return CommandLong(to, CommandId.SET_MESSAGE_INTERVAL, (message, interval_us))
 
 
+def get_message_interval(to: Target, message: int) -> CommandLong:
+    """Ask at which interval a message (by its number) is sent: the answer is MESSAGE_INTERVAL."""
+    return CommandLong(to, CommandId.GET_MESSAGE_INTERVAL, (message,))
+
+
 def request_message(to: Target, message: int) -> CommandLong:
     """Ask for a message (by its number) once."""
     return CommandLong(to, CommandId.REQUEST_MESSAGE, (message,))

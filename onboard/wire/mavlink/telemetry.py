@@ -28,6 +28,7 @@ from onboard.wire.mavlink.values import (
     GpsFix,
     Heartbeat,
     Home,
+    MessageInterval,
     ParamValue,
     RadioStatus,
     RcChannels,
@@ -243,6 +244,10 @@ def _radio_status(m: Any) -> RadioStatus:
     return RadioStatus(min(m.txbuf, 100) * 0.01, m.rssi, m.remrssi, m.rxerrors)
 
 
+def _message_interval(m: Any) -> MessageInterval:
+    return MessageInterval(m.message_id, max(0, m.interval_us) * 1e-6)
+
+
 def _rc_channels(m: Any) -> RcChannels:
     """A channel that is not heard reads 0."""
     pulses: list[int] = []
@@ -279,6 +284,8 @@ _READERS: dict[int, Callable[[Any], Value | None]] = {
     dialect.MAVLINK_MSG_ID_TIMESYNC: _timesync,
     dialect.MAVLINK_MSG_ID_ADSB_VEHICLE: _adsb_vehicle,
     dialect.MAVLINK_MSG_ID_RADIO_STATUS: _radio_status,
+    dialect.MAVLINK_MSG_ID_RADIO: _radio_status,  # of older radios: the same fields
+    dialect.MAVLINK_MSG_ID_MESSAGE_INTERVAL: _message_interval,
     dialect.MAVLINK_MSG_ID_RC_CHANNELS: _rc_channels,
 }
 

@@ -185,6 +185,13 @@ class RcChannels(NamedTuple):
     pulses: tuple[int, ...]  # [µs] of the channels that the receiver hears, channel 1 first
 
 
+class MessageInterval(NamedTuple):
+    """MESSAGE_INTERVAL."""
+
+    number: int  # of the message
+    interval_s: float  # between two; 0: it is not sent
+
+
 class RadioStatus(NamedTuple):
     """RADIO_STATUS of a telemetry radio."""
 
@@ -213,5 +220,6 @@ Value = (
     | Timesync
     | AdsbVehicle
     | RadioStatus
+    | MessageInterval
     | RcChannels
 )

@@ -55,6 +55,8 @@ class Radio:
     def hear(self, messages: list[commands.CommandLong]) -> None:
         names = {number: kind.msgname for number, kind in dialect.mavlink_map.items()}
         for message in messages:
+            if message.command != dialect.MAV_CMD_SET_MESSAGE_INTERVAL:
+                continue
             interval = message.params[1]
             self.asked[names[int(message.params[0])]] = 1e6 / interval if interval > 0 else 0.0
 
