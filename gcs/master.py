@@ -141,7 +141,8 @@ class FieldMaster:
         """For people: what it waits for."""
         if self.rules.standing is not Standing.HOLDING:
             return f"master {self.rules.standing.value}"
-        lacking = self.rules.lacking(self._station.now_ns()) if self.rules.phase is Phase.STAGING else {}
+        now_ns = self._station.now_ns()
+        lacking = self.rules.lacking(now_ns, now_ns) if self.rules.phase is Phase.STAGING else {}
         if lacking:
             vehicle_id, reason = min(lacking.items())
             return f"master: vehicle {vehicle_id}: {reason}"
@@ -196,6 +197,7 @@ class FieldMaster:
     def _on_track(self, track: Track, now_ns: int) -> None:
         if self._roles.get(track.id) is not Role.EVADER:
             return
+        self.rules.heard_track(track)
         if now_ns - self._heard_own.get(track.id, 0) < LATE_NS:
             return  # its own state is the better word
         self._positions.add(track.id, Fix(track.stamp_ns, Vec(*track.position), Vec(*track.velocity)))

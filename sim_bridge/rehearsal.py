@@ -136,7 +136,7 @@ class Rehearsal:
                 self._tlogs[id] = (file, TlogWriter(file))
         self._world = asyncio.create_task(self.bridge.run(), name="world")  # ended in __aexit__
         if self._options.agents:
-            for id in self.scenario.ids:
+            for id in self.scenario.flown_ids:
                 self.start_agent(id)
         return self
 

@@ -150,7 +150,9 @@ def _commands(picture: Picture, limits: Thresholds) -> Iterator[Finding]:
 
 
 def _expected(picture: Picture, vehicle: VehicleView) -> Iterator[Finding]:
-    if picture.game.phase in ACTIVE:
+    setup = picture.game.setup
+    tracked = setup is not None and any(m.tracked for m in setup.roster if m.id == vehicle.id)
+    if picture.game.phase in ACTIVE and not tracked:
         yield Finding(
             "missing", vehicle.id, WARNING, f"vehicle {vehicle.id} is in the game and was never heard",
             "start its agent, or check that it joined this bus and this game", 3.0,

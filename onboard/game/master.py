@@ -19,6 +19,7 @@ from onboard.core.game.rules import Target
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import ZERO, Vec, along, sub
 from onboard.game.phases import TRANSITIONS, PhaseEvent
+from onboard.game.track_watch import TrackWatch
 from onboard.wire.autopilot_kind import GUIDED_MODE
 from onboard.wire.bus.codec import M
 from onboard.wire.bus.messages import (
@@ -33,6 +34,7 @@ from onboard.wire.bus.messages import (
     PhaseChange,
     Role,
     Setup,
+    Track,
     Triple,
 )
 from onboard.wire.bus.topics import EVADER_BRIEF, MASTER, OUTCOME, PHASE, SETUP, Topic
@@ -41,6 +43,7 @@ LEASE_S = 2.0  # a master silent for longer is no master any more
 LEASE_EVERY_NS = NS_PER_S // 2
 CONTROL_NS = 10 * NS_PER_S  # a process started later than this after the last one flew needs a person's word
 LISTEN_NS = 12 * NS_PER_S // 10  # a master that holds the lease speaks twice in this time
+UNSEEN_NS = 10 * NS_PER_S  # a game whose evader nobody sees for so long cannot be judged
 HEALTH_NS = 3 * NS_PER_S  # an agent silent for longer is not there: six heartbeats lost in a row
 SUPERSEDED_NS = 15 * NS_PER_S // 10  # an agent's earlier process counts as gone after this silence
 READY_STAGES = (AgentStage.READY, AgentStage.ACTING)  # of agents that can begin
@@ -110,7 +113,10 @@ class GameMaster:
         self._timing = timing
         self._target = target
         self._rules = setup.rules.core()
-        self._agents = {member.id: _Agent() for member in setup.roster}
+        self._agents = {member.id: _Agent() for member in setup.roster if not member.tracked}
+        self._tracked = tuple(member.id for member in setup.roster if member.tracked)
+        self._tracks = TrackWatch()
+        self._seen_ns = 0  # when the evader's position was last known [ns, monotonic]
         self._evader = next(member.id for member in setup.roster if member.role is Role.EVADER)
         self._pursuers = tuple(member.id for member in setup.roster if member.role is Role.PURSUER)
         self._resume: tuple[int, ...] = ()
@@ -158,6 +164,11 @@ class GameMaster:
                 ("double", health.id, max(agent.nonces)), f"two agents speak as vehicle {health.id}: stop one"
             )
 
+    def heard_track(self, track: Track) -> None:
+        """Take a measurement: what counts of a vehicle that no agent flies."""
+        if track.id == self._evader:
+            self._tracks.heard(track)
+
     def start(self) -> None:
         """Let the game begin as soon as everybody is ready."""
         self._started = True
@@ -193,17 +204,23 @@ class GameMaster:
             self._stage(wall_ns, now_ns)
         elif self.phase is Phase.READY:
             self._count_down(wall_ns, now_ns)
+            self._seen_ns = now_ns
+        elif self.phase is Phase.RUNNING and now_ns - self._seen_ns > UNSEEN_NS:
+            seconds = UNSEEN_NS // NS_PER_S
+            self.abort(wall_ns, now_ns, f"nobody has seen vehicle {self._evader} for {seconds} s")
         elif self.phase is Phase.RUNNING:
             self._look_after(wall_ns, now_ns)
         elif self.phase is Phase.ENDED and now_ns - self._ended_ns >= self._timing.recovery_s * NS_PER_S:
             self._follow(PhaseEvent.RECOVERY_DUE, wall_ns)
 
-    def lacking(self, now_ns: int) -> dict[int, str]:
+    def lacking(self, wall_ns: int, now_ns: int) -> dict[int, str]:
         """Why the game cannot start: vehicle → what it lacks."""
-        lacking: dict[int, str] = {}
+        lacking = {id: why for id in self._tracked if (why := self._tracks.lack(id, wall_ns))}
         for id, agent in self._agents.items():
             if agent.health is None:
-                lacking[id] = "no agent heard"
+                seen = id == self._evader and not self._tracks.lack(id, wall_ns)
+                hint = ", but a good track: evader.tracked = true plays without its agent" if seen else ""
+                lacking[id] = f"no agent heard{hint}"
             elif now_ns - agent.heard_ns > HEALTH_NS:
                 lacking[id] = "agent silent"
             elif len(agent.nonces) > 1:
@@ -222,6 +239,7 @@ class GameMaster:
             return
         if self._evader not in positions:
             return
+        self._seen_ns = now_ns
         here = {id: self._judged(positions[id]) for id in (self._evader, *self._pursuers) if id in positions}
         if self.score is None:
             self.score = opening(here[self._evader], tuple(here[id] for id in self._pursuers if id in here))
@@ -244,7 +262,7 @@ class GameMaster:
     # ------------------------------------------------------------------ inside
 
     def _stage(self, wall_ns: int, now_ns: int) -> None:
-        lacking = self.lacking(now_ns)
+        lacking = self.lacking(wall_ns, now_ns)
         patience_ns = self._timing.timeout_s * NS_PER_S
         if not lacking and self._started:
             for agent in self._agents.values():
@@ -257,7 +275,7 @@ class GameMaster:
             self._end(PhaseEvent.PATIENCE_OVER, outcome, now_ns)
 
     def _count_down(self, wall_ns: int, now_ns: int) -> None:
-        lacking = self.lacking(now_ns)
+        lacking = self.lacking(wall_ns, now_ns)
         if lacking:
             self.t0_ns = 0
             self._staged_ns = now_ns

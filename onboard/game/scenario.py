@@ -136,6 +136,7 @@ class VehicleSpec(struct_from(VehicleLimits, Player, LIMIT_KEYS)):  # type: igno
     acceleration: PositiveAcceleration = 4.0  # [m/s²] of the kinematic airframe
     autopilot: Kind | None = None  # None = the scenario's
     airframe: AirframeKind | None = None
+    tracked: bool = False  # the evader's alone: known by tracks, flown by no agent
 
     def __post_init__(self) -> None:
         speed, fastest = self.speed, self.speed_max
@@ -294,6 +295,8 @@ class Scenario(StrictConfig, frozen=True):
         for index, v in enumerate(self.pursuers):
             demand(v.target is None, f"pursuers[{index}].target", v.target,
                    "no target: only the evader has one")  # fmt: skip
+            demand(not v.tracked, f"pursuers[{index}].tracked", "true",
+                   "false: only the evader may be known by tracks alone")  # fmt: skip
         axes = len(self.evader.position)
         places = {f"pursuers[{i}].position": one.position for i, one in enumerate(self.pursuers)}
         places |= {"evader.target": self.evader.target} if self.evader.target else {}
@@ -318,6 +321,11 @@ class Scenario(StrictConfig, frozen=True):
     def ids(self) -> tuple[int, ...]:
         """Ids of `vehicles`: MAVLink system ids."""
         return tuple(index + 1 if v.id is None else v.id for index, v in enumerate(self.vehicles))
+
+    @property
+    def flown_ids(self) -> tuple[int, ...]:
+        """Ids of those whom an agent flies: all but an evader that is known by tracks alone."""
+        return tuple(id for id, v in zip(self.ids, self.vehicles, strict=True) if not v.tracked)
 
     @property
     def rules(self) -> Rules:

@@ -38,6 +38,7 @@ def setup_of(scenario: Scenario, game: str, master: str) -> Setup:
                 start=(place.x, place.y, place.z),
                 limits=LimitsMessage(*spec.limits()),
                 strategy=spec.strategy,
+                tracked=spec.tracked,
             )
         )
     fence = flight.fence

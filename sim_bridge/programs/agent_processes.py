@@ -54,13 +54,13 @@ class AgentProcesses:
         if not self.bridge_up.is_set():
             return
         async with asyncio.TaskGroup() as group:
-            for id in self._scenario.ids:
+            for id in self._scenario.flown_ids:
                 group.create_task(self._keep(f"agent {id}", self._agent_command(id), f"agent-{id}.log"))
 
     def timings(self) -> dict[str, object]:
         """The timing that each agent measured of itself, by vehicle id; removes the files it comes from."""
         found: dict[str, object] = {}
-        for id in self._scenario.ids:
+        for id in self._scenario.flown_ids:
             path = self._folder / f".timing-{id}.json"
             with contextlib.suppress(OSError, msgspec.DecodeError):
                 found[str(id)] = msgspec.json.decode(path.read_bytes())

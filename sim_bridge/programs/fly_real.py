@@ -156,7 +156,8 @@ class RealGame:
             if rules.phase is Phase.RUNNING:
                 self._say(self._line(bridge, (bridge.world.wall_ns - rules.t0_ns) / NS_PER_S))
             elif rules.phase is Phase.STAGING:
-                lacking = rules.lacking(RealClock().monotonic_ns())
+                clock = RealClock()
+                lacking = rules.lacking(clock.wall_ns(), clock.monotonic_ns())
                 for id, reason in sorted(lacking.items()):
                     self._say(f"  waiting for vehicle {id}: {reason}")
 

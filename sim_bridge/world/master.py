@@ -12,7 +12,7 @@ from onboard.game.scenario import Scenario
 from onboard.game.staging import setup_of, target_of
 from onboard.runtime.protocols import Bus, Clock
 from onboard.wire.bus.messages import Health, Master
-from onboard.wire.bus.topics import HEALTH, MASTER, Dispatcher
+from onboard.wire.bus.topics import HEALTH, MASTER, TRACK, Dispatcher
 from sim_bridge.vehicle.motion import Motion
 
 NAME = "sim-bridge"
@@ -41,6 +41,8 @@ class BridgeMaster:
         self._bus = bus
         self._say = say
         hear = Dispatcher(self.drops).on(MASTER, self._on_master).on(HEALTH, self._on_health)
+        if scenario.evader.tracked:
+            hear.on(TRACK, self.rules.heard_track)
         self._subscriptions = [bus.subscribe(topic.key(game), hear) for topic in hear.topics]
 
     def step(self, motions: Mapping[int, Motion]) -> None:

@@ -44,6 +44,7 @@ class Flyer:
         self.stage = AgentStage.READY
         self.silent = False
         self.by_track = False
+        self.only_track = False  # no agent of ours flies it
         self.t0_ns = 0
         bus.subscribe(topics.PHASE.key(GAME), self._on_phase)
 
@@ -63,14 +64,15 @@ class Flyer:
             own = state(self.id, now_ns, position=place, velocity=tuple(v))
             await asyncio.sleep(self.late_s)
             if not self.silent:
-                if self.by_track:
+                if self.by_track or self.only_track:
                     seen = track(self.id, now_ns, position=place, velocity=tuple(v))
                     self.bus.publish(*on_bus(seen), topics.TRACK.delivery)
                 else:
                     self.bus.publish(*on_bus(own), topics.STATE.delivery)
                 lacks = ("a fix",) if self.stage == AgentStage.WAITING else ()
                 well = health(self.id, now_ns, stage=self.stage, lacks=lacks)
-                self.bus.publish(*on_bus(well), topics.HEALTH.delivery)
+                if not self.only_track:
+                    self.bus.publish(*on_bus(well), topics.HEALTH.delivery)
             await asyncio.sleep(0.1 - self.late_s)
 
 
@@ -188,6 +190,37 @@ async def test_the_evader_is_judged_by_its_track_when_its_own_word_fails():
         outcome = station.picture().game.outcome
         assert outcome is not None
         assert (outcome.verdict, outcome.captor) == (OutcomeResult.CAPTURED, 2)
+
+
+BY_TRACK = msgspec.structs.replace(MEETING, evader=msgspec.structs.replace(MEETING.evader, tracked=True))
+
+
+@virtual
+async def test_an_evader_that_is_only_a_track_is_staged_started_and_captured():
+    async with field(BY_TRACK) as (station, master, flyers, _):
+        flyers[0].only_track = flyers[0].silent = True
+        await asyncio.sleep(4.0)
+        assert master.status() == "master: vehicle 1: no track heard"
+        flyers[0].silent = False
+        await until(lambda: station.picture().game.outcome, 20.0)
+        outcome = station.picture().game.outcome
+        assert outcome is not None
+        assert (outcome.verdict, outcome.captor) == (OutcomeResult.CAPTURED, 2)
+        assert outcome.time == pytest.approx(9.8, abs=0.05)
+        assert "missing" not in {alert.kind for alert in station.picture().past_alerts}
+        assert master.exit_code == 0
+
+
+@virtual
+async def test_a_game_of_which_the_track_is_lost_for_good_ends():
+    async with field(BY_TRACK) as (station, _, flyers, _):
+        flyers[0].only_track = True
+        await until(lambda: station.picture().game.phase is Phase.RUNNING, 10.0)
+        flyers[0].silent = True
+        await until(lambda: station.picture().game.outcome, 13.0)
+        outcome = station.picture().game.outcome
+        assert outcome is not None
+        assert outcome.reason == "nobody has seen vehicle 1 for 10 s"
 
 
 @virtual

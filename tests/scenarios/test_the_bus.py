@@ -62,7 +62,9 @@ async def test_with_two_agents_of_one_id_no_game_begins_until_one_of_them_is_sto
         task = asyncio.create_task(twin.run())
         await game.forward(15.0)
         assert game.phase is Phase.STAGING
-        assert game.master.lacking(game.clock.monotonic_ns()) == {PURSUER: "two agents with this id"}
+        assert game.master.lacking(game.clock.wall_ns(), game.clock.monotonic_ns()) == {
+            PURSUER: "two agents with this id"
+        }
         assert {"double_id"} <= set(game.kinds(PURSUER))
         twin.stop()
         await task

@@ -18,6 +18,7 @@ from onboard.core.game.rules import Target
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec
 from onboard.core.strategy.knowledge import Decision
+from onboard.game.track_watch import TrackWatch
 from onboard.pilot.memory import Memory
 from onboard.pilot.pilot import PilotDecision, Question, Viewpoint
 from onboard.pilot.setup import GameSetup, Own, Side, TrackSample
@@ -53,6 +54,7 @@ class GamePlayer:
         # Setup, kind of vehicle and limits as they were judged last.
         self._judged: tuple[int, bool | None, FlightLimits] = (0, None, FlightLimits())
         self._phase_seen: PhaseChange | None = None
+        self._tracks = TrackWatch()
         self._loaded: dict[str, str] = {}  # strategies looked up → why they cannot be used, '' = they can
         self._asked_for: set[str] = set()
 
@@ -79,6 +81,7 @@ class GamePlayer:
             track.id, self._seconds(track.stamp_ns), Vec(*track.position), Vec(*track.velocity),
             track.covariance,
         )  # fmt: skip
+        self._tracks.heard(track)
         self._memory.take((sample,))
         if self.state(now.wall_ns).on:  # what the next step asks for is reckoned now
             self._memory.predict(track.id, self._seconds(now.wall_ns))
@@ -151,7 +154,12 @@ class GamePlayer:
 
     def lacks(self, now: Instant) -> tuple[str, ...]:
         """What is missing before this agent can play."""
-        return lacking(now.s, self._vehicle, self._bus, self.policy, self.config.role, self.why_not)
+        found = lacking(now.s, self._vehicle, self._bus, self.policy, self.config.role, self.why_not)
+        if self.flying is None:
+            return found
+        opponents = self.flying.game.opponents(self.side)
+        tracks = ((player, self._tracks.lack(player.id, now.wall_ns)) for player in opponents)
+        return (*found, *(f"{player.side.value} {player.id}: {why}" for player, why in tracks if why))
 
     def time(self, wall_ns: int) -> float:
         """Seconds since t₀; 0 before it is fixed."""

@@ -126,6 +126,7 @@ class Member(Message, frozen=True):
     start: Triple  # [m; NED] staging place
     limits: LimitsMessage = LimitsMessage()
     strategy: str = ""  # name, "" = the default of the role
+    tracked: bool = False  # known by tracks alone: no agent flies it
 
 
 class Fence(Message, frozen=True):

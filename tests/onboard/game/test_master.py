@@ -29,6 +29,7 @@ from onboard.wire.bus.messages import (
     RulesMessage,
     Setup,
     SupervisorAction,
+    Track,
 )
 from onboard.wire.bus.topics import EVADER_BRIEF, MASTER, PHASE, SETUP
 
@@ -118,7 +119,10 @@ def test_it_listens_then_stages_then_waits_for_everybody() -> None:
     field.agents = {1: health(1), 2: health(2, AgentStage.WAITING, lacks=("autopilot",))}
     field.fly(5.0)
     assert field.master.phase is Phase.STAGING
-    assert field.master.lacking(field.now) == {2: "waiting: autopilot", 3: "no agent heard"}
+    assert field.master.lacking(WALL0 + field.now, field.now) == {
+        2: "waiting: autopilot",
+        3: "no agent heard",
+    }
     field.crew()
     field.fly(1.0)
     ready = field.phases()[-1]
@@ -310,7 +314,7 @@ def test_two_agents_with_one_id_keep_the_game_from_starting() -> None:
         field.fly(0.25)
         field.master.heard_health(health(2, nonce=777), field.now)
     assert field.master.phase is Phase.STAGING
-    assert field.master.lacking(field.now) == {2: "two agents with this id"}
+    assert field.master.lacking(WALL0 + field.now, field.now) == {2: "two agents with this id"}
 
 
 def test_who_hears_another_master_yields_and_says_nothing() -> None:
@@ -321,6 +325,59 @@ def test_who_hears_another_master_yields_and_says_nothing() -> None:
     assert field.master.standing is Standing.YIELDED
     assert field.said == []
     assert field.news == ["another master is at work: gcs; this one yields and publishes no game"]
+
+
+def tracked_evader() -> tuple[Member, ...]:
+    first, *rest = setup().roster
+    return (msgspec.structs.replace(first, tracked=True), *rest)
+
+
+def seen(at_ns: int, sigma: float = 5.0) -> Track:
+    p = sigma**2 / 3.0
+    return Track(1, WALL0 + at_ns, (0.0, 0.0, -50.0), (0.0, 0.0, 0.0), (p, p, p, 4.0, 4.0, 4.0), "radar")
+
+
+@pytest.mark.parametrize(
+    ("track", "lacks"),
+    [
+        (None, "no track heard"),
+        (seen(4 * NS_PER_S), ""),
+        (seen(-10 * NS_PER_S), "its track is 15 s old"),
+        (seen(3600 * NS_PER_S), "its track is stamped 3595 s ahead: compare the sensor's clock"),
+        (seen(4 * NS_PER_S, sigma=250.0), "its track is good to 250 m only, expected at most 100 m"),
+    ],
+)
+def test_an_evader_known_by_tracks_alone_is_ready_when_its_track_is_fresh_and_good(
+    track: Track | None, lacks: str
+) -> None:
+    field = Range(roster=tracked_evader())
+    field.agents = {id: health(id) for id in (2, 3)}
+    field.fly(4.9)
+    if track is not None:
+        field.master.heard_track(track)
+    field.fly(0.1)
+    assert field.master.lacking(WALL0 + field.now, field.now) == ({1: lacks} if lacks else {})
+    assert field.master.phase is (Phase.STAGING if lacks else Phase.READY)
+
+
+def test_who_has_a_good_track_and_no_agent_is_told_how_to_play_it() -> None:
+    field = Range()
+    field.agents = {id: health(id) for id in (2, 3)}
+    field.fly(2.0)
+    field.master.heard_track(seen(field.now))
+    words = field.master.lacking(WALL0 + field.now, field.now)[1]
+    assert words.startswith("no agent heard, but a good track: evader.tracked = true")
+
+
+def test_a_game_whose_evader_nobody_sees_any_more_ends_with_the_reason() -> None:
+    field = Range()
+    field.begin()
+    del field.places[1], field.speeds[1]
+    field.fly(9.9)
+    assert field.master.phase is Phase.RUNNING
+    field.fly(0.3)
+    outcome = field.outcome()
+    assert (outcome.verdict, outcome.reason) == (OutcomeResult.ABORTED, "nobody has seen vehicle 1 for 10 s")
 
 
 def test_of_two_that_began_at_once_exactly_one_stays() -> None:
