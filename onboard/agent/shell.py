@@ -57,8 +57,10 @@ from onboard.config.printable import printable
 from onboard.core.math.constants import NS_PER_S
 from onboard.game.route_file import Route
 from onboard.runtime.protocols import Bus, Clock, Link, Sample, Subscription
-from onboard.runtime.rate_limit import FROM_AUTOPILOT, FROM_OTHERS, RateLimit
+from onboard.runtime.rate_limit import BESIDE, FROM_AUTOPILOT, FROM_OTHERS, RateLimit
+from onboard.wire.mavlink.frames import first_number
 from onboard.wire.mavlink.signing import Signing
+from onboard.wire.mavlink.telemetry import FLIGHT
 
 PEERS_MAX = 64  # of one link that are numbered; who was heard longest ago is forgotten
 
@@ -274,13 +276,19 @@ class Agent:
     def _arrived(self, index: int, data: bytes, peer: Hashable) -> None:
         now_ns = self.clock.monotonic_ns()
         port = self._ports[index]
-        known = peer == port.told
-        sender, rate = (peer, FROM_AUTOPILOT) if known else ("others", FROM_OTHERS)
-        if not self._link_limit.admits((index, sender), "link", rate, now_ns / NS_PER_S):
+        if not self._admits(index, data, peer == port.told, now_ns / NS_PER_S):
             return
         self._arrived_ns = now_ns
         self.feed(LinkBytes(index, port.number(peer), data))
         self._arrived_ns = 0
+
+    def _admits(self, index: int, data: bytes, autopilot: bool, now: float) -> bool:
+        """Whether a datagram is within the bounds of its sender and kind."""
+        if not autopilot:
+            return self._link_limit.admits((index, "others"), "link", FROM_OTHERS, now)
+        number = first_number(data)
+        sender, rate = (number, FROM_AUTOPILOT) if number in FLIGHT else ("beside", BESIDE)
+        return self._link_limit.admits((index, sender), "autopilot", rate, now)
 
     def _subscribe(self, effect: Subscribe) -> None:
         self._subscriptions[effect.key] = self.bus.subscribe(effect.key, self._heard)

@@ -15,11 +15,12 @@ from typing import Any
 
 from onboard.config.strict import ConfigError
 from onboard.runtime.datagram_path import BEAT_S, DatagramPath, Hooks
-from onboard.runtime.links import UdpLink, open_udp
+from onboard.runtime.links import open_udp
 from onboard.runtime.membership import Membership
 from onboard.runtime.patterns import matches
 from onboard.runtime.protocols import Sample, Subscription
 from onboard.runtime.rate_limit import BusLimit
+from onboard.runtime.udp_link import UdpLink
 from onboard.runtime.zenoh_config import Candidate
 from onboard.runtime.zenoh_session import ZenohBus
 from onboard.wire.bus.topics import Delivery, echo_key

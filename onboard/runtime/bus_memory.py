@@ -15,9 +15,11 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from onboard.runtime.impairment import Channel, Impairment
+from onboard.runtime.inbox import LATER_S
 from onboard.runtime.memory_delivery import MemoryDelivery
 from onboard.runtime.patterns import matches
 from onboard.runtime.protocols import Sample
+from onboard.runtime.rate_limit import PAYLOAD_MAX, BusLimit
 from onboard.wire.bus.topics import Delivery
 
 if TYPE_CHECKING:
@@ -151,6 +153,8 @@ class MemoryBus:
         self._kept: dict[str, _Kept] = {}
         self._counts: Counter[str] = Counter()
         self._delivery = MemoryDelivery(channel, self._counts)
+        self._limit = BusLimit()
+        self._later: dict[tuple[str, int], Callable[[], None]] = {}  # the newest of a flood, by key
         self.tap: Callable[[Sample], None] | None = None  # is told of everything delivered to this connection
         self.stopped = False  # its process is stopped (SIGSTOP): publishes nothing, and its tokens stay
         self._online = False
@@ -204,7 +208,7 @@ class MemoryBus:
     async def request(self, key: str, payload: bytes, timeout_s: float) -> list[bytes]:
         """The replies of all who serve `key`: once all are there, or what came within `timeout_s`."""
         asked = [
-            (bus, handler)
+            (bus, served, handler)
             for bus in (self._broker.buses if self._online else ())
             for served, handler in (bus._servers if bus._online else ())
             if matches(key, served)
@@ -214,8 +218,9 @@ class MemoryBus:
         complete = asyncio.Event()
 
         def answer(number: int, question: bytes) -> None:
-            bus, handler = asked[number]
-            if number not in answered and bus._online:
+            bus, served, handler = asked[number]
+            now = asyncio.get_running_loop().time()
+            if number not in answered and bus._online and bus._limit.admits(served, len(question), now):
                 answered.add(number)
                 bus._counts["answered"] += 1
                 self._delivery.bring(Delivery.LATEST, handler(question), partial(arrived, number))
@@ -226,7 +231,7 @@ class MemoryBus:
                 complete.set()
 
         self._counts["requests" if self._online else "no_bus"] += 1
-        for number, (bus, _) in enumerate(asked):
+        for number, (bus, _, _) in enumerate(asked):
             bus._delivery.bring(Delivery.LATEST, payload, partial(answer, number))
         if asked:
             try:
@@ -267,7 +272,7 @@ class MemoryBus:
 
     def counters(self) -> dict[str, int]:
         """published, received, dropped by cause, and what the impairment did."""
-        counts = dict(self._counts)
+        counts = dict(self._counts) | self._limit.counters()
         if self.channel is not None:
             counts.update({f"in_{cause}": count for cause, count in self.channel.counts.items()})
         return counts
@@ -334,6 +339,16 @@ class MemoryBus:
     ) -> None:
         """Bring a sample to own listeners, through the impairment: all of them hear it, or none."""
 
+        def admitted(payload: bytes) -> None:
+            loop, key = asyncio.get_running_loop(), sample.key
+            if self._limit.admits(key, len(payload), loop.time()):
+                self._later.pop((key, source[0]), None)
+                arrived(payload)
+            elif delivery is Delivery.LATEST and len(payload) <= PAYLOAD_MAX:
+                if not self._later:  # the newest of a flood counts, but not every one of them
+                    loop.call_later(LATER_S, self._take_later)
+                self._later[(key, source[0])] = partial(arrived, payload)
+
         def arrived(payload: bytes) -> None:
             for listener in listeners:
                 if not self._online or not listener.open:
@@ -347,7 +362,12 @@ class MemoryBus:
                     self.tap(Sample(sample.key, payload))
                 listener.receiver(Sample(sample.key, payload))
 
-        self._delivery.bring(delivery, sample.payload, arrived)
+        self._delivery.bring(delivery, sample.payload, admitted)
+
+    def _take_later(self) -> None:
+        later, self._later = self._later, {}
+        for call in later.values():
+            call()
 
     def _look(self) -> None:
         """Tell the own watchers which tokens came and went."""

@@ -26,7 +26,8 @@ LATEST_FACTOR = 5.0  # a topic's nominal rate times this, for late packets that 
 KEPT = Rate(100.0, 512.0)  # events and cached values; all that a publisher keeps comes at once
 ASKED = Rate(100.0, 100.0)  # orders to one vehicle
 FOREIGN = Rate(100.0, 100.0)  # keys that the table does not have, all together
-FROM_AUTOPILOT = Rate(2000.0, 500.0)  # datagrams of a link, from whom setpoints are sent to
+FROM_AUTOPILOT = Rate(200.0, 200.0)  # datagrams of a link that begin with one kind of message read here, each
+BESIDE = Rate(500.0, 250.0)  # STATUSTEXT, and kinds that nobody reads, all together
 FROM_OTHERS = Rate(500.0, 250.0)  # datagrams of a link, from all others together
 
 

@@ -14,10 +14,12 @@ from onboard.runtime.membership import Membership, membership_of
 from onboard.runtime.secret_files import read_secret
 
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
+MESSAGE_MAX = 1 << 20  # bytes put together from fragments: what is larger is dropped before it is whole
 LEASE_MS = 2000  # a silent partner is given up after this
 ALWAYS: dict[str, object] = {
     "timestamping/enabled": True,
     "transport/link/tx/lease": LEASE_MS,
+    "transport/link/rx/max_message_size": MESSAGE_MAX,
     "connect/retry": {"period_init_ms": 500, "period_max_ms": 500, "period_increase_factor": 1},
     "connect/timeout_ms": 0,
     "connect/exit_on_failure": True,

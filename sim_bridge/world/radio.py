@@ -6,8 +6,8 @@ import socket
 from collections.abc import Hashable, Iterable
 
 from onboard.config.strict import ConfigError
-from onboard.runtime.links import UdpLink
 from onboard.runtime.protocols import Receiver
+from onboard.runtime.udp_link import UdpLink
 
 AGENT_BASE = 14539  # the autopilot of vehicle n sends to this port + n, where its agent listens
 GROUND_STATIONS = 14550

@@ -27,6 +27,7 @@ from typing import NamedTuple
 
 import psutil  # type: ignore[import-untyped]
 import pytest
+from msgspec.structs import replace
 
 from onboard.core.math.constants import NS_PER_S
 from onboard.game.scenario import Flight, Parameters, Scenario, SensorSpec, VehicleSpec
@@ -47,6 +48,7 @@ EVADER, PURSUER = 21, 22  # beyond the numbered ports: other games may be played
 HEAVY = ("scipy", "control", "numba", "matplotlib", "pymavlink.mavutil")
 SETTLE_S, LOOK_S = 3.0, 20.0
 ROUND_S, ROUNDS = 6.0, 3
+STAGED_S = 6.0  # the agent is there by then
 ENV = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 
 
@@ -200,8 +202,9 @@ class Stage:
         self._clock = RealClock()
         self._bus = bus
         self._nonce = secrets.randbits(48)
+        self._words = 0  # said so far
         what = scenario()
-        self._setup = setup_of(what, GAME, "bench")
+        self._setup = replace(setup_of(what, GAME, "bench"), nonce=self._nonce)
         self._mates = [id for id in what.ids if id not in (EVADER, PURSUER)]
         self.world = World(what, self._clock, {PURSUER: [watch]})
         autopilot = self.world.vehicles[PURSUER].autopilot
@@ -235,9 +238,10 @@ class Stage:
         self._words += 1
         lease = Master("bench", now, 2.0, self._nonce, self._words)
         self._put(topics.MASTER, topics.MASTER.encode(lease))
+        staged = now - self._begun_ns > STAGED_S * NS_PER_S  # an agent takes control in a game it saw staged
         phase = PhaseChange(
-            Phase.RUNNING, self._begun_ns, now, resume=(PURSUER,), master="bench", nonce=self._nonce,
-            number=self._words,
+            Phase.RUNNING if staged else Phase.STAGING, self._begun_ns if staged else 0, now,
+            resume=(PURSUER,), master="bench", nonce=self._nonce, number=self._words,
         )  # fmt: skip
         self._put(topics.PHASE, topics.PHASE.encode(phase))
 

@@ -31,6 +31,7 @@ class Stopwatch:
     def __init__(self, port: int, *, fresh: bool) -> None:
         self.latencies_ns: list[int] = []
         self.positions = 0
+        self.arrivals_ns: list[int] = []  # of all setpoints [ns, wall], as the kernel stamped them
         self._to = ("127.0.0.1", port)
         self._fresh = fresh
         self._sent_ns = 0  # of the last position, until it is answered
@@ -60,7 +61,12 @@ class Stopwatch:
     def restart(self) -> None:
         """Forget what was measured."""
         self.latencies_ns.clear()
+        self.arrivals_ns.clear()
         self.positions = 0
+
+    def lend(self) -> int:
+        """The socket's descriptor, for another process that sends from the same port."""
+        return self._socket.fileno()
 
     def close(self) -> None:
         """Close the socket."""
@@ -74,6 +80,8 @@ class Stopwatch:
             for level, kind, content in ancillary
             if (level, kind) == (socket.SOL_SOCKET, SO_TIMESTAMPNS)
         ]
+        if stamps and _number(data) == SETPOINT:
+            self.arrivals_ns.append(stamps[0][0] * 1_000_000_000 + stamps[0][1])
         if stamps and _number(data) == SETPOINT and self._sent_ns:
             (seconds, nanoseconds), velocity = stamps[0], data[VELOCITY]
             if not self._fresh or velocity != self._velocity:

@@ -166,6 +166,13 @@ class Framer:
         return Packet(system, component, sequence, number, layout.name, value, raw, signed), ""
 
 
+def first_number(data: bytes) -> int:
+    """The message that a datagram begins with, by its number as it says itself; -1 where with none."""
+    if len(data) > 9 and data[0] == MAGIC_2:
+        return data[7] | data[8] << 8 | data[9] << 16
+    return data[5] if len(data) > 5 and data[0] == MAGIC_1 else -1
+
+
 _WHOLE = frozenset({*SIGNATURES, "setup_signing"})
 
 

@@ -291,3 +291,5 @@ _READERS: dict[int, Callable[[Any], Value | None]] = {
 
 READ = frozenset(_READERS)
 """Numbers of the messages that `decode` has a value for."""
+FLIGHT = READ - {dialect.MAVLINK_MSG_ID_STATUSTEXT}
+"""Those that flight depends on: all but the words for people."""

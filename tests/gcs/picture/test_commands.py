@@ -71,6 +71,10 @@ def test_what_sets_a_vehicle_off_expires(kind):
     assert len(book.due(START_NS + EXPIRY_NS - 1)) == 1
     assert book.due(START_NS + EXPIRY_NS) == []
     assert legs(book, now_ns=START_NS + EXPIRY_NS) == {2: LegState.EXPIRED}
+    view = book.view("c1", START_NS + 60 * NS_PER_S)
+    assert view is not None
+    assert view.legs[0].took_s == 5.0  # when it expired, not how long ago it was given
+    assert not book.busy(START_NS + EXPIRY_NS)
 
 
 def test_a_newer_command_supersedes_what_is_open_to_the_same_vehicles_alone():

@@ -78,6 +78,26 @@ async def test_a_late_joiner_gets_the_last_cached_value_and_all_events(stage: St
 
 
 @both_buses()
+async def test_a_flood_is_bounded_and_counted_and_its_newest_message_is_heard(stage: Stage) -> None:
+    vehicle, mate, station = await stage.connect(), await stage.connect(), await stage.connect()
+    flooded, calm = Heard(mate, STATE), Heard(mate, f"{GAME}/vehicles/3/state")
+    await path_stands(vehicle, flooded)
+    for number in range(5000):
+        vehicle.publish(STATE, b"%d" % number, Delivery.LATEST)
+        if number % 500 == 0:
+            await asyncio.sleep(0.01)
+    vehicle.publish(STATE, bytes(100_000), Delivery.LATEST)  # of a size that no message of the table has
+    station.publish(f"{GAME}/vehicles/3/state", b"here", Delivery.LATEST)
+    await until(lambda: flooded.samples and flooded.payloads[-1] == b"4999" and calm.samples)
+    counts = mate.counters()
+    assert len(flooded.samples) <= 300
+    assert counts["limited_vehicles_state"] >= 4000
+    assert counts["limited_payload"] == 1
+    assert b"4999" in flooded.payloads
+    assert max(map(len, flooded.payloads)) < 100
+
+
+@both_buses()
 async def test_requests_are_answered_and_nobody_is_waited_for_in_vain(stage: Stage) -> None:
     vehicle, other, station = await stage.connect(), await stage.connect(), await stage.connect()
     asked: list[bytes] = []

@@ -12,9 +12,10 @@ from collections.abc import Hashable
 import pytest
 
 from onboard.config.strict import ConfigError
-from onboard.runtime.links import PENDING_MAX, UdpLink, memory_pair, open_link, open_udp
+from onboard.runtime.links import PENDING_MAX, memory_pair, open_link, open_udp
 from onboard.runtime.protocols import Link
 from onboard.runtime.serial_link import BACKLOG_MAX, SerialLink
+from onboard.runtime.udp_link import BATCH, UdpLink
 from tests.support.real_time import patience, until
 from tests.support.virtual_time import virtual
 
@@ -129,6 +130,45 @@ async def test_a_peer_that_is_not_there_is_counted_not_raised() -> None:
         assert link.counters()["error"] == 1
     finally:
         link.close()
+
+
+@pytest.mark.real
+async def test_what_the_kernel_had_no_room_for_is_counted() -> None:
+    link = await open_udp("127.0.0.1", 0)
+    inbox = Inbox(link)
+    try:
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as flood:
+            for _ in range(8000):  # while the loop does not turn
+                flood.sendto(bytes(1400), link.address)
+        await until(lambda: inbox.got)
+        await asyncio.sleep(0.2)
+        counts = link.counters()
+        assert counts["received"] == len(inbox.got) < 8000
+        assert counts["received"] + counts["overrun"] == 8000
+    finally:
+        link.close()
+    assert "overrun" not in link.counters()
+
+
+@pytest.mark.real
+async def test_a_flood_leaves_the_loop_its_turns() -> None:
+    link = await open_udp("127.0.0.1", 0)
+    took: list[int] = []
+
+    def take(data: bytes, peer: Hashable) -> None:
+        took.append(len(data))
+
+    link.receive(take)
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as flood:
+        for _ in range(600):
+            flood.sendto(b"x", link.address)
+    turns = []
+    while len(took) < 600:
+        before = len(took)
+        await asyncio.sleep(0)
+        turns.append(len(took) - before)
+    link.close()
+    assert max(turns) <= BATCH
 
 
 @pytest.mark.real

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
@@ -36,6 +37,33 @@ def sender(key: bytes = KEY, link_id: int = 3, system: int = 1) -> Sender:
 
 def receiver(store: MemoryStore | None = None) -> Framer:
     return Framer(signing=Signing(KEY, store or MemoryStore()))
+
+
+def test_stamps_count_10_microseconds_since_the_first_of_january_2015() -> None:
+    day = datetime(2024, 7, 1, 12, 0, 0, tzinfo=UTC)
+    since = day - datetime(2015, 1, 1, tzinfo=UTC)
+    tenths = (since.days * 86400 + since.seconds) * 100_000
+    assert ticks(round(day.timestamp()) * 10**9) == tenths
+    frame = sender().pack(commands.OwnHeartbeat(), round(day.timestamp()) * 10**9)
+    assert int.from_bytes(frame[-12:-6], "little") == tenths
+    assert ticks(0) == 0  # a clock that starts in 1970
+
+
+def test_a_clock_in_the_far_future_still_makes_stamps_that_fit() -> None:
+    far = EPOCH_NS + (1 << 48) * 10_000 + 5 * S  # 48 bits of 10 µs end in the year 2104
+    last = bytes.fromhex("ffffffffffff")
+    assert sender().pack(commands.OwnHeartbeat(), far)[-12:-6] == last
+    assert sender().pack(commands.OwnHeartbeat(), far - 6 * S)[-12:-6] < last
+
+
+def test_what_is_stored_is_above_all_that_was_heard_and_ahead_by_the_reserve() -> None:
+    store = MemoryStore()
+    hearing = Signing(KEY, store)
+    for k in (0, 1, 3, 7, 1000, 99_999):  # ticks: bits that carry, and bits that do not
+        assert judged(hearing, NOW + 10_000 * k) is SignatureCheck.GOOD
+        kept = store.stamps.streams[(3, 1, 191)]
+        assert kept > ticks(NOW) + k
+        assert kept <= ticks(NOW) + k + RESERVE
 
 
 def test_a_signed_stream_passes_and_an_unsigned_one_does_not() -> None:

@@ -112,6 +112,18 @@ def test_what_is_unknown_or_just_over_its_bound_is_a_fault(what: dict[str, objec
     assert found.cause is cause
 
 
+@pytest.mark.parametrize("age", [nan, 60.0001])
+def test_a_silence_of_the_master_that_is_no_number_counts_as_the_longest(age: float) -> None:
+    field = POLICY._replace(ground_age=5.0, ground_action=Action.HOLD, ground_return=60.0)
+    found = supervise(Vec(1.0, 0.0, 0.0), seen(ground_age=age), field, SupervisorState())
+    assert (found.action, found.cause) == (Action.RETURN, Cause.GROUND_STATION)
+    holds = field._replace(ground_return=inf)
+    found = supervise(Vec(1.0, 0.0, 0.0), seen(ground_age=age), holds, SupervisorState())
+    assert (found.action, found.cause) == (Action.HOLD, Cause.GROUND_STATION)
+    found = supervise(Vec(1.0, 0.0, 0.0), seen(ground_age=5.0), field, SupervisorState())
+    assert found.action is Action.PASS
+
+
 @pytest.mark.parametrize(
     "what",
     [
