@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from onboard.runtime.early import one_line_interrupts
+
+one_line_interrupts("gcs", __name__)
+
 import asyncio
 import os
 import sys
@@ -13,17 +17,17 @@ from typing import Annotated, Any
 for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_name, "1")
 
-import typer  # noqa: E402  (threads are set before anything imports NumPy)
+import typer
 
-from gcs.export.formats import Format  # noqa: E402
-from gcs.options import BUS, STATION, Options, takes  # noqa: E402
-from gcs.urgent import WITHIN_S, Abort, abort_of  # noqa: E402
-from onboard.config.bounds import ListenTime, SystemId, WaitTime  # noqa: E402
-from onboard.config.strict import ConfigError  # noqa: E402
-from onboard.runtime.options import VersionOption, group, shipped, value  # noqa: E402
-from onboard.runtime.program import run  # noqa: E402
-from onboard.runtime.resources import SCENARIOS, shipped_file  # noqa: E402
-from onboard.wire.bus.messages import CommandKind, Role  # noqa: E402
+from gcs.export.formats import Format
+from gcs.options import BUS, STATION, Options, takes
+from gcs.urgent import WITHIN_S, Abort, abort_of
+from onboard.config.bounds import ListenTime, SystemId, WaitTime
+from onboard.config.strict import ConfigError
+from onboard.runtime.options import VersionOption, group, shipped, value
+from onboard.runtime.program import run
+from onboard.runtime.resources import SCENARIOS, shipped_file
+from onboard.wire.bus.messages import CommandKind, Role
 
 app = group(
     "The ground station: picture, console, commands, recording, replay, report.",

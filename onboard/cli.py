@@ -6,6 +6,10 @@ computer, and what a richer library imports (some 12 MB) would stay with it.
 
 from __future__ import annotations
 
+from onboard.runtime.early import one_line_interrupts
+
+one_line_interrupts("onboard-agent", __name__)
+
 import argparse
 import os
 import sys

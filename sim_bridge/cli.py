@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from onboard.runtime.early import one_line_interrupts
+
+one_line_interrupts("sim-bridge", __name__)
+
 import os
 from pathlib import Path
 from typing import Annotated
@@ -9,16 +13,16 @@ from typing import Annotated
 for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_name, "1")
 
-import typer  # noqa: E402  (threads are set before anything imports NumPy)
+import typer
 
-from onboard.config.bounds import Epochs, PositiveDuration, Seed, TimeStep  # noqa: E402
-from onboard.config.printable import printable  # noqa: E402
-from onboard.config.strict import ConfigError  # noqa: E402
-from onboard.runtime import options  # noqa: E402
-from onboard.runtime.options import VersionOption  # noqa: E402
-from onboard.runtime.program import run  # noqa: E402
-from onboard.runtime.resources import AIRCRAFT, SCENARIOS, shipped_file  # noqa: E402
-from sim_bridge.programs.shipped_list import Listed  # noqa: E402
+from onboard.config.bounds import Epochs, PositiveDuration, Seed, TimeStep
+from onboard.config.printable import printable
+from onboard.config.strict import ConfigError
+from onboard.runtime import options
+from onboard.runtime.options import VersionOption
+from onboard.runtime.program import run
+from onboard.runtime.resources import AIRCRAFT, SCENARIOS, shipped_file
+from sim_bridge.programs.shipped_list import Listed
 
 ScenarioArgument = Annotated[
     Path,

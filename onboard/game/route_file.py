@@ -87,6 +87,7 @@ class Route(NamedTuple):
     waypoints: tuple[Waypoint, ...]  # in the order of their times
     nominal: float  # [m/s; air]
     limits: VehicleLimits  # of the vehicle
+    description: str = ""  # what it is for
 
 
 def load_route(path: Path) -> Route:
@@ -98,7 +99,8 @@ def route_of(spec: RouteSpec) -> Route:
     """The route that a file's contents describe."""
     pitch_min, pitch_max = radians(spec.pitch_min_deg), radians(spec.pitch_max_deg)
     limits = VehicleLimits(spec.speed_min, spec.speed_max, pitch_min, pitch_max)
-    return Route(spec.name, tuple(Waypoint(vec(p), p.time) for p in spec.waypoints), spec.nominal, limits)
+    waypoints = tuple(Waypoint(vec(p), p.time) for p in spec.waypoints)
+    return Route(spec.name, waypoints, spec.nominal, limits, spec.description)
 
 
 def vec(point: WaypointSpec) -> Vec:

@@ -11,14 +11,15 @@ import errno
 import os
 import sys
 from collections.abc import Callable, Iterator
-from typing import Any, NoReturn, TextIO
+from typing import Any, NamedTuple, NoReturn, TextIO
 
 from onboard.config.printable import printable
 from onboard.config.strict import ConfigError
+from onboard.runtime import early
+from onboard.runtime.early import INTERRUPTED
 
 MISTAKE = 2
 NOT_WRITTEN = 74  # EX_IOERR of sysexits.h
-INTERRUPTED = 130  # as a shell reports SIGINT
 READER_LEFT = 141  # as a shell reports SIGPIPE
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
 FORBIDDEN = (
@@ -32,29 +33,21 @@ def run(app: Callable[..., Any], name: str) -> NoReturn:
     `app` is a Typer application, or a function without arguments that gives the exit code (None: 0); `name`
     stands before every line on standard error. Never returns: raises SystemExit.
     """
-    tolerate_characters(sys.stdout, sys.stderr)
     try:
+        early.take_over()
+        tolerate_characters(sys.stdout, sys.stderr)
         code = _called(app, name)
         if sys.stdout is not None:
             sys.stdout.flush()  # here, where what goes wrong can be told
-    except ConfigError as error:
-        fail(name, str(error))
-    except BaseExceptionGroup as group:  # a mistake found within tasks
-        mistakes = [error for error in _leaves(group) if isinstance(error, ConfigError)]
-        if not mistakes or len(mistakes) < sum(1 for _ in _leaves(group)):
-            raise
-        fail(name, str(mistakes[0]))
-    except KeyboardInterrupt as error:  # its words say what was left behind
-        _end(name, ": ".join(("interrupted", *map(str, error.args[:1]))), INTERRUPTED)
-    except BrokenPipeError:
-        _discard_output()
-        sys.exit(READER_LEFT)
-    except OSError as error:
-        if error.errno not in NO_ROOM and not (error.errno in FORBIDDEN and error.filename):
-            raise
-        _discard_output()
-        where = f"{error.filename}: " if error.filename else "cannot write: "
-        _end(name, f"{where}{(error.strerror or str(error)).lower()}", NOT_WRITTEN)
+    except BaseException as error:
+        end = _end_of(error)
+        if end is None:
+            raise  # a fault of the program keeps its traceback
+        if end.code in (NOT_WRITTEN, READER_LEFT):
+            _discard_output()
+        _end(name, end.words, end.code)
+    finally:
+        early.leave()
     sys.exit(code if isinstance(code, int) else 0)
 
 
@@ -101,9 +94,42 @@ def _called_by_typer(app: Callable[..., Any], name: str, typer: Any) -> Any:
         raise KeyboardInterrupt from None
 
 
+class _End(NamedTuple):
+    code: int
+    words: str  # "" = without a word
+
+
+def _end_of(error: BaseException) -> _End | None:
+    """How a program ends of what is no fault of its own; None where it is one.
+
+    Of a group, as tasks raise it, every part must be no fault: the most telling one counts.
+    """
+    if isinstance(error, BaseExceptionGroup):
+        ends = [_end_of(leaf) for leaf in _leaves(error)]
+        found = [end for end in ends if end is not None]
+        order = (INTERRUPTED, MISTAKE, NOT_WRITTEN, READER_LEFT)
+        return min(found, key=lambda end: order.index(end.code)) if len(found) == len(ends) else None
+    if isinstance(error, ConfigError):
+        return _End(MISTAKE, " ".join(str(error).split()))
+    if isinstance(error, KeyboardInterrupt):  # its words say what was left behind
+        return _End(INTERRUPTED, ": ".join(("interrupted", *map(str, error.args[:1]))))
+    if isinstance(error, BrokenPipeError):
+        return _End(READER_LEFT, "")
+    if not isinstance(error, OSError) or error.errno not in NO_ROOM + (FORBIDDEN if error.filename else ()):
+        return None
+    where = f"{error.filename}: " if error.filename else "cannot write: "
+    return _End(NOT_WRITTEN, f"{where}{(error.strerror or str(error)).lower()}")
+
+
 def _end(name: str, text: str, code: int) -> NoReturn:
     with contextlib.suppress(OSError):  # standard error may be full, or its reader gone
-        print(printable(f"{name}: {text}"), file=sys.stderr, flush=True)
+        if text:
+            print(printable(f"{name}: {text}"), file=sys.stderr, flush=True)
+    try:
+        if sys.stdout is not None:
+            sys.stdout.flush()  # what was told before; else the interpreter tries, and says that it cannot
+    except (OSError, ValueError):
+        _discard_output()
     sys.exit(code)
 
 

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from onboard.runtime.early import one_line_interrupts
+
+one_line_interrupts("python -m sim_bridge.campaign", __name__)
+
 import os
 import platform
 import sys
@@ -11,13 +15,13 @@ from typing import Annotated
 for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_name, "1")
 
-import typer  # noqa: E402  (threads are set before anything imports NumPy)
+import typer
 
-from onboard.config.bounds import Count, Flights, Seed  # noqa: E402
-from onboard.runtime.options import group, shipped, value  # noqa: E402
-from onboard.runtime.progress import Progress, over, part  # noqa: E402
-from onboard.runtime.resources import ROUTES, SCENARIOS, shipped_file  # noqa: E402
-from onboard.runtime.run_folder import made  # noqa: E402
+from onboard.config.bounds import Count, Flights, Seed
+from onboard.runtime.options import group, shipped, value
+from onboard.runtime.progress import Progress, over, part
+from onboard.runtime.resources import ROUTES, SCENARIOS, shipped_file
+from onboard.runtime.run_folder import made
 
 NAME = "python -m sim_bridge.campaign"
 app = group(
@@ -65,9 +69,10 @@ def tracking(
 
     made(out)
     flown = load_route(shipped_file(route, ROUTES))
+    told = f"{flown.name} ({flown.description})" if flown.description else flown.name
     text = preface("Tracking a timed route", f"python -m sim_bridge.campaign tracking --seeds {seeds}")
     text += (
-        f"\nRoute {flown.name}, mean wind 5 m/s from a direction drawn by the seed, gusts of 3 m/s rms;"
+        f"\nRoute {told}, mean wind 5 m/s from a direction drawn by the seed, gusts of 3 m/s rms;"
         f" {seeds} seeds, the same for every way. J = mean deviation / 10 m + mean |time error| / 1 s.\n"
     )
     with Progress(NAME) as progress:

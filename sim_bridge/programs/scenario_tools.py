@@ -95,6 +95,7 @@ def check(scenario: Scenario) -> str:
     lines = [
         f"{scenario.name}: {len(pursuers)} pursuers, {'plane' if rules.planar else 'in space'}, "
         f"R = {rules.R:g} m, ρ = {rules.rho:g} m, horizon {rules.horizon:g} s",
+        *([scenario.description] if scenario.description else []),
         "",
         "vehicle   role      speed    turn radius  distance  γ      half-angle  intercepts  denies target",
     ]

@@ -125,6 +125,7 @@ def report(aircraft: Aircraft) -> str:
     spec = aircraft.spec
     lines = [
         f"{spec.name}: path model {spec.path.value}, stepped at {spec.rate_hz:g} Hz",
+        *([spec.description] if spec.description else []),
         "",
         f"{'axis':6} {'poles':>24} {'w_n':>6} {'damping':>8} {'zero':>8} {'steady':>8}",
     ]

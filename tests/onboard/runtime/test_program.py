@@ -74,6 +74,26 @@ asyncio.run(both())"""
     assert ended(script(body)) == (2, "", "prog: link: found nobody\n")
 
 
+@pytest.mark.parametrize(
+    ("raised", "code", "err"),
+    [
+        ("BrokenPipeError(32, 'Broken pipe')", 141, ""),
+        ("OSError(28, 'No space left on device')", 74, "prog: cannot write: no space left on device\n"),
+        ("ConfigError('a: b'), BrokenPipeError(32, 'Broken pipe')", 2, "prog: a: b\n"),
+    ],
+)
+def test_output_that_fails_within_tasks_ends_as_elsewhere(raised: str, code: int, err: str) -> None:
+    body = f"from onboard.config.strict import ConfigError\nraise ExceptionGroup('tasks', [{raised}])"
+    assert ended(script(body)) == (code, "", err)
+
+
+def test_a_group_with_a_fault_in_it_keeps_its_traceback() -> None:
+    body = "raise ExceptionGroup('tasks', [BrokenPipeError(32, 'Broken pipe'), ZeroDivisionError('oops')])"
+    code, _, err = ended(script(body))
+    assert code == 1
+    assert "ZeroDivisionError" in err
+
+
 def test_a_fault_of_the_program_keeps_its_traceback() -> None:
     code, _, err = ended(script("raise ZeroDivisionError('oops')"))
     assert code == 1
