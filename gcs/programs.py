@@ -38,14 +38,28 @@ async def watch(settings: Settings, *, record: bool, plain: bool) -> int:
     """The console, or lines, until one leaves."""
     _demand_terminal(plain)
     async with on_air(settings, listen=settings.bus.listen, record=record) as session:
-        if plain:
-            return await print_lines(session)
-        return await show_console(session)
+        try:
+            if plain:
+                return await print_lines(session)
+            return await show_console(session)
+        finally:
+            _say_farewell(session)
+
+
+def _say_farewell(session: Session) -> None:
+    if session.farewell():
+        print(printable(session.farewell()), flush=True)
 
 
 def _demand_terminal(plain: bool) -> None:
-    if not plain and not (sys.stdout.isatty() and sys.stdin.isatty()):
-        raise ConfigError("the console needs a terminal; without one: gcs --plain or gcs status --json")
+    """Refuse where one of the three streams is no terminal: the console is drawn on standard error."""
+    streams = {"input": sys.stdin, "output": sys.stdout, "error": sys.stderr}
+    elsewhere = [name for name, stream in streams.items() if stream is None or not stream.isatty()]
+    if not plain and elsewhere:
+        raise ConfigError(
+            f"the console needs a terminal: found standard {', '.join(elsewhere)} redirected; "
+            "without one: gcs --plain or gcs status --json"
+        )
 
 
 async def show_console(session: Session) -> int:
@@ -105,6 +119,7 @@ async def play(
             )
         master = FieldMaster(session.station, scenario, auto_start=auto_start, takes_over=takes_over)
         session.extra = master.status
+        session.leaving = "leave the console? the game then ends for want of its master"
         async with asyncio.TaskGroup() as tasks:
             task = tasks.create_task(master.run(), name="master")
             try:
@@ -114,6 +129,7 @@ async def play(
                     await show_console(session)
             finally:
                 task.cancel()
+                _say_farewell(session)
         picture: Picture = session.picture()
         if picture.game.outcome is not None:
             by = f" by {picture.game.outcome.captor}" if picture.game.outcome.captor else ""

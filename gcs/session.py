@@ -8,7 +8,7 @@ from contextlib import AsyncExitStack, asynccontextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from gcs.console.source import Key
+from gcs.console.source import LIVE_HINT, Key
 from gcs.picture.values import Picture
 from gcs.settings import Settings
 from gcs.station import NAME, Station, StationSetup
@@ -18,6 +18,7 @@ from onboard.runtime.bus_security import BusSecurity, Lock, security_of
 from onboard.runtime.bus_zenoh import ZenohBus, open_zenoh
 from onboard.runtime.clock import RealClock
 from onboard.wire.bus.messages import CommandKind, LinkLock, Severity
+from onboard.wire.bus.topics import DEFAULT_GAME
 
 if TYPE_CHECKING:
     from gcs.recording.shell import StationRecorder
@@ -28,6 +29,7 @@ class Session:
 
     title = "live"
     keys: tuple[Key, ...] = ()
+    steers = True
 
     def __init__(
         self, bus: ZenohBus, station: Station, recorder: StationRecorder | None, lock: BusSecurity
@@ -37,6 +39,7 @@ class Session:
         self.station = station
         self.recorder = recorder
         self.extra: Callable[[], str] = str  # the master's line, where there is one
+        self.leaving = "leave the console? vehicles fly on"
 
     def picture(self) -> Picture:
         """The picture now."""
@@ -49,6 +52,31 @@ class Session:
             status = self.recorder.status()
             parts.append(f"recording {status.size / 1e6:.1f} MB" if not status.trouble else "NOT RECORDING")
         return ", ".join(part for part in parts if part)
+
+    def hint(self) -> str:
+        """The keys that matter most."""
+        return LIVE_HINT
+
+    def nobody(self) -> tuple[str, ...]:
+        """Where it listens, and what to start."""
+        game = self.station.game
+        named = "" if game == DEFAULT_GAME else f" --game {game}"
+        return (
+            f"game {game}: {self.bus.status()}",
+            f"a game in software: sim-bridge serve demo{named}, and agents beside it:",
+            f"onboard-agent --id 2 --role pursuer{named}",
+            "with another endpoint than the default: --bus ENDPOINT, the same for all",
+        )
+
+    def farewell(self) -> str:
+        """Where the recording is, and what to do with it; "" where nothing was recorded."""
+        if self.recorder is None:
+            return ""
+        status = self.recorder.status()
+        folder = self.recorder.recorder.path.parent
+        trouble = f"; NOT COMPLETE: {status.trouble}" if status.trouble else ""
+        what = " | ".join(f"gcs {verb} {folder}" for verb in ("replay", "report", "export"))
+        return f"recorded {status.size / 1e6:.1f} MB{trouble}: {what}"
 
     def _links(self) -> str:
         """How many vehicles sign their MAVLink links; "" where none does and the bus has no keys either."""

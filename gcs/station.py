@@ -28,6 +28,8 @@ Tap = Callable[[str, bytes, int], None]  # key, payload, now_ns
 Hearer = Callable[[Heard, int], None]  # what was heard, now_ns
 
 
+LATE_S = 0.3  # a tick of 0.1 s that comes later than this shows an overloaded computer
+LATE_FOR_NS = 5 * NS_PER_S  # and for so long it is said
 NAME = "gcs"  # of a station without a certificate
 
 
@@ -74,6 +76,8 @@ class Station:
         self._hearers: list[Hearer] = []
         self._journal = f"{ROOT}/{self.game}/{station_journal.FOLDER}/"
         self._overflow = 0
+        self._late_ns: int | None = None  # when this computer was last late with its own work
+        self._latest_s = 0.0
         self._limited: dict[str, int] = {}  # what was over a bound, by kind
         self._heard: list[Subscription] = []
         self._courier = Courier(
@@ -196,11 +200,33 @@ class Station:
             self.note(station_journal.REPLIED, station_journal.Replied(reply))
 
     async def _tick(self) -> None:
+        due_ns = self.now_ns()
         while True:
+            late_s = (self.now_ns() - due_ns) / NS_PER_S
+            self._watch_lateness(late_s)
             self.reducer.tick(self.now_ns())
             self._count_overflow()
             self._count_floods()
+            due_ns = self.now_ns() + GRID_NS
             await asyncio.sleep(GRID_NS / NS_PER_S)
+
+    def _watch_lateness(self, late_s: float) -> None:
+        """Say while this computer is late with its own work: what looks lost then need not be."""
+        now_ns = self.now_ns()
+        if late_s >= LATE_S:
+            self._late_ns, self._latest_s = now_ns, max(self._latest_s, late_s)
+        late = self._late_ns is not None and now_ns - self._late_ns < LATE_FOR_NS
+        if late != ("overloaded" in self.reducer.remarks):
+            self.remark(
+                Severity.WARNING,
+                "overloaded",
+                f"this computer was late by {self._latest_s:.1f} s: what looks lost or old may be its doing, "
+                "not the radio's",
+                "close other programs; the vehicles do not depend on it",
+                over=not late,
+            )
+        if not late:
+            self._latest_s = 0.0
 
     def _count_overflow(self) -> None:
         overflow = self.bus.counters().get("overflow", 0)

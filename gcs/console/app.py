@@ -12,9 +12,11 @@ from textual.app import App, ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Container
 from textual.css.query import NoMatches
-from textual.widgets import Input
+from textual.timer import Timer
+from textual.widgets import Input, Static
 
 from gcs.console import command_parser, plan
+from gcs.console.events_screen import EventsScreen
 from gcs.console.help import HelpScreen
 from gcs.console.source import Source
 from gcs.console.vehicle_table import Row, rows
@@ -26,9 +28,11 @@ from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus.messages import CommandKind
 
 REFRESH_HZ = 3.0
-WIDE = 120  # columns from which on the plan stands beside the table
+WIDE = 150  # columns from which on the plan stands beside the table
 TALL = 30  # lines from which on the table and the log take their share
+SMALLEST = (60, 15)  # columns and lines; in fewer it says so
 CONFIRM_S = 8.0  # how long a question waits for its answer
+SAID_S = 8.0  # and how long an answer of the console stands
 
 KEYS: tuple[tuple[str, str, str], ...] = (  # key, action, text for the help
     ("x", "abort_all", "ABORT ALL: everybody holds or returns (ctrl+x while typing)"),
@@ -40,6 +44,7 @@ KEYS: tuple[tuple[str, str, str], ...] = (  # key, action, text for the help
     ("l", "order('land')", "land the selected vehicle (asks)"),
     ("colon,slash,enter", "command_line", "type a command"),
     ("escape", "cancel", "leave the command line, answer no"),
+    ("n", "cancel", "answer no"),
     ("y", "yes", "answer yes"),
     ("a", "acknowledge('')", "acknowledge the topmost alert"),
     ("A", "acknowledge('all')", "acknowledge all alerts"),
@@ -53,9 +58,11 @@ KEYS: tuple[tuple[str, str, str], ...] = (  # key, action, text for the help
     ("o", "draw('circles')", "plan: circles on and off"),
     ("pageup", "scroll_log(-1)", "log: back"),
     ("pagedown", "scroll_log(1)", "log: forward"),
+    ("e", "events", "alerts, vehicle and events whole, nothing cut"),
     ("question_mark,f1", "help", "this help"),
-    ("q", "leave", "leave the console; vehicles fly on (asks)"),
+    ("q", "leave", "leave the console; asks first where something flies"),
 )
+STEERING = ("abort_all", "order(")  # actions that a source without anybody to command does not have
 
 
 class Console(App[int]):
@@ -64,8 +71,10 @@ class Console(App[int]):
     TITLE = "Apollonius"
     ENABLE_COMMAND_PALETTE = False
     AUTO_FOCUS = None  # keys are for the console until one opens the command line
-    HORIZONTAL_BREAKPOINTS = [(0, "-narrow"), (WIDE, "-wide")]  # noqa: RUF012 - as the base class has it
-    VERTICAL_BREAKPOINTS = [(0, "-low"), (TALL, "-tall")]  # noqa: RUF012
+    HORIZONTAL_BREAKPOINTS = [  # noqa: RUF012 - as the base class has it
+        (0, "-tiny"), (SMALLEST[0], "-narrow"), (WIDE, "-wide"),
+    ]  # fmt: skip
+    VERTICAL_BREAKPOINTS = [(0, "-flat"), (SMALLEST[1], "-low"), (TALL, "-tall")]  # noqa: RUF012
     BINDINGS: ClassVar[list[BindingType]] = [
         *(Binding(key, action, text, show=False) for key, action, text in KEYS),
         Binding("ctrl+x", "abort_all", "abort all", show=False, priority=True),
@@ -76,9 +85,13 @@ class Console(App[int]):
     #status, #vehicles, #alerts, #log, #prompt { column-span: 2; }
     #status, #alerts { background: $boost; }
     Screen.-tall #main { grid-rows: 1 3fr 4fr 2fr 3fr 1; }
-    Screen.-wide #main { grid-columns: 82 1fr; }
-    Screen.-wide #vehicles, Screen.-wide #alerts, Screen.-wide #log { column-span: 1; }
-    Screen.-wide #plan { row-span: 4; }
+    Screen.-wide #main { grid-columns: 96 1fr; }
+    Screen.-wide #vehicles { column-span: 1; }
+    Screen.-wide #plan { row-span: 2; }
+    #small { display: none; column-span: 2; text-style: bold; }
+    Screen.-tiny #main, Screen.-flat #main { grid-rows: 1fr 1; }
+    Screen.-tiny .panel, Screen.-flat .panel { display: none; }
+    Screen.-tiny #small, Screen.-flat #small { display: block; }
     """
 
     def __init__(self, source: Source) -> None:
@@ -94,6 +107,7 @@ class Console(App[int]):
         self.table: list[Row] = []
         self.asked: command_parser.Order | command_parser.Do | None = None  # waits for a yes
         self.asked_ns = 0
+        self._forget: Timer | None = None
         self.picture: Picture = source.picture()
 
     # ---- what is on the screen
@@ -101,12 +115,13 @@ class Console(App[int]):
     def compose(self) -> ComposeResult:
         """The panels, from top to bottom."""
         with Container(id="main"):
-            yield StatusBar(id="status")
-            yield VehicleTable(id="vehicles")
-            yield Plan(id="plan")
-            yield Detail(id="detail")
-            yield AlertBoard(id="alerts")
-            yield LogPanel(id="log")
+            for panel in (
+                StatusBar(id="status"), VehicleTable(id="vehicles"), Plan(id="plan"), Detail(id="detail"),
+                AlertBoard(id="alerts"), LogPanel(id="log"),
+            ):  # fmt: skip
+                panel.add_class("panel")
+                yield panel
+            yield Static("", id="small", markup=False)
             yield Prompt(id="prompt")
 
     def on_mount(self) -> None:
@@ -114,6 +129,10 @@ class Console(App[int]):
         for key in self.source.keys:
             self._bindings.key_to_bindings.pop(key.key, None)
             self._bindings.bind(key.key, f"source({key.action!r})", key.text, show=False)
+        if not self.source.steers:
+            for keys, action, _ in (*KEYS, ("ctrl+x", "abort_all", "")):
+                for name in keys.split(",") if action.startswith(STEERING) else ():
+                    self._bindings.key_to_bindings.pop(name, None)
         self.set_interval(1.0 / REFRESH_HZ, self.refresh_picture)
         self.refresh_picture()
 
@@ -142,13 +161,21 @@ class Console(App[int]):
     def _show_all(self, picture: Picture) -> None:
         main = self.screen_stack[0]
         main.query_one(StatusBar).show(picture, self.source.title, self.source.status())
-        main.query_one(VehicleTable).show(self.table, self.selected, self.sort, self.descending)
+        nobody = self.source.nobody() if not self.table else ()
+        main.query_one(VehicleTable).show(self.table, self.selected, self.sort, self.descending, nobody)
         area = main.query_one(Plan)
         self.view = self._view_of(picture, area.size.width, area.size.height)
         area.show(picture, self.view, self.selected, self.options)
-        main.query_one(Detail).show(picture, self.selected)
-        main.query_one(AlertBoard).show(picture)
+        board = main.query_one(AlertBoard)
+        main.query_one(Detail).show(picture, self.selected, board.hidden(picture))
+        board.show(picture)
         main.query_one(LogPanel).show(picture)
+        main.query_one(Prompt).hint(self.source.hint())
+        width, height = self.size
+        small = f"{width}×{height} is too small for the console: {SMALLEST[0]}×{SMALLEST[1]} at least"
+        main.query_one("#small", Static).update(small)
+        if isinstance(self.screen, EventsScreen):
+            self.screen.show(picture, self.selected)
 
     def _view_of(self, picture: Picture, width: int, height: int) -> plan.View:
         view = self.view
@@ -160,8 +187,16 @@ class Console(App[int]):
         return view
 
     def say(self, text: str, style: str = "") -> None:
-        """Tell the user something in the prompt line."""
-        self.screen_stack[0].query_one(Prompt).say(text, style)
+        """Tell the user something in the prompt line; after a while its hint comes back."""
+        prompt = self.screen_stack[0].query_one(Prompt)
+        prompt.say(text, style)
+        if self._forget is not None:
+            self._forget.stop()
+        self._forget = self.set_timer(SAID_S, self._hint_again) if text else None
+
+    def _hint_again(self) -> None:
+        if self.asked is None:
+            self.say("")
 
     # ---- keys
 
@@ -280,14 +315,25 @@ class Console(App[int]):
         if isinstance(self.screen, HelpScreen):
             self.pop_screen()
         else:
-            self.push_screen(HelpScreen(KEYS, self.source.keys))
+            own = {name for key in self.source.keys for name in key.key.split(",")}
+            steers = self.source.steers
+            keys = [
+                (",".join(name for name in names.split(",") if name not in own), action, text)
+                for names, action, text in KEYS if steers or not action.startswith(STEERING)
+            ]  # fmt: skip
+            keys = [key for key in keys if key[0]]
+            self.push_screen(HelpScreen(keys, self.source.keys, steers))
+
+    def action_events(self) -> None:
+        """Show alerts, vehicle and events whole."""
+        self.push_screen(EventsScreen(self.picture, self.selected))
 
     def action_leave(self) -> None:
-        """Leave, after a question."""
-        if isinstance(self.asked, command_parser.Do):
-            self.action_yes()
+        """Leave, after the source's question."""
+        if isinstance(self.asked, command_parser.Do) or not self.source.leaving:
+            self.exit(0)
         else:
-            self._ask(command_parser.Do("quit"), "leave the console? vehicles fly on")
+            self._ask(command_parser.Do("quit"), self.source.leaving)
 
     def action_leave_now(self) -> None:
         """Leave the console at once, without a question."""
@@ -334,7 +380,7 @@ class Console(App[int]):
 
     def _ask(self, what: command_parser.Order | command_parser.Do, question: str) -> None:
         self.asked, self.asked_ns = what, self.picture.now_ns
-        self.say(f"{question}  y: yes, esc: no", "bold reverse")
+        self.say(f"{question}  y: yes, n: no", "bold reverse")
 
     def _answer_no(self) -> None:
         if self.asked is not None:

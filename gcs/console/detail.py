@@ -19,8 +19,13 @@ LOCKS: dict[LinkLock, Line] = {
 }
 
 
-def detail(picture: Picture, selected: int | None) -> list[Line]:
-    """Lines about the selected vehicle, the most important first; what is no longer fed says its age."""
+def detail(
+    picture: Picture, selected: int | None, hidden: frozenset[str] = frozenset()
+) -> list[Line]:
+    """Lines about the selected vehicle, the most important first; what is no longer fed says its age.
+
+    Of alerts those in `hidden` alone, which are shown nowhere else.
+    """
     known = picture.vehicle(selected) if selected is not None else None
     picture = current(picture)
     vehicle = picture.vehicle(selected) if selected is not None else None
@@ -42,7 +47,8 @@ def detail(picture: Picture, selected: int | None) -> list[Line]:
     lines += _prospect(picture, vehicle)
     lines += _motion(vehicle)
     lines += _health(vehicle)
-    lines += [(f"alert: {a.text}", "yellow") for a in picture.alerts if a.id == vehicle.id]
+    alerts = [a.text for a in picture.alerts if a.id == vehicle.id and a.name in hidden]
+    lines[2:2] = [(f"alert: {text}", "yellow") for text in alerts]
     return lines
 
 

@@ -17,7 +17,9 @@ from gcs.console.source import Key
 
 KEY_NAMES = {
     "colon": ":", "slash": "/", "question_mark": "?", "plus": "+", "equals_sign": "=", "minus": "-",
-    "escape": "esc", "pageup": "PgUp", "pagedown": "PgDn", "up": "↑", "down": "↓", "left": "←", "right": "→",
+    "full_stop": ".", "comma": ",", "escape": "Esc", "pageup": "PgUp", "pagedown": "PgDn", "up": "↑",
+    "down": "↓", "left": "←", "right": "→", "enter": "Enter", "space": "Space", "home": "Home", "end": "End",
+    "ctrl": "Ctrl", "f1": "F1",
 }  # fmt: skip
 
 
@@ -33,9 +35,9 @@ class HelpScreen(ModalScreen[None]):
         Binding("x", "app.abort_all", "abort all", show=False),
     ]
 
-    def __init__(self, keys: Iterable[tuple[str, str, str]], own: Iterable[Key]) -> None:
+    def __init__(self, keys: Iterable[tuple[str, str, str]], own: Iterable[Key], steers: bool = True) -> None:
         super().__init__()
-        self.text = help_text(keys, own)
+        self.text = help_text(keys, own, steers)
 
     def compose(self) -> ComposeResult:
         """The text in a frame that scrolls."""
@@ -43,20 +45,22 @@ class HelpScreen(ModalScreen[None]):
             yield Static(self.text)
 
 
-def help_text(keys: Iterable[tuple[str, str, str]], own: Iterable[Key]) -> Text:
-    """Everything one needs to know, on two screens of 80×24."""
+def help_text(keys: Iterable[tuple[str, str, str]], own: Iterable[Key], steers: bool = True) -> Text:
+    """Everything one needs to know, on two screens of 80×24; without commands where nobody hears them."""
     text = Text()
     text.append("Keys", "bold")
-    text.append("  (↑ ↓ scroll, esc leaves)\n")
+    text.append("  (↑ ↓ scroll, Esc leaves)\n")
     for key in own:
         _entry(text, _named(key.key), key.text)
     for names, _, said in keys:
         _entry(text, _named(names), said)
     text.append("\nCommand line", "bold")
-    text.append("  (: or enter opens it)\n")
+    text.append("  (: or Enter opens it)\n")
     for form, said in command_parser.HELP_LINES:
-        _entry(text, form, said)
-    text.append(f"  {command_parser.WHOM}\n")
+        if steers or "WHOM" not in form:
+            _entry(text, form, said)
+    if steers:
+        text.append(f"  {command_parser.WHOM}\n")
     text.append("\nPlan\n", "bold")
     for sign, said in plan.LEGEND:
         _entry(text, sign, said)
@@ -69,4 +73,5 @@ def _entry(text: Text, left: str, right: str) -> None:
 
 
 def _named(keys: str) -> str:
-    return " ".join(KEY_NAMES.get(key, key) for key in keys.split(","))
+    """Keys as they are printed on keyboards: `Ctrl →`, `Space`."""
+    return " ".join(" ".join(KEY_NAMES.get(part, part) for part in key.split("+")) for key in keys.split(","))

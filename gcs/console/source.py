@@ -8,6 +8,8 @@ from typing import NamedTuple, Protocol
 from gcs.picture.values import Picture
 from onboard.wire.bus.messages import CommandKind
 
+LIVE_HINT = "x ABORT ALL  : type  h hold  r resume  b return  l land  a ack  e events  ? help"
+
 
 class Key(NamedTuple):
     """A key that a source understands beside the console's own (a replay: pause, speed, seek, step)."""
@@ -28,6 +30,24 @@ class Source(Protocol):
     @property
     def keys(self) -> tuple[Key, ...]:
         """Keys of its own; they go before the console's."""
+        ...
+
+    @property
+    def steers(self) -> bool:
+        """Whether commands reach anybody; where they do not, the console offers none."""
+        ...
+
+    @property
+    def leaving(self) -> str:
+        """What is asked before one leaves, "" = nothing."""
+        ...
+
+    def hint(self) -> str:
+        """The last line while nothing else is to be said: the keys that matter most."""
+        ...
+
+    def nobody(self) -> tuple[str, ...]:
+        """What to read where no vehicle is known: where it listens, and what to start."""
         ...
 
     def picture(self) -> Picture:

@@ -5,19 +5,23 @@ from __future__ import annotations
 from datetime import UTC, datetime
 from math import degrees
 
-from gcs.picture.values import CommandView, LegState, Picture, Presence
+from gcs.picture.terminal_text import cut
+from gcs.picture.values import CommandView, LegState, LogLine, Picture, Presence
+from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus.messages import Severity
 
 Runs = list[tuple[str, str]]
+ALIKE_NS = 2 * NS_PER_S
 SIGNS = {Severity.ERROR: "E", Severity.WARNING: "w", Severity.INFO: " "}
 STYLES = {Severity.ERROR: "bold red", Severity.WARNING: "yellow", Severity.INFO: ""}
 
 
 def status_line(picture: Picture, title: str, status: str, width: int) -> Runs:
     """Game, phase and clock to the left; the source's own words to the right, as far as there is room."""
-    left = "  ".join(part for part in (f"Apollonius {title}", *_game(picture), _fleet(picture)) if part)
+    game, *more = _game(picture)
+    left = "  ".join(part for part in (title, game, _fleet(picture), *more) if part)
     right = _fitting(status, width - len(left) - 2)
-    return [(f"{left}{right.rjust(max(0, width - len(left)))}"[:width], "bold")]
+    return [(cut(f"{left}{right.rjust(max(0, width - len(left)))}", width), "bold")]
 
 
 def _fitting(status: str, room: int) -> str:
@@ -53,8 +57,13 @@ def _fleet(picture: Picture) -> str:
 
 def alert_lines(picture: Picture, width: int, height: int) -> list[Runs]:
     """Open commands first, then alerts, with what to do where there is room for it."""
-    lines = [_command(command) for command in picture.commands if _shown(command, picture)]
+    commands = [command for command in picture.commands if _shown(command, picture)]
+    lines = [_command(command) for command in commands]
+    of_kind = {f"unconfirmed_{command.kind.value}": at for at, command in enumerate(commands)}
     for alert in picture.alerts:
+        if alert.kind in of_kind:  # the command's own line names who has not confirmed
+            lines[of_kind[alert.kind]].append((f"  → {alert.advice}", "dim"))
+            continue
         style = "dim" if alert.acknowledged else STYLES[alert.severity]
         sign = "✓" if alert.acknowledged else SIGNS[alert.severity]
         lines.append([(f"{sign} {alert.text}", style), (f"  → {alert.advice}", "dim")])
@@ -88,14 +97,60 @@ def _command(command: CommandView) -> Runs:
     return [(f"{text}; {rest}", "bold yellow")]
 
 
-def log_lines(picture: Picture, width: int) -> list[Runs]:
-    """The event log, oldest first: time of day (UTC), vehicle, text."""
-    lines: list[Runs] = []
+def hidden_alerts(picture: Picture, height: int) -> frozenset[str]:
+    """The names of the alerts that a board of this height has no room for."""
+    shown = sum(_shown(command, picture) for command in picture.commands)
+    commands = {f"unconfirmed_{c.kind.value}" for c in picture.commands if _shown(c, picture)}
+    names = [alert.name for alert in picture.alerts if alert.kind not in commands]
+    return frozenset() if shown + len(names) <= height else frozenset(names[max(0, height - 1 - shown) :])
+
+
+def log_lines(picture: Picture) -> list[Runs]:
+    """The event log, oldest first: time of day (UTC), vehicles, text.
+
+    The time is the event's own; what arrived later says when. What several vehicles say alike within two
+    seconds is one line.
+    """
+    merged: list[tuple[LogLine, list[int]]] = []
+    latest: dict[str, int] = {}
     for entry in picture.log:
-        who = str(entry.id) if entry.id else "–"
-        text = f"{clock(entry.at_ns)} {who:>3} {SIGNS[entry.severity]} {entry.text}"
-        lines.append([(text[:width], STYLES[entry.severity])])
-    return lines
+        at = latest.get(entry.text)
+        if entry.id and at is not None and abs(entry.own_ns - merged[at][0].own_ns) < ALIKE_NS:
+            merged[at][1].append(entry.id)
+            continue
+        latest[entry.text] = len(merged)
+        merged.append((entry, [entry.id]))
+    return [[(_told(entry, ids), STYLES[entry.severity])] for entry, ids in merged]
+
+
+def _told(entry: LogLine, ids: list[int]) -> str:
+    late = f" (heard {clock(entry.at_ns)})" if abs(entry.at_ns - entry.own_ns) > ALIKE_NS else ""
+    return f"{clock(entry.own_ns)} {spans(ids):>5} {SIGNS[entry.severity]} {entry.text}{late}"
+
+
+def spans(ids: list[int]) -> str:
+    """Ids for a person: `1-6`, `2,5`; the station's own 0 is `–`."""
+    found: list[list[int]] = []
+    for id in sorted(set(ids)):
+        if found and id == found[-1][1] + 1:
+            found[-1][1] = id
+        else:
+            found.append([id, id])
+    return ",".join(str(a) if a == b else f"{a}-{b}" for a, b in found) if found != [[0, 0]] else "–"
+
+
+def whole_text(picture: Picture, selected: int | None, told: list[tuple[str, str]]) -> Runs:
+    """Alerts with what to do, the selected vehicle and the log, the newest first; lines may be long."""
+    runs: Runs = [(f"Alerts at {clock(picture.now_ns)}\n", "bold")]
+    for line in alert_lines(picture, 0, 0):
+        runs += [*line, ("\n", "")]
+    if told and selected is not None:
+        runs.append(("\nVehicle\n", "bold"))
+        runs += [(f"{text}\n", style) for text, style in told]
+    runs.append(("\nEvents, the newest first (UTC)\n", "bold"))
+    for line in reversed(log_lines(picture)):
+        runs += [*line, ("\n", "")]
+    return runs
 
 
 def clock(at_ns: int) -> str:

@@ -7,6 +7,7 @@ from enum import IntEnum
 from math import inf, isinf
 from typing import Any, NamedTuple
 
+from gcs.picture.terminal_text import cut
 from gcs.picture.values import Picture, Presence, VehicleView
 from onboard.core.math.vectors import Vec, distance
 from onboard.wire.bus.messages import Role, Severity
@@ -57,6 +58,10 @@ COLUMNS = (
     Column("distance", "to ev", -5),
     Column("", "rule", 0),  # the rest
 )
+
+
+SPARED = ("stage", "m/s")  # columns that a narrow table leaves out, so that rules are not cut
+RULE_WIDTH = 27  # the longest rule of the paper's strategies, and a little
 
 
 class Row(NamedTuple):
@@ -166,18 +171,27 @@ _KEYS: dict[str, Callable[[VehicleView, Grade, Vec | None], Any]] = {
 }
 
 
+def columns(width: int) -> tuple[Column, ...]:
+    """The columns that a table of this width has."""
+    whole = sum(abs(column.width) + 1 for column in COLUMNS) - 1 + RULE_WIDTH
+    return tuple(column for column in COLUMNS if width >= whole or column.heading not in SPARED)
+
+
 def line(cells: tuple[str, ...], width: int) -> str:
-    """Cells set in columns, exactly `width` wide."""
+    """Cells set in columns, exactly `width` wide; what does not fit ends in "…"."""
     parts = []
+    shown = columns(width)
     for column, cell in zip(COLUMNS, cells, strict=True):
         size = abs(column.width)
+        if column not in shown:
+            continue
         if size == 0:
             parts.append(cell)
         elif column.width < 0:
             parts.append(cell[:size].rjust(size))
         else:
             parts.append(cell[:size].ljust(size))
-    return " ".join(parts)[:width].ljust(width)
+    return cut(" ".join(parts), width).ljust(width)
 
 
 def heading(sort: str, descending: bool, width: int) -> str:
@@ -192,10 +206,10 @@ def heading(sort: str, descending: bool, width: int) -> str:
     return line(tuple(cells), width)
 
 
-def column_at(x: int) -> Column | None:
-    """The column under a character of the heading."""
+def column_at(x: int, width: int) -> Column | None:
+    """The column under a character of the heading of a table of this width."""
     start = 0
-    for column in COLUMNS:
+    for column in columns(width):
         end = start + abs(column.width) if column.width else 10_000
         if start <= x <= end:
             return column

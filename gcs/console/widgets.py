@@ -5,6 +5,8 @@ They draw only the lines in view, so that two hundred vehicles cost no more than
 
 from __future__ import annotations
 
+from textwrap import wrap
+
 from rich.segment import Segment
 from rich.style import Style
 from rich.text import Text
@@ -19,7 +21,7 @@ from textual.widgets import Input, Static
 
 from gcs.console import plan
 from gcs.console.detail import detail
-from gcs.console.status_line import alert_lines, log_lines, status_line
+from gcs.console.status_line import alert_lines, hidden_alerts, log_lines, status_line
 from gcs.console.vehicle_table import STYLES, Row, column_at, heading, line
 from gcs.picture.terminal_text import printable
 from gcs.picture.values import Picture
@@ -52,6 +54,9 @@ class Lines(Widget):
         runs = self.lines[y] if y < len(self.lines) else []
         base = self.rich_style
         strip = Strip([Segment(printable(text), base + Style.parse(style)) for text, style in runs])
+        if strip.cell_length > width > 0:
+            more = Segment("…", base + Style.parse(runs[-1][1]))
+            strip = Strip([*strip.crop(0, width - 1), more])
         return strip.adjust_cell_length(width, base).crop(0, width)
 
     @property
@@ -90,8 +95,10 @@ class VehicleTable(Lines):
         self.first = 0
         self.shown: list[Row] = []
 
-    def show(self, table: list[Row], selected: int | None, sort: str, descending: bool) -> None:
-        """Show the part of the table that holds the selected vehicle."""
+    def show(
+        self, table: list[Row], selected: int | None, sort: str, descending: bool, nobody: tuple[str, ...]
+    ) -> None:
+        """Show the part of the table that holds the selected vehicle; without any, `nobody`."""
         width, room = self.size.width, max(1, self.size.height - 1)
         ids = [row.id for row in table]
         at = ids.index(selected) if selected in ids else 0
@@ -107,13 +114,13 @@ class VehicleTable(Lines):
             style = STYLES[row.grade] + (" reverse" if row.id == selected else "")
             lines.append([("▸" if row.id == selected else " ", style), (line(row.cells, width - 1), style)])
         if not table:
-            lines.append([("no vehicle heard yet", "dim")])
+            lines += [[("no vehicle heard yet", "bold")], *([(text, "dim")] for text in nobody)]
         self.put(lines)
 
     def on_click(self, event: events.Click) -> None:
         """Select a vehicle, or sort by a column."""
         if event.y == 0:
-            column = column_at(event.x - 1)
+            column = column_at(event.x - 1, self.size.width - 1)
             if column is not None and column.sort:
                 self.post_message(self.Sorted(column.sort))
         elif 0 <= event.y - 1 < len(self.shown):
@@ -132,9 +139,11 @@ class Plan(Lines):
 class Detail(Lines):
     """The selected vehicle in words."""
 
-    def show(self, picture: Picture, selected: int | None) -> None:
-        """Show as many lines as there is room for."""
-        self.put([[part] for part in detail(picture, selected)])
+    def show(self, picture: Picture, selected: int | None, hidden: frozenset[str]) -> None:
+        """Show as many lines as there is room for; `hidden` names alerts that the board has no room for."""
+        width = max(8, self.size.width)
+        told = detail(picture, selected, hidden)
+        self.put([[(part, style)] for text, style in told for part in wrap(text, width) or [""]])
 
 
 class AlertBoard(Lines):
@@ -143,6 +152,10 @@ class AlertBoard(Lines):
     def show(self, picture: Picture) -> None:
         """Show open commands and alerts, the worst first."""
         self.put(alert_lines(picture, self.size.width, self.size.height))
+
+    def hidden(self, picture: Picture) -> frozenset[str]:
+        """The alerts that it has no room for."""
+        return hidden_alerts(picture, self.size.height)
 
 
 class LogPanel(Lines):
@@ -156,7 +169,7 @@ class LogPanel(Lines):
     def show(self, picture: Picture) -> None:
         """Show the page one is on."""
         self._picture = picture
-        lines = log_lines(picture, self.size.width)
+        lines = log_lines(picture)
         self.back = max(0, min(self.back, len(lines) - self.size.height))
         end = len(lines) - self.back
         self.put(lines[max(0, end - self.size.height) : end])
@@ -171,7 +184,6 @@ class LogPanel(Lines):
 class Prompt(Horizontal):
     """The last line: a hint, what was said last, or the command line."""
 
-    HINT = "x ABORT ALL  : command  h hold  r resume  b return  l land  a ack  ? help"
     DEFAULT_CSS = """
     Prompt { height: 1; }
     Prompt Input { height: 1; border: none; padding: 0; width: 1fr; display: none; }
@@ -184,17 +196,28 @@ class Prompt(Horizontal):
     def __init__(self, *, id: str) -> None:
         super().__init__(id=id)
         self.said = ""
+        self._style = ""
+        self._hint = ""
 
     def compose(self) -> ComposeResult:
         """The hint and the command line, of which one is shown."""
-        yield Static(self.HINT, id="hint", markup=False)
+        yield Static("", id="hint", markup=False)
         example = "abort, hold 2 3, return pursuers, land all, ack, help …"
         yield Input(placeholder=example, id="line", disabled=True)
 
     def say(self, text: str, style: str = "") -> None:
         """Show a text in place of the hint; "" brings the hint back."""
-        self.said = text
-        self.query_one("#hint", Static).update(Text(text or self.HINT, style or "none"))
+        self.said, self._style = text, style
+        self._draw()
+
+    def hint(self, text: str) -> None:
+        """What to show while nothing is said."""
+        if text != self._hint:
+            self._hint = text
+            self._draw()
+
+    def _draw(self) -> None:
+        self.query_one("#hint", Static).update(Text(self.said or self._hint, self._style or "none"))
 
     def open(self) -> None:
         """Show an empty command line, ready to be typed in."""

@@ -160,7 +160,11 @@ class Fleet:
     def _on_event(self, event: Event, now_ns: int) -> None:
         entry = self._life(event.id, 0, now_ns)
         if entry.take_event(event):
-            self._say(now_ns, event.id, event.severity, event.kind, event.text)
+            line = LogLine(
+                at_ns=now_ns, id=event.id, severity=event.severity, kind=event.kind, text=event.text,
+                event_ns=event.stamp_ns if 0 < event.stamp_ns < 1 << 62 else 0,
+            )  # fmt: skip
+            self.log.append(line)
 
     def _on_track(self, track: Track, now_ns: int) -> None:
         known = self._tracks.get(track.id)

@@ -177,6 +177,12 @@ class LogLine(Value, frozen=True):
     severity: Severity
     kind: str
     text: str
+    event_ns: int = 0  # a vehicle's own stamp of its event, 0 = none
+
+    @property
+    def own_ns(self) -> int:
+        """When it happened: by the vehicle's own stamp, else when it was heard."""
+        return self.event_ns or self.at_ns
 
 
 class LegState(Enum):

@@ -24,6 +24,9 @@ def open_run(run: Path) -> Recording:
 class ReplaySource:
     """Implements `gcs.console.source.Source`. `now_ns` is any steady clock."""
 
+    steers = False
+    leaving = ""  # nothing flies here
+
     def __init__(self, player: Player, name: str, now_ns: Callable[[], int]) -> None:
         self.player = player
         self._name = name
@@ -60,13 +63,21 @@ class ReplaySource:
         return self.player.picture()
 
     def status(self) -> str:
-        """Speed, place and length."""
+        """Place, length, speed, and whether it plays."""
         player = self.player
-        state = "ended" if player.ended else "paused" if player.paused else f"×{player.speed:g}"
+        state = "ended" if player.ended else "paused" if player.paused else "playing"
         return (
-            f"replay {state}  {_minutes(player.at_ns - player.start_ns)}"
-            f" of {_minutes(player.end_ns - player.start_ns)}"
+            f"{_minutes(player.at_ns - player.start_ns)} of {_minutes(player.end_ns - player.start_ns)}"
+            f" ×{player.speed:g} {state}"
         )
+
+    def hint(self) -> str:
+        """Where it stands, and the keys that move it: no key commands anybody."""
+        return f"{self.status()}  Space pause  ← → 10 s  , . 0.1 s  + - speed  e events  ? help  q leave"
+
+    def nobody(self) -> tuple[str, ...]:
+        """Nobody was recorded up to here."""
+        return ("no vehicle recorded up to here", "→ goes 10 s on, End to the end")
 
     def act(self, action: str) -> str:
         """A key was pressed; what to tell the user."""

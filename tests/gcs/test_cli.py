@@ -54,7 +54,7 @@ def environment() -> dict[str, str]:
         (("--config", "order.toml", "--plain"), "order.toml: alerts.battery_critical: found 0.5, expected"),
         (("--game", "a/b", "--plain"), "options: game: found 'a/b', expected a name without"),
         (("--bus", "nonsense", "--plain"), "bus: "),
-        ((), "the console needs a terminal; without one: gcs --plain or gcs status --json"),
+        ((), "the console needs a terminal: found standard input, output, error redirected; without"),
         (("command", "abort"), "whom: found nothing, expected ids, --all or --role"),
         (("command", "abort", "2", "--all"), "whom: found ids and --all, expected"),
         (("command", "hold", "--all", "--within", "0"), "--within: found 0, expected"),
@@ -306,7 +306,7 @@ def test_lines_say_each_event_once_and_how_all_are_every_five_seconds():
     tower.fly(1.0, 1, 2)
     first = lines.lines(tower.picture)
     assert any("game meeting: 2 vehicles, from bridge" in line for line in first)
-    status = "STATUS vehicle 2 pursuer ok GUIDED acting battery 90% heard <1 s ago"
+    status = "STATUS vehicle 2 pursuer ok GUIDED acting link 100% battery 90% heard <1 s ago"
     assert any(status in line for line in first)
     assert lines.lines(tower.picture) == []
     tower.fly(2.0, 1)

@@ -12,7 +12,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from gcs.console.app import Console
-from gcs.console.source import Key
+from gcs.console.source import LIVE_HINT, Key
 from gcs.picture.values import Picture
 from gcs.station import Station, StationSetup
 from onboard.game.scenario import load
@@ -29,12 +29,20 @@ class Still:
 
     title = "live"
     keys: tuple[Key, ...] = ()
+    steers = True
+    leaving = "leave the console? vehicles fly on"
 
     def __init__(self, picture: Picture) -> None:
         self._picture = picture
 
     def picture(self) -> Picture:
         return self._picture
+
+    def hint(self) -> str:
+        return LIVE_HINT
+
+    def nobody(self) -> tuple[str, ...]:
+        return ()
 
     def status(self) -> str:
         return "listening at tcp/127.0.0.1:7447, recording 0.4 MB"

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from gcs.console import plan
 from gcs.console.detail import detail
 from gcs.console.plain_lines import PlainLines
-from gcs.console.status_line import alert_lines, log_lines, status_line
+from gcs.console.status_line import alert_lines, log_lines, status_line, whole_text
 from gcs.console.vehicle_table import line, rows
 from gcs.picture.json_document import to_json
 from onboard.wire.bus import messages
@@ -69,7 +69,8 @@ def test_no_finite_message_breaks_the_picture_or_a_panel(told, selected):
         assert len(line(row.cells, 80)) == 80
     assert detail(picture, selected)
     assert alert_lines(picture, 80, 5)
-    assert log_lines(picture, 80)
+    assert log_lines(picture)
+    assert whole_text(picture, selected, detail(picture, selected))
     assert status_line(picture, "live", "", 80)
     assert PlainLines().lines(picture)
     assert msgspec.json.decode(to_json(picture))

@@ -125,8 +125,8 @@ def test_rows_have_their_width_and_columns_can_be_clicked():
     cells = tuple("x" * 30 for _ in COLUMNS)
     for width in (10, 80, 120):
         assert len(line(cells, width)) == len(heading("battery", True, width)) == width
-    assert column_at(0).sort == "id"
-    assert column_at(heading("id", False, 80).index("batt") + 1).sort == "battery"
+    assert column_at(0, 80).sort == "id"
+    assert column_at(heading("id", False, 80).index("batt") + 1, 80).sort == "battery"
     ages = {0.04: "<1", 1.0: "1.0", 9.96: "10", 75.0: "75", 6000.0: "100m", float("inf"): "–"}
     assert {seconds: age(seconds) for seconds in ages} == ages
 
