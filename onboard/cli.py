@@ -49,7 +49,8 @@ def _common() -> Parser:
         help="the vehicle: MAVLink system id, and name on the bus [2]")  # fmt: skip
     add("--role", type=_typed("Role", "--role"), metavar="ROLE", help="evader, pursuer or tracker [pursuer]")
     add("--link", action="append", metavar="URL",
-        help="udpin://HOST:PORT, udpout://HOST:PORT or serial:///dev/NAME:BAUD; given twice, the second "
+        help="udpin:HOST:PORT (listen), udpout:HOST:PORT (send), tcp:HOST:PORT (connect), "
+        "tcpin:HOST:PORT (listen) or serial:/dev/NAME:BAUD; given twice, the second "
         "stands by [udpin://127.0.0.1:14539+id]")  # fmt: skip
     add("--autopilot", type=_typed("AdapterChoice", "--autopilot"), metavar="ADAPTER",
         help="which adapter flies it: auto, velocity, arduplane, arduplane-plain, mavsdk [auto: the one that "

@@ -15,7 +15,7 @@ import asyncio
 import csv
 import sys
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Hashable, Iterator
 from math import isfinite
 from pathlib import Path
 from typing import NamedTuple
@@ -30,7 +30,7 @@ from onboard.runtime.protocols import Bus
 from onboard.wire.bus.messages import Track
 from onboard.wire.bus.topics import DEFAULT_GAME, TRACK
 from onboard.wire.geodesy import Frame
-from onboard.wire.mavlink.frames import Framer
+from onboard.wire.mavlink.frames import PeerFramers
 from onboard.wire.mavlink.values import AdsbVehicle
 
 ADSB_SIGMA = 30.0  # [m] what a position of a small ADS-B transmitter is worth, unless told
@@ -162,11 +162,11 @@ async def play_csv(feed: Feed, path: Path, bus: Bus, game: str) -> None:
 
 async def hear_adsb(feed: Feed, url: str, bus: Bus, game: str) -> None:
     """Feed what arrives on a link, until ended."""
-    clock, framer = RealClock(), Framer()
+    clock, framers = RealClock(), PeerFramers()
     link = await open_link(url)
 
-    def arrived(data: bytes, _peer: object) -> None:
-        for packet in framer.feed(data):
+    def arrived(data: bytes, peer: Hashable) -> None:
+        for packet in framers.feed(peer, data):
             value = packet.value
             if isinstance(value, AdsbVehicle):
                 stamp_ns = clock.wall_ns() - round(value.age_s * NS_PER_S)

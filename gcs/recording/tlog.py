@@ -18,7 +18,7 @@ from pathlib import Path
 from gcs.recording.file import SILENT, SILENT_CALLS, Run, at_once
 from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.protocols import Link
-from onboard.wire.mavlink.frames import Framer, Packet
+from onboard.wire.mavlink.frames import Packet, PeerFramers
 from onboard.wire.mavlink.tlog import STAMP
 
 FLUSH_NS = NS_PER_S // 2
@@ -76,12 +76,12 @@ class TlogRecorder:
     def __init__(self, folder: Path, *, write: Write = os.write, run: Run = at_once) -> None:
         self.folder = folder
         self.trouble = ""
-        self.causes: Counter[str] = Counter()  # bad frames by cause; `lost` = no room, `peers` = too many
+        self.causes: Counter[str] = Counter()  # bad frames by cause; `lost` = no room
         self._write = write
         self._run = run
         self._attempt: threading.Event | None = None  # set when what is on its way to the disk is there
         self._looks = 0  # flushes that found it under way
-        self._framers: dict[Hashable, Framer] = {}
+        self._framers = PeerFramers(MOST_PEERS, causes=self.causes)
         self._logs: dict[int, _Log] = {}
         self._flushed_ns = 0
 
@@ -91,13 +91,7 @@ class TlogRecorder:
 
     def datagram(self, data: bytes, peer: Hashable, now_ns: int) -> None:
         """Take in what one peer sent at `now_ns`."""
-        framer = self._framers.get(peer)
-        if framer is None:
-            if len(self._framers) >= MOST_PEERS:
-                self.causes["peers"] += 1
-                return
-            framer = self._framers[peer] = Framer(causes=self.causes)
-        for packet in framer.feed(data, now_ns):
+        for packet in self._framers.feed(peer, data, now_ns):
             self.packet(packet, now_ns)
         self.tick(now_ns)
 

@@ -1,31 +1,28 @@
-"""Links: datagrams over UDP or in memory, a byte stream over a serial port, all behind one Protocol.
+"""Links: datagrams over UDP or in memory, byte streams over TCP or a serial port, all behind one Protocol.
 
-`open_link` takes a URL:
-
-    udpin://HOST:PORT     (or udp://) listen there; answer whom we last heard
-    udpout://HOST:PORT    send there
-    serial:///dev/ttyUSB0:57600
+`open_link` takes them as people write them: `link_urls`.
 """
 
 from __future__ import annotations
 
 import asyncio
 import errno
-import re
 import socket
-from collections.abc import Hashable
+from collections.abc import AsyncIterator, Hashable
+from contextlib import asynccontextmanager
 from functools import partial
 from typing import Any
 
 from onboard.config.strict import ConfigError
+from onboard.runtime.link_urls import Form, LinkUrl, parse_link
 from onboard.runtime.off_loop import off_loop
 from onboard.runtime.protocols import Link
 from onboard.runtime.receiving import Receiving
 from onboard.runtime.serial_link import SerialLink
+from onboard.runtime.tcp_link import TcpClientLink, TcpServerLink
 from onboard.runtime.udp_link import UdpLink, open_socket
 
 PENDING_MAX = 4096  # datagrams under way in a memory link before the next are dropped
-_FORMS = "udpin://HOST:PORT, udpout://HOST:PORT or serial:///dev/NAME:BAUD"
 
 
 class MemoryLink(Receiving):
@@ -65,20 +62,27 @@ def memory_pair(name: str) -> tuple[MemoryLink, MemoryLink]:
 
 
 async def open_link(url: str, timeout_s: float = 5.0) -> Link:
-    """Open a link by its URL.
+    """Open a link as people write it (`link_urls`).
 
-    Raises ConfigError, one line: a URL of another form, a port in use, no such host or device.
+    Raises ConfigError, one line: a URL of another form, a port in use, no such host or device, nobody there.
     """
-    serial = re.fullmatch(r"serial://(/.+?)(?::(\d+))?", url)
-    if serial:
-        return await SerialLink.open(url, serial.group(1), int(serial.group(2) or 57600), timeout_s)
-    udp = re.fullmatch(r"(udp|udpin|udpout)://(\[[0-9a-fA-F:]+\]|[^:/\[\]]+):(\d+)/?", url)
-    if udp is None:
-        raise ConfigError(f"link: found {url!r}, expected {_FORMS}")
-    form, host, port = udp.group(1), udp.group(2).strip("[]"), int(udp.group(3))
-    if port > 65535 or (port == 0 and form == "udpout"):
-        raise ConfigError(f"link: {url}: found port {port}, expected 1 to 65535")
-    return await open_udp(host, port, url, out=form == "udpout", timeout_s=timeout_s)
+    link = parse_link(url)
+    if link.form is Form.SERIAL:
+        return await SerialLink.open(link.name, link.device, link.baud, timeout_s)
+    if link.form in (Form.TCP_IN, Form.TCP_OUT):
+        return await _open_tcp(link, timeout_s)
+    return await open_udp(link.host, link.port, link.name, out=link.form is Form.UDP_OUT, timeout_s=timeout_s)
+
+
+async def _open_tcp(link: LinkUrl, timeout_s: float) -> Link:
+    client, server = TcpClientLink(link.name), TcpServerLink(link.name)
+    async with _clear_errors(link.name, link.host, timeout_s):
+        host, port = (await _resolved(link.host, link.port))[4][:2]
+        if link.form is Form.TCP_OUT:
+            await client.connect(host, port)
+        else:
+            await server.listen(host, port)
+    return client if link.form is Form.TCP_OUT else server
 
 
 async def open_udp(
@@ -86,17 +90,23 @@ async def open_udp(
 ) -> UdpLink:
     """Bind to (host, port), port 0 = a free one; or, where `out`, send there. Raises ConfigError."""
     name = name or f"{'udpout' if out else 'udpin'}://{host}:{port}"
+    async with _clear_errors(name, host, timeout_s):
+        sock = open_socket(await _resolved(host, port), out=out)
+    return UdpLink(name, sock, connected=out)
+
+
+@asynccontextmanager
+async def _clear_errors(name: str, host: str, timeout_s: float) -> AsyncIterator[None]:
+    """Whatever hinders opening a socket, as a ConfigError of one line."""
     try:
         async with asyncio.timeout(timeout_s):
-            found = await _resolved(host, port)
-        link = UdpLink(name, open_socket(found, out=out), connected=out)
+            yield
     except TimeoutError:
         raise ConfigError(f"link: {name}: no answer about host {host!r} within {timeout_s:g} s") from None
     except socket.gaierror:
         raise ConfigError(f"link: {name}: found host {host!r}, expected one that exists") from None
     except OSError as error:
         raise ConfigError(f"link: {name}: {_reason(error)}") from None
-    return link
 
 
 async def _resolved(host: str, port: int) -> tuple[Any, ...]:
@@ -109,7 +119,9 @@ def _reason(error: OSError) -> str:
     if error.errno == errno.EADDRINUSE:
         return "port in use by another program"
     if error.errno == errno.EADDRNOTAVAIL:
-        return "no such address on this machine"
+        return "no such address on this machine (to send there: udpout, to connect there: tcp)"
+    if error.errno == errno.ECONNREFUSED:
+        return "nobody listens there"
     if error.errno in (errno.EACCES, errno.EPERM):
         return "permission denied"
     return (error.strerror or str(error)).lower()

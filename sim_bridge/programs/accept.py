@@ -127,7 +127,7 @@ class Flight:
             self._link.send(frame)
 
     def _arrived(self, data: bytes, peer: Hashable) -> None:
-        for frame in self.companion.receive(data):
+        for frame in self.companion.receive(data, peer):
             self._log.write(self._clock.wall_ns(), frame)
 
 

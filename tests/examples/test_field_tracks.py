@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+import asyncio
 import importlib.util
+import os
+import pty
 import sys
+import tty
 
 import pytest
 
 from onboard.config.strict import ConfigError
 from onboard.core.math.vectors import Vec, distance
+from onboard.runtime.bus_memory import MemoryBroker
+from onboard.wire.bus.topics import TRACK
 from onboard.wire.geodesy import Frame
 from onboard.wire.mavlink.dialect import DialectSender, dialect
 from onboard.wire.mavlink.frames import Framer
 from tests.support.paths import ROOT
+from tests.support.real_time import until
 
 FILE = ROOT / "examples" / "field-tracks" / "feed_tracks.py"
 spec = importlib.util.spec_from_file_location("feed_tracks", FILE)
@@ -31,14 +38,19 @@ FLAGS = (
 )
 
 
-def adsb(icao: int, north_m: float):
-    """An ADSB_VEHICLE as it comes from a wire, flying east at 40 m/s."""
+def adsb_frame(icao: int, north_m: float) -> bytes:
+    """The frame of an ADSB_VEHICLE that flies east at 40 m/s."""
     place = Frame(*ORIGIN).geodetic_from_ned(Vec(north_m, 0.0, -100.0))
     message = dialect.MAVLink_adsb_vehicle_message(
         icao, round(place.latitude_deg * 1e7), round(place.longitude_deg * 1e7), 1, 588_000, 9000, 4000, 0,
         b"TEST1", 0, 0, FLAGS, 0,
     )  # fmt: skip
-    (packet,) = Framer().feed(DialectSender(1, 156).pack(message))
+    return DialectSender(1, 156).pack(message)
+
+
+def adsb(icao: int, north_m: float):
+    """The same as it comes from a wire."""
+    (packet,) = Framer().feed(adsb_frame(icao, north_m))
     return packet.value
 
 
@@ -83,3 +95,24 @@ def test_a_bad_cell_is_named_with_its_line(tmp_path, cell):
 def test_a_bad_mapping_is_refused(pair):
     with pytest.raises(ConfigError, match="NUMBER=ID"):
         feed_tracks.mapping([pair])
+
+
+@pytest.mark.real
+async def test_an_adsb_receiver_on_a_serial_port_is_heard():
+    """A receiver's line brings its bytes in pieces of any size."""
+    master, slave = pty.openpty()
+    tty.setraw(slave)
+    broker, feed = MemoryBroker(), feed_tracks.Feed(Frame(*ORIGIN), {"4CA7B3": 1}, "adsb")
+    bus, ground = broker.connect(), broker.connect()
+    tracks = []
+    ground.subscribe(TRACK.key("g", 1), lambda sample: tracks.append(sample.payload), every=True)
+    task = asyncio.create_task(feed_tracks.hear_adsb(feed, f"{os.ttyname(slave)},57600", bus, "g"))
+    frames = b"".join(adsb_frame(0x4CA7B3, 300.0) for _ in range(20))
+    await asyncio.sleep(0.1)
+    for at in range(0, len(frames), 31):
+        os.write(master, frames[at : at + 31])
+        await asyncio.sleep(0.001)
+    await until(lambda: len(tracks) == 20)
+    task.cancel()
+    os.close(master)
+    os.close(slave)

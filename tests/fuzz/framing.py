@@ -17,7 +17,7 @@ SWALLOWED = 23  # frames that one bad frame of 280 bytes can hide, if its checks
 
 def play(rng: np.random.Generator, count: int, totals: Counter[str]) -> None:
     """`count` frames into a datagram framer and a stream framer, in torn chunks; asserts what holds."""
-    datagrams, stream = Framer(), Framer(stream=True)
+    datagrams, stream = Framer(), Framer()
     sent_whole: Counter[bytes] = Counter()
     pending = b""
     for _ in range(count):

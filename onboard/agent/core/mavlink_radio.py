@@ -161,6 +161,6 @@ class Radio:
             if old is not None:
                 del line.framers[old]
             self.causes["peers_forgotten"] += 1
-        framer = Framer(stream=line.facts.stream, signing=self._signing, causes=self.causes)
+        framer = Framer(signing=self._signing, causes=self.causes)
         line.framers[peer] = framer
         return framer

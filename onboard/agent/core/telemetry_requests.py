@@ -37,7 +37,7 @@ def needs_of(kind: Kind, control_rate_hz: float) -> tuple[Need, ...]:
 
 
 def baud_of(link: str) -> int:
-    """Baud rate in a serial link's URL, 0 for other links."""
+    """Baud rate of a serial link by its name, 0 for other links."""
     if not link.startswith("serial:"):
         return 0
     tail = link.rsplit(":", 1)[-1]

@@ -6,7 +6,8 @@ arrives never raises: bad frames are counted by cause.
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import Counter, OrderedDict
+from collections.abc import Hashable
 from struct import Struct
 from typing import NamedTuple
 
@@ -25,7 +26,7 @@ SETUP_SIGNING: int = dialect.MAVLINK_MSG_ID_SETUP_SIGNING
 SIGNATURES = tuple(f"signature_{check.value}" for check in SignatureCheck if check is not SignatureCheck.GOOD)
 CAUSES = (
     "bad_crc",  # checksum wrong
-    "truncated",  # a datagram ended inside a frame
+    "truncated",  # a frame that the next piece does not continue
     "unknown_id",  # message id not of the dialect: its checksum cannot be known
     "incompatible",  # incompatibility flags that nobody has defined yet
     "garbage_bytes",  # bytes outside any frame
@@ -50,29 +51,29 @@ class Packet(NamedTuple):
 class Framer:
     """Finds the frames in what one peer sends.
 
-    A datagram link calls `feed(datagram, wall_ns)`: a frame never spans datagrams, so what a
-    datagram leaves unfinished is `truncated`. A serial or TCP link is made with `stream=True`:
-    unfinished bytes wait for the next chunk. After a bad frame the search goes on at its second byte, so
-    a torn frame cannot take the next good one with it; inner look-alikes do not count twice.
+    `feed(data, wall_ns)` takes whatever pieces a link brings: whole datagrams, chunks of a serial line or a
+    TCP connection, or datagrams that a bridge cut anywhere out of a stream of bytes. Bytes of an unfinished
+    frame wait for the next piece. Where that begins with a good frame of its own, they were torn
+    (`truncated`) and wait no longer, so that a torn datagram delays nothing. After a bad frame the search
+    goes on at its second byte, so that it cannot take the next good one with it; inner look-alikes do not
+    count twice.
 
     With `signing`, only frames that it verifies pass, and `wall_ns` must be the true time.
     """
 
-    def __init__(
-        self, *, stream: bool = False, signing: Signing | None = None, causes: Counter[str] | None = None
-    ) -> None:
+    def __init__(self, *, signing: Signing | None = None, causes: Counter[str] | None = None) -> None:
         self.causes: Counter[str] = Counter() if causes is None else causes
-        self._stream = stream
         self._signing = signing
         self._rest = b""
         self._blamed = 0  # bytes at the head of `_rest` that belong to a frame already counted as bad
 
     def feed(self, data: bytes, wall_ns: int = 0) -> list[Packet]:
-        """Return the good packets in `data` and in what a stream left over, heard at `wall_ns`.
+        """Return the good packets in `data` and in what was left over before, heard at `wall_ns`.
 
         Never raises: what is bad is counted in `causes`.
         """
         blamed = self._blamed
+        torn = len(self._rest) if self._rest and self._begins_well(data) else 0  # no frame goes over this end
         if self._rest:
             data = self._rest + data
         packets: list[Packet] = []
@@ -82,10 +83,11 @@ class Framer:
                 garbage += at >= blamed
                 at += 1
                 continue
-            size = self.size_at(data, at)
-            cause = "" if size else self._misfit(data, at)
-            if not cause and (size == 0 or at + size > end):
-                if self._stream:
+            stop = torn if at < torn else end
+            size = self.size_at(data, at, stop)
+            cause = "" if size else self._misfit(data, at, stop)
+            if not cause and (size == 0 or at + size > stop):
+                if stop == end:
                     break
                 cause = "truncated"
             if not cause:
@@ -102,12 +104,18 @@ class Framer:
             if at >= blamed:
                 self.causes[cause] += 1
                 blamed = at + max(size, _declared(data, at))
+                blamed = min(blamed, torn) if at < torn else blamed
             at += 1
         if garbage:
             self.causes["garbage_bytes"] += garbage
-        self._rest = data[at:] if self._stream else b""
-        self._blamed = max(0, blamed - at) if self._stream else 0
+        self._rest = data[at:]
+        self._blamed = max(0, blamed - at)
         return packets
+
+    def _begins_well(self, data: bytes) -> bool:
+        """Whether a piece begins with a whole frame with a good checksum."""
+        size = self.size_at(data, 0)
+        return 0 < size <= len(data) and _summed(data[:size])
 
     def whole(self, raw: bytes, wall_ns: int = 0) -> Packet | None:
         """Return the packet of exactly one frame, or None for anything else; a refused frame is counted."""
@@ -119,9 +127,11 @@ class Framer:
         return packet
 
     @staticmethod
-    def size_at(data: bytes, at: int) -> int:
-        """Return the length of the frame whose header starts at `at`, 0 for no header or only part of one."""
-        left = len(data) - at
+    def size_at(data: bytes, at: int, end: int = -1) -> int:
+        """Return the length of the frame whose header starts at `at`, 0 for no header or only part of one.
+
+        What lies from `end` on is not looked at (−1: all of `data` is)."""
+        left = (len(data) if end < 0 else end) - at
         if left >= HEADER_2 and data[at] == MAGIC_2:
             flags = data[at + 2]
             if flags & ~SIGNED or layout_of(data[at + 7] | data[at + 8] << 8 | data[at + 9] << 16) is None:
@@ -132,9 +142,9 @@ class Framer:
         return 0
 
     @staticmethod
-    def _misfit(data: bytes, at: int) -> str:
+    def _misfit(data: bytes, at: int, end: int) -> str:
         """Why `size_at` gave 0: the cause, or "" where the header is not yet whole."""
-        left = len(data) - at
+        left = end - at
         if data[at] == MAGIC_2:
             if left >= 3 and data[at + 2] & ~SIGNED:
                 return "incompatible"
@@ -152,8 +162,7 @@ class Framer:
         layout = layout_of(number)
         if layout is None:
             return None, "unknown_id"
-        end = start + length
-        if dialect.x25crc(raw[1:end] + layout.crc_extra).crc != raw[end] | raw[end + 1] << 8:
+        if not _summed(raw):
             return None, "bad_crc"
         if number == SETUP_SIGNING:
             return None, "setup_signing"
@@ -161,7 +170,7 @@ class Framer:
             verdict = self._signing.verify(raw, bool(flags & SIGNED), system, component, wall_ns)
             if verdict is not SignatureCheck.GOOD:
                 return None, f"signature_{verdict.value}"
-        value = decode(layout.message(raw[start:end])) if number in READ else None
+        value = decode(layout.message(raw[start : start + length])) if number in READ else None
         signed = self._signing is not None
         return Packet(system, component, sequence, number, layout.name, value, raw, signed), ""
 
@@ -181,10 +190,49 @@ def marked_signed(raw: bytes) -> bool:
     return raw[0] == MAGIC_2 and bool(raw[2] & SIGNED)
 
 
+def _summed(raw: bytes) -> bool:
+    """Whether the checksum of a whole frame of a known kind is right."""
+    if raw[0] == MAGIC_2:
+        number, end = raw[7] | raw[8] << 8 | raw[9] << 16, HEADER_2 + raw[1]
+    else:
+        number, end = raw[5], HEADER_1 + raw[1]
+    layout = layout_of(number)
+    found: int = raw[end] | raw[end + 1] << 8
+    return layout is not None and dialect.x25crc(raw[1:end] + layout.crc_extra).crc == found
+
+
 def _declared(data: bytes, at: int) -> int:
     """The length that a misfit's header claims, as far as it can be read."""
     header = HEADER_2 if data[at] == MAGIC_2 else HEADER_1
     return header + 2 + data[at + 1] if len(data) > at + 1 else header
+
+
+class PeerFramers:
+    """A framing state for each peer of one or several links, so that nobody's pieces mix with another's."""
+
+    def __init__(
+        self, most: int = 256, *, signing: Signing | None = None, causes: Counter[str] | None = None
+    ) -> None:
+        """`most` peers are told apart; the one that was silent for the longest is forgotten first."""
+        self.causes: Counter[str] = Counter() if causes is None else causes
+        self._most = most
+        self._signing = signing
+        self._framers: OrderedDict[Hashable, Framer] = OrderedDict()
+
+    def feed(self, peer: Hashable, data: bytes, wall_ns: int = 0) -> list[Packet]:
+        """Return the good packets in what `peer` sent, heard at `wall_ns`, as `Framer.feed` does."""
+        framer = self._framers.get(peer)
+        if framer is None:
+            while len(self._framers) >= self._most:
+                self._framers.popitem(last=False)
+                self.causes["peers_forgotten"] += 1
+            framer = self._framers[peer] = Framer(signing=self._signing, causes=self.causes)
+        self._framers.move_to_end(peer)
+        return framer.feed(data, wall_ns)
+
+    def clear(self) -> None:
+        """Forget everybody."""
+        self._framers.clear()
 
 
 class Sender:

@@ -6,7 +6,7 @@ over frames. It beats as an agent does, so that the autopilot's failsafes see it
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from math import hypot
 from struct import pack, unpack
 from typing import Any, NamedTuple
@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 from onboard.core.math.vectors import ZERO, Vec
 from onboard.wire.autopilot_kind import Kind
 from onboard.wire.mavlink.dialect import DialectSender, MavMessage, dialect, dialect_packet
-from onboard.wire.mavlink.frames import Framer
+from onboard.wire.mavlink.frames import PeerFramers
 from onboard.wire.mavlink.modes import custom_mode, kind_of, mode_name
 from onboard.wire.mavlink.signing import Signing
 
@@ -59,17 +59,17 @@ class Companion:
         self.latest: dict[str, Any] = {}  # the latest message of each kind
         self._signing = signing
         self._sender: DialectSender | None = None
-        self._framer = Framer(signing=signing)
+        self._framers = PeerFramers(signing=signing)
         self._stick: tuple[float, int] | None = None  # when RC_CHANNELS came, channel 3
         self._beat_due = self._target_due = 0.0
         self._out: list[bytes] = []
 
     # ------------------------------------------------------------------ the link's side
 
-    def receive(self, data: bytes) -> list[bytes]:
-        """Take what came; gives the whole frames in it, for the log."""
+    def receive(self, data: bytes, peer: Hashable = None) -> list[bytes]:
+        """Take what came from `peer`; gives the whole frames in it, for the log."""
         frames = []
-        for packet in self._framer.feed(data):
+        for packet in self._framers.feed(peer, data):
             frames.append(packet.raw)
             try:
                 message = dialect_packet(packet.raw).message

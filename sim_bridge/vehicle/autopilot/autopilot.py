@@ -7,14 +7,14 @@ Sans I/O. Time is an argument: `now_ns`, integer nanoseconds, any monotonic zero
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections import OrderedDict, deque
+from collections import deque
 from collections.abc import Callable, Hashable
 from functools import partial
 
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import ZERO
 from onboard.wire.mavlink.dialect import DialectPacket, DialectSender, dialect, dialect_packet
-from onboard.wire.mavlink.frames import Framer
+from onboard.wire.mavlink.frames import PeerFramers
 from sim_bridge.vehicle.autopilot import telemetry
 from sim_bridge.vehicle.autopilot.command import ACCEPTED, FAILED, UNSUPPORTED, Command, from_int, from_long
 from sim_bridge.vehicle.autopilot.commands import COMMANDS
@@ -49,7 +49,7 @@ class Autopilot(AutopilotState):
         self.commands: dict[int, Callable[[int, Command], int]] = self._command_handlers()
         for number in REMOVED.get((setup.kind, setup.options.firmware), ()):
             self.commands.pop(number, None)
-        self._framers: OrderedDict[Hashable, Framer] = OrderedDict()
+        self._framers = PeerFramers(PEERS_MAX, signing=setup.options.signing, causes=self.counters)
         self._late: deque[tuple[int, DialectPacket]] = deque()  # commands and when each is executed
         self._company = Company(setup.options, setup.system, now_ns)
         self._senders: dict[tuple[int, int], DialectSender] = {}  # of the company
@@ -62,13 +62,7 @@ class Autopilot(AutopilotState):
 
     def receive(self, now_ns: int, data: bytes, peer: Hashable) -> None:
         """Take one datagram. Never raises: what is bad or meant for others is counted and dropped."""
-        framer = self._framers.get(peer)
-        if framer is None:
-            while len(self._framers) >= PEERS_MAX:
-                self._framers.popitem(last=False)
-            framer = self._framers[peer] = Framer(signing=self.setup.options.signing, causes=self.counters)
-        self._framers.move_to_end(peer)
-        for packet in framer.feed(data, self.setup.options.epoch_ns + now_ns):
+        for packet in self._framers.feed(peer, data, self.setup.options.epoch_ns + now_ns):
             self._take(now_ns, dialect_packet(packet.raw))
 
     def step(self, now_ns: int, motion: Motion, air: Air) -> Demand:

@@ -99,6 +99,7 @@ def test_a_torn_frame_of_one_peer_does_not_spoil_anothers() -> None:
     air.hear(beat()[:9], STRANGER)
     air.hear(beat(), AUTOPILOT)
     assert len(air.heard) == 1
+    air.hear(beat(), STRANGER)
     assert air.radio.causes["truncated"] == 1
 
 

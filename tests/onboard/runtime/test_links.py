@@ -15,6 +15,7 @@ from onboard.config.strict import ConfigError
 from onboard.runtime.links import PENDING_MAX, memory_pair, open_link, open_udp
 from onboard.runtime.protocols import Link
 from onboard.runtime.serial_link import BACKLOG_MAX, SerialLink
+from onboard.runtime.tcp_link import CLIENTS_MAX, TcpServerLink
 from onboard.runtime.udp_link import BATCH, UdpLink
 from tests.support.real_time import patience, until
 from tests.support.virtual_time import virtual
@@ -186,11 +187,11 @@ async def test_a_port_in_use_is_one_clear_line() -> None:
 @pytest.mark.parametrize(
     ("url", "line"),
     [
-        ("tcp://127.0.0.1:5760", r"found 'tcp://127\.0\.0\.1:5760', expected udpin://HOST:PORT, "),
-        ("udpin://127.0.0.1", r"expected udpin://HOST:PORT"),
+        ("tcp://127.0.0.1:1", r"link: tcpout://127\.0\.0\.1:1: nobody listens there"),
+        ("udpin://127.0.0.1", r"expected udpin:HOST:PORT"),
         ("udpin://127.0.0.1:99999", r"found port 99999, expected 1 to 65535"),
         ("udpout://127.0.0.1:0", r"found port 0, expected"),
-        ("udpin://192.0.2.1:14550", r"no such address on this machine"),
+        ("udpin://192.0.2.1:14550", r"no such address on this machine \(to send there: udpout"),
         ("serial:///dev/no-such-port:57600", r"no such device /dev/no-such-port"),
         ("serial:///dev/null:57600", r"/dev/null"),
         ("", r"found '', expected"),
@@ -200,6 +201,94 @@ async def test_a_wrong_url_is_one_clear_line(url: str, line: str) -> None:
     with pytest.raises(ConfigError, match=line) as caught:
         await open_link(url)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.real
+@pytest.mark.parametrize("host", ["127.0.0.1", "[::1]"])
+async def test_tcp_carries_both_ways_and_connects_again(host: str) -> None:
+    server = await open_link(f"tcpin:{host}:0")
+    assert isinstance(server, TcpServerLink)
+    port = server.address[1]
+    client = await open_link(f"tcp:{host}:{port}")
+    there, here = Inbox(server), Inbox(client)
+    try:
+        client.send(b"ask")
+        await until(lambda: there.got)
+        server.send(b"answer")  # to whom it last heard
+        await until(lambda: here.got)
+        assert (there.got[0][0], here.got[0][0]) == (b"ask", b"answer")
+        server.close()
+        await until(lambda: client.counters().get("disconnected"))
+        client.send(b"into the void")
+        assert client.counters()["unconnected"] == 1
+        again = await open_link(f"tcpin:{host}:{port}")
+        back = Inbox(again)
+        await until(lambda: client.counters().get("reconnected"))
+        client.send(b"there again")
+        await until(lambda: back.got)
+        again.close()
+    finally:
+        client.close()
+        server.close()
+
+
+@pytest.mark.real
+async def test_a_tcp_reader_that_does_not_read_loses_whole_messages_and_holds_up_nobody() -> None:
+    server = await open_link("tcpin:127.0.0.1:0")
+    assert isinstance(server, TcpServerLink)
+    with socket.create_connection(server.address) as reader:
+        reader.send(b"here I am")
+        inbox = Inbox(server)
+        await until(lambda: inbox.got)
+        message = b"m" * 1000
+        for _ in range(20000):
+            server.send(message)
+        counts = server.counters()
+        assert counts["overflow"] > 0
+        assert counts["sent"] + counts["overflow"] == 20000
+        reader.settimeout(patience(5.0))
+        heard = await asyncio.to_thread(_drained, reader, counts["sent"] * 1000)
+        assert heard == message * counts["sent"]
+    server.close()
+
+
+def _drained(reader: socket.socket, size: int) -> bytes:
+    heard = bytearray()
+    while len(heard) < size:
+        heard += reader.recv(1 << 20)
+    return bytes(heard)
+
+
+@pytest.mark.real
+async def test_a_server_turns_away_more_clients_than_it_can_have() -> None:
+    server = await open_link("tcpin:127.0.0.1:0")
+    assert isinstance(server, TcpServerLink)
+    clients = [socket.create_connection(server.address) for _ in range(CLIENTS_MAX + 2)]
+    try:
+        await until(lambda: server.counters().get("turned_away") == 2)
+    finally:
+        for client in clients:
+            client.close()
+        server.close()
+
+
+@pytest.mark.real
+@pytest.mark.parametrize("url", ["udpin:[::1]:0", "udpin://[::1]:0", "udpin:localhost:0"])
+async def test_udp_speaks_ipv6_and_names(url: str) -> None:
+    server = await open_link(url)
+    assert isinstance(server, UdpLink)
+    host, port = server.address
+    client = await open_link(f"udpout:[{host}]:{port}" if ":" in host else f"udpout:{host}:{port}")
+    there, here = Inbox(server), Inbox(client)
+    try:
+        client.send(b"ask")
+        await until(lambda: there.got)
+        server.send(b"answer", there.got[0][1])
+        await until(lambda: here.got)
+        assert here.got[0][0] == b"answer"
+    finally:
+        client.close()
+        server.close()
 
 
 @pytest.mark.real

@@ -13,11 +13,13 @@ from onboard.core.math.vectors import Vec
 from onboard.wire.mavlink import commands
 from onboard.wire.mavlink.commands import Target
 from onboard.wire.mavlink.dialect import DialectSender, dialect, dialect_packet
-from onboard.wire.mavlink.frames import CAUSES, Framer, Packet, Sender
+from onboard.wire.mavlink.frames import CAUSES, Framer, Packet, PeerFramers, Sender
+from onboard.wire.mavlink.signing import MemoryStore, Signing
 from onboard.wire.mavlink.telemetry import READ
 from onboard.wire.mavlink.values import Battery, RadioStatus, StatusText
 
 AUTOPILOT = Target(1)
+NOW = 1_790_000_000 * 10**9
 
 
 def frames(count: int) -> list[bytes]:
@@ -35,9 +37,57 @@ def test_a_truncated_datagram_does_not_take_the_next_one_with_it() -> None:
     assert framer.causes == {"truncated": 1}
 
 
+@pytest.mark.parametrize("size", [1, 7, 40, 128, 280, 1400])
+@pytest.mark.parametrize("signed", [False, True])
+def test_frames_that_a_bridge_cuts_between_datagrams_are_put_together(size: int, signed: bool) -> None:
+    """Transparent serial-to-UDP bridges send what they have, wherever a frame ends."""
+    ours, theirs = (Signing(b"k" * 32, MemoryStore()) if signed else None for _ in range(2))
+    sender, framer = DialectSender(2, 1, signing=theirs), Framer(signing=ours)
+    sent = [
+        sender.pack(dialect.MAVLink_attitude_message(50 * k, 0.1, 0.2, 0.3, 0, 0, 0), NOW) for k in range(100)
+    ]
+    stream = b"".join(sent)
+    got = [p.raw for at in range(0, len(stream), size) for p in framer.feed(stream[at : at + size], NOW)]
+    assert got == sent
+    assert not framer.causes
+
+
+@given(tears=st.lists(st.integers(1, 44), min_size=1, max_size=20), signed=st.booleans())
+def test_a_whole_datagram_is_heard_at_once_whatever_was_torn_before(tears: list[int], signed: bool) -> None:
+    ours, theirs = (Signing(b"k" * 32, MemoryStore()) if signed else None for _ in range(2))
+    sender, framer = DialectSender(2, 1, signing=theirs), Framer(signing=ours)
+    for tear in tears:
+        torn, whole = (
+            sender.pack(dialect.MAVLink_attitude_message(1, 0.1, 0.2, 0.3, 0.4, 0, 0), NOW) for _ in range(2)
+        )
+        framer.feed(torn[: min(tear, len(torn) - 1)], NOW)
+        assert [packet.raw for packet in framer.feed(whole, NOW)] == [whole]
+    assert framer.causes == {"truncated": len(tears)}
+
+
+def test_what_lies_behind_a_torn_header_is_found_when_the_next_datagram_comes() -> None:
+    first, second, third = frames(3)
+    framer = Framer()
+    assert framer.feed(b"\xfd\xff\x00\x00\x00\x01\x01\x1e\x00\x00" + first) == []  # claims 255 bytes
+    assert [packet.raw for packet in framer.feed(second + third)] == [first, second, third]
+
+
+def test_peers_pieces_do_not_mix() -> None:
+    first, second = frames(2)
+    framers = PeerFramers(2)
+    assert framers.feed("a", first[:20]) == framers.feed("b", second[:30]) == []
+    assert [packet.raw for packet in framers.feed("a", first[20:])] == [first]
+    assert [packet.raw for packet in framers.feed("b", second[30:])] == [second]
+    framers.feed("a", first[:20])
+    framers.feed("c", b"")
+    framers.feed("d", b"")  # the third: "a" is forgotten
+    assert framers.feed("a", first[20:]) == []
+    assert framers.causes["peers_forgotten"] == 3
+
+
 def test_a_torn_frame_in_a_byte_stream_does_not_take_the_next_one_with_it() -> None:
     first, second, third = frames(3)
-    framer = Framer(stream=True)
+    framer = Framer()
     got = framer.feed(first[:31] + second) + framer.feed(third) + framer.feed(frames(1)[0])
     assert [packet.raw for packet in got] == [second, third, first]
     assert framer.causes["bad_crc"] == 1
@@ -52,6 +102,7 @@ def test_each_bad_frame_counts_once_by_its_cause() -> None:
     framer = Framer()
     for bad in (flipped, unknown, incompatible, key, b"noise", good[:-1]):
         assert framer.feed(bad) == []
+    assert len(framer.feed(good)) == 1
     assert framer.causes == {
         "bad_crc": 1,
         "unknown_id": 1,
@@ -65,10 +116,9 @@ def test_each_bad_frame_counts_once_by_its_cause() -> None:
 
 def test_a_key_sent_over_the_network_is_never_taken() -> None:
     key = DialectSender(255, 190).pack(dialect.MAVLink_setup_signing_message(1, 1, [7] * 32, 99))
-    for stream in (False, True):
-        framer = Framer(stream=stream)
-        assert framer.feed(key) == []
-        assert framer.causes == {"setup_signing": 1}
+    framer = Framer()
+    assert framer.feed(key) == []
+    assert framer.causes == {"setup_signing": 1}
 
 
 def test_mavlink_1_is_read_too() -> None:
@@ -100,10 +150,11 @@ def test_messages_with_arrays_and_texts_come_back_as_they_went() -> None:
 
 
 @settings(max_examples=300, deadline=None)
-@given(data=st.binary(max_size=700), stream=st.booleans())
-def test_any_bytes_are_taken_without_an_exception(data: bytes, stream: bool) -> None:
-    framer = Framer(stream=stream)
-    framer.feed(data)
+@given(pieces=st.lists(st.binary(max_size=400), max_size=4))
+def test_any_bytes_are_taken_without_an_exception(pieces: list[bytes]) -> None:
+    framer = Framer()
+    for data in pieces:
+        framer.feed(data)
     assert set(framer.causes) <= set(CAUSES)
 
 
@@ -116,7 +167,7 @@ def test_good_frames_survive_any_junk_between_them_in_a_stream(junk: list[bytes]
     """Junk may claim a frame of at most 280 bytes: what follows it is late by that much, never lost."""
     good = frames(4)
     data = b"".join(bad + frame for bad, frame in zip(junk, good, strict=True)) + bytes(300)
-    framer, got, at = Framer(stream=True), [], 0
+    framer, got, at = Framer(), [], 0
     for step in (cuts * (len(data) + 1))[: len(data)]:
         got += [packet.raw for packet in framer.feed(data[at : at + step])]
         at += step

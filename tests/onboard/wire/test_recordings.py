@@ -73,7 +73,7 @@ def test_the_story_is_read_as_it_was_flown(name: str, count: int, kind: Kind) ->
 def test_a_byte_stream_in_any_chunks_gives_the_same_packets(name: str, count: int, kind: Kind) -> None:
     frames = [entry.packet.raw for entry in entries(name)]
     stream = b"".join(frames)
-    framer = Framer(stream=True)
+    framer = Framer()
     got = []
     at, size = 0, 1
     while at < len(stream):
