@@ -11,8 +11,6 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, BinaryIO, NamedTuple
 
-from msgspec import convert
-
 from gcs.recording.recorder import Recorder
 from onboard.agent.config import AgentConfig
 from onboard.agent.event_file import EventFile, FileSink, unused
@@ -31,7 +29,7 @@ from onboard.wire.mavlink.tlog import TlogWriter
 from sim_bridge.world.bridge import Bridge, mute
 from sim_bridge.world.bridge import Options as BridgeOptions
 from sim_bridge.world.run_observer import Observer
-from sim_bridge.world.staging import generator
+from sim_bridge.world.staging import generator, impairment_of
 from sim_bridge.world.summary import Summary
 from sim_bridge.world.truth import TRUTH, TruthLog
 
@@ -98,7 +96,7 @@ class Rehearsal:
         self._tasks: dict[int, asyncio.Task[None]] = {}
         self._options = options
         self._tlogs: dict[int, tuple[BinaryIO, TlogWriter]] = {}
-        impairment = convert(scenario.flight.impairment, Impairment, from_attributes=True)
+        impairment = impairment_of(scenario)
         on_bus = scenario.flight.impairment.bus
         self.broker = MemoryBroker(
             impairment if on_bus else None, generator(self.seed, "bus") if on_bus else None

@@ -82,6 +82,9 @@ def structs(*rooms: Any) -> set[type[msgspec.Struct]]:
     }  # fmt: skip
 
 
+OWN = ("__post_init__", "_demand_what_flies")  # a struct that checks itself reads for nobody
+
+
 class Watch:
     """Which keys of which structs were read, other than by the structs themselves."""
 
@@ -102,7 +105,7 @@ class Watch:
 
     def _watched(self, keys: set[str]) -> Any:
         def look(struct: Any, name: str) -> Any:
-            if name in keys and sys._getframe(1).f_code.co_name != "__post_init__":
+            if name in keys and sys._getframe(1).f_code.co_name not in OWN:
                 self.read[type(struct).__name__].add(name)
             return object.__getattribute__(struct, name)
 

@@ -119,6 +119,9 @@ class Parameters(struct_from(Rules, StrictConfig, RULE_KEYS, ("planar",))):  # t
         demand(self.rho is None or self.rho >= self.R, "rho", self.rho, f"at least R = {self.R:g} m")
 
 
+DEFAULT_ACCELERATION = 4.0  # [m/s²]
+
+
 class Player(StrictConfig, frozen=True):
     """Who plays and from where."""
 
@@ -133,7 +136,7 @@ class Player(StrictConfig, frozen=True):
 class VehicleSpec(struct_from(VehicleLimits, Player, LIMIT_KEYS)):  # type: ignore[misc]
     """One vehicle: who plays, its limits, and how it is simulated. Angles in degrees."""
 
-    acceleration: PositiveAcceleration = 4.0  # [m/s²] of the kinematic airframe
+    acceleration: PositiveAcceleration = DEFAULT_ACCELERATION  # [m/s²] of the kinematic airframe
     autopilot: Kind | None = None  # None = the scenario's
     airframe: AirframeKind | None = None
     tracked: bool = False  # the evader's alone: known by tracks, flown by no agent
@@ -303,9 +306,32 @@ class Scenario(StrictConfig, frozen=True):
         for key, place in places.items():
             demand(len(place) == axes, key, f"{len(place)} numbers",
                    f"{axes} as in evader.position: a game is plane or in space")  # fmt: skip
+        self._demand_what_flies()
         ids = self.ids
         demand(len(set(ids)) == len(ids), "pursuers.id", list(ids), "ids that differ")
         demand(max(ids) <= 250, "pursuers", f"{len(self.pursuers)} pursuers", "system ids up to 250")
+
+    def _demand_what_flies(self) -> None:
+        """Demand that what `[flight]` and the vehicles say goes together and has an effect."""
+        flight = self.flight
+        demand(self.planar or flight.height == Flight().height, "flight.height", flight.height,
+               "none: this game is in space, its positions have heights")  # fmt: skip
+        kinds = [v.autopilot or flight.autopilot for v in self.vehicles]
+        px4 = Kind.PX4 in kinds or Kind.PX4_PLANE in kinds
+        demand(px4 or not flight.simulated.full_streams, "flight.simulated.full_streams", "true",
+               "false: it is PX4 that streams so, and none is here")  # fmt: skip
+        for index, (vehicle, kind) in enumerate(zip(self.vehicles, kinds, strict=True)):
+            at = f"pursuers[{index - 1}]." if index else "evader."
+            frame = vehicle.airframe or flight.airframe
+            if frame is AirframeKind.KINEMATIC:
+                continue
+            demand(kind is Kind.ARDUPLANE, f"{at if vehicle.airframe else 'flight.'}airframe",
+                   f"{frame.value} under {kind.value}",
+                   "kinematic: the transfer-function aircraft are arduplanes")  # fmt: skip
+            demand(not flight.ground_start, "flight.ground_start", f"true with airframe {frame.value}",
+                   "false: its transfer functions hold in flight alone")  # fmt: skip
+            demand(vehicle.acceleration == DEFAULT_ACCELERATION, f"{at}acceleration", vehicle.acceleration,
+                   f"none with airframe {frame.value}: its file says how it flies")  # fmt: skip
 
     @property
     def planar(self) -> bool:

@@ -18,6 +18,7 @@ from onboard.game.scenario import Scenario, load
 from onboard.runtime.bus_field import FieldBus
 from onboard.runtime.bus_zenoh import ZenohBus, open_zenoh
 from onboard.runtime.clock import RealClock, SteadyClock
+from onboard.runtime.impairment import CLEAR, Impaired
 from onboard.runtime.links import open_udp
 from onboard.runtime.protocols import Link
 from onboard.runtime.tasks import Pace, periodic
@@ -26,7 +27,7 @@ from onboard.wire.bus.topics import DEFAULT_GAME
 from sim_bridge.world.bridge import Bridge
 from sim_bridge.world.bridge import Options as BridgeOptions
 from sim_bridge.world.radio import GROUND_STATIONS, Radio, agent_ports
-from sim_bridge.world.staging import kind_of
+from sim_bridge.world.staging import generator, impairment_of, kind_of
 
 HOST = "127.0.0.1"
 STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
@@ -85,6 +86,10 @@ async def serve_scenario(
             radios[id] = Radio(await open_udp(options.host, 0), peers)
         bus = await open_zenoh(options.bus or None, listen=options.listen, config_file=options.zenoh)
         links: dict[int, Sequence[Link]] = {id: (radio,) for id, radio in radios.items()}
+        if (impairment := impairment_of(scenario)) != CLEAR:
+            seed = scenario.seed if options.seed is None else options.seed
+            for id, radio in radios.items():
+                links[id] = (Impaired(radio, impairment, generator(seed, f"link-{id}")),)
         bridge_options = BridgeOptions(
             secrets.randbits(48), options.game, options.seed, folder, options.referee
         )
@@ -157,6 +162,8 @@ def _introduce(
             f"{ports[id]}  autopilot at {radios[id].address[1]}")
     if options.ground_stations:
         say(f"  ground stations on udp {options.host}:{GROUND_STATIONS}")
+    if scenario.flight.impairment.bus:
+        say("note: datagrams are impaired, the bus is not: impairment.bus counts with fly --fast alone")
     say(f"bus: {bus.status()}")
     if options.ports is not None:
         try:

@@ -134,6 +134,22 @@ def test_the_hash_is_of_the_contents_not_of_the_layout(tmp_path: Path) -> None:
             "flight.autopilot: found 'betaflight', expected one of: px4, px4-plane, arducopter, arduplane",
         ),
         ('name = "plain"', 'name = "plain"\nflight.sensor.dropout = 1.0', "flight.sensor.dropout: found 1.0"),
+        ('"plain"', '"plain"\nflight.height = 80', "flight.height: found 80.0, expected none: this game"),
+        (
+            '"plain"',
+            '"plain"\nflight.simulated.full_streams = true',
+            "flight.simulated.full_streams: found true, expected false: it is PX4 that streams so",
+        ),
+        (
+            '"plain"',
+            '"plain"\nflight.airframe = "nose"',
+            "flight.airframe: found nose under arducopter, expected kinematic",
+        ),
+        (
+            "speed = 4",
+            'speed = 4\nautopilot = "arduplane"\nairframe = "slip"\nacceleration = 2',
+            "pursuers[0].acceleration: found 2.0, expected none with airframe slip",
+        ),
         ("40, 25]", "40]", "pursuers[0].position: found 2 numbers, expected 3 as in evader.position"),
         ("[0, 0, 20]", "[0, 0]", "pursuers[0].position: found 3 numbers, expected 2 as in evader.position"),
         ("speed = 5", "speed = 5\ntarget = [1, 2]", "evader.target: found 2 numbers, expected 3"),

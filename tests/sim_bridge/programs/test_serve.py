@@ -9,10 +9,11 @@ import subprocess
 import sys
 from pathlib import Path
 
+import msgspec
 import pytest
 
 from onboard.config.strict import ConfigError
-from onboard.game.scenario import Flight, Kind, Parameters, Scenario, VehicleSpec
+from onboard.game.scenario import Flight, ImpairmentSpec, Kind, Parameters, Scenario, VehicleSpec
 from onboard.runtime.bus_zenoh import open_zenoh
 from onboard.runtime.clock import RealClock
 from onboard.runtime.links import open_udp
@@ -21,6 +22,7 @@ from onboard.wire.bus.topics import SETUP, TRACK
 from onboard.wire.mavlink.commands import set_message_interval
 from onboard.wire.mavlink.dialect import dialect
 from sim_bridge.programs.serve import Options, serve, serve_scenario
+from sim_bridge.world.bridge import Bridge
 from sim_bridge.world.radio import CALLERS_MAX, Radio, agent_ports
 from tests.support.bus_stages import Heard, free_port
 from tests.support.real_time import patience, until
@@ -118,6 +120,37 @@ async def test_a_served_game_from_the_first_heartbeat_to_the_outcome(tmp_path: P
         for link in links.values():
             link.close()
         await bus.close()
+
+
+@pytest.mark.real
+@pytest.mark.parametrize("loss", [0.0, 1.0])
+async def test_what_happens_to_datagrams_happens_in_real_time_too(loss: float) -> None:
+    impairment = ImpairmentSpec(loss=loss, bus=True)
+    flight = msgspec.structs.replace(SCENARIO.flight, impairment=impairment)
+    scenario = msgspec.structs.replace(SCENARIO, flight=flight)
+    said: list[str] = []
+    served: list[tuple[Bridge, dict[int, int]]] = []
+    options = Options(bus=f"tcp/127.0.0.1:{free_port()}", listen=True, ground_stations=False)
+    game = asyncio.create_task(
+        serve_scenario(
+            scenario, options, said.append, None, lambda bridge, bus, ports: served.append((bridge, ports))
+        )
+    )
+    await until(lambda: served)
+    bridge, ports = served[0]
+    agent = await open_udp("127.0.0.1", ports[31])
+    link = bridge.world.vehicles[31].links[0]
+    try:
+        if loss:
+            await until(lambda: link.counters().get("out_lost", 0) > 5)
+            assert agent.counters().get("received", 0) == 0
+        else:
+            await until(lambda: agent.counters().get("received", 0) > 5)
+        assert any(line.startswith("note: datagrams are impaired, the bus is not") for line in said)
+    finally:
+        game.cancel()
+        agent.close()
+        await asyncio.gather(game, return_exceptions=True)
 
 
 @pytest.mark.real
