@@ -19,6 +19,7 @@ for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 
 import typer
 
+from gcs import field_commands
 from gcs.export.formats import Format
 from gcs.options import BUS, STATION, Options, takes
 from gcs.urgent import WITHIN_S, Abort, abort_of
@@ -201,6 +202,12 @@ def game_run(
     found, played = options.settings(), load(shipped_file(scenario, SCENARIOS))
     plain = bool(options.plain)
     return _play(programs.play(found, played, plain=plain, auto_start=start, takes_over=take_over))
+
+
+app.command(
+    epilog="Examples: gcs tracks udpin://0.0.0.0:14560 --map 7=1 | gcs tracks radar.csv --map radar-17=1"
+    " | gcs tracks sbs://127.0.0.1:30003 --map 4CA7B3=1 --qnh 1021"
+)(field_commands.tracks)
 
 
 @keys_app.command("init", epilog="Example: gcs keys init roster.toml")

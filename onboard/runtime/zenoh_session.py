@@ -19,6 +19,7 @@ import zenoh
 from zenoh import ext, handlers
 
 from onboard.runtime.inbox import Inbox
+from onboard.runtime.off_loop import off_loop
 from onboard.runtime.patterns import intersects
 from onboard.runtime.protocols import Sample, Subscription
 from onboard.runtime.rate_limit import PAYLOAD_MAX, BusLimit
@@ -296,7 +297,8 @@ class ZenohBus:
         for declared in self._declared:
             declared.forget()
         threading.Thread(target=self._close_in_thread, args=(session,), daemon=True).start()
-        threading.Thread(target=self._open_in_thread, name="zenoh-open", daemon=True).start()
+        self._thread = threading.Thread(target=self._open_in_thread, name="zenoh-open", daemon=True)
+        self._thread.start()
 
     async def close(self) -> None:
         """Close the session, within `CLOSE_S`; what was declared ends with it."""
@@ -306,6 +308,8 @@ class ZenohBus:
         for declared in self._declared:
             declared.active = False
         self._declared.clear()
+        if self._thread.is_alive():  # a process that ends inside Zenoh's code dies by SIGABRT
+            await off_loop(partial(self._thread.join, CLOSE_S))
         session, self._session = self._session, None
         if session is not None:
             closed = asyncio.Event()

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import csv
-from math import cos, isfinite, pi, sin
+from math import cos, pi, sin
 from pathlib import Path
 from typing import NamedTuple
 
@@ -12,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from onboard.config.strict import ConfigError
+from onboard.config.table_file import demand_seconds, read_table
 from onboard.core.game.advance import advance
 from onboard.core.game.referee import GameResult
 from onboard.core.math.constants import NS_PER_S
@@ -93,54 +93,27 @@ def read_csv(path: Path) -> Recording:
     The files of `gcs export` are read too: their columns have the units in their names (EXPORTED). One of
     several vehicles is refused. Raises ConfigError.
     """
-    try:
-        with path.open(newline="", encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
-    except UnicodeDecodeError:
-        raise ConfigError(f"{path}: not UTF-8 text") from None
-    except (OSError, csv.Error) as error:
-        raise ConfigError(f"{path}: {str(getattr(error, 'strerror', None) or error).lower()}") from None
-    if rows and "t_s" in rows[0]:
-        rows = _exported(path, rows)
-    found = list(rows[0]) if rows else []
-    for key in ("t", "north", "east", "down"):
-        if key not in found:
-            raise ConfigError(f"{path}: {key}: found columns {', '.join(map(str, found)) or 'none'}, "
-                              "expected t,north,east,down[,vn,ve,vd][,sigma]")
+    aliases = {name: (other,) for other, name in EXPORTED.items()}
+    rows = read_table(path, aliases, ("t", "north", "east", "down"))
+    found = rows[0].cells if rows else {}
+    ids = sorted({row.cells.get("id", "") for row in rows})
+    if len(ids) > 1:
+        raise ConfigError(f"{path}: id: found {', '.join(ids)}, expected one vehicle: gcs export RUN --id ID")
     moving = all(key in found for key in ("vn", "ve", "vd"))
     samples = []
-    for number, row in enumerate(rows, start=2):
-        def cell(key: str, row: dict[str, str] = row, number: int = number) -> float:
-            try:
-                value = float(row[key])
-            except (TypeError, ValueError):
-                value = float("nan")
-            if not isfinite(value):
-                raise ConfigError(
-                    f"{path}: line {number}: {key}: found {row[key]!r}, expected a finite number"
-                )
-            return value
-
-        sigma = cell("sigma") if "sigma" in found else 3.0
+    for row in rows:
+        sigma = row.number("sigma") if "sigma" in found else 3.0
         v = 1.0 if moving else -1.0
         variance = (sigma * sigma, sigma * sigma, sigma * sigma, v, v, v)
-        velocity = Vec(cell("vn"), cell("ve"), cell("vd")) if moving else None
-        place = Vec(cell("north"), cell("east"), cell("down"))
-        samples.append(Sample(cell("t"), place, velocity, variance, cell("t")))
+        velocity = Vec(row.number("vn"), row.number("ve"), row.number("vd")) if moving else None
+        place = Vec(row.number("north"), row.number("east"), row.number("down"))
+        samples.append(Sample(row.number("t"), place, velocity, variance, row.number("t")))
+    demand_seconds(path, [sample.t for sample in samples])
     known = sorted({s.t: s.position for s in samples}.items())
     if len(known) < 2:
         raise ConfigError(f"{path}: found {len(known)} instants, expected at least 20")
     times = np.array([t for t, _ in known])
     return Recording(path.name, tuple(samples), times, np.array([p for _, p in known]), False)
-
-
-def _exported(path: Path, rows: list[dict[str, str]]) -> list[dict[str, str]]:
-    """The rows of a table of `gcs export` as those of a track. Raises ConfigError."""
-    ids = sorted({row.get("id") or "" for row in rows})
-    if len(ids) > 1:
-        found = ", ".join(map(str, ids))
-        raise ConfigError(f"{path}: id: found {found}, expected one vehicle: gcs export RUN --id ID")
-    return [{EXPORTED.get(str(key), key): value for key, value in row.items()} for row in rows]
 
 
 def weave(seconds: float = 60.0, speed: float = 50.0, rate: float = 10.0, seed: int = 0) -> Recording:

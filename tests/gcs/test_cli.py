@@ -401,3 +401,13 @@ def test_a_replay_that_decides_again_shows_nothing_and_takes_no_option_for_it(tm
 def test_an_option_after_the_subcommand_outranks_the_same_one_before_it(received):
     given = received("--bus", "tcp/10.0.0.1:1", "--game", "early", "status", "--bus", "tcp/10.0.0.2:2")
     assert (given.bus, given.game) == ("tcp/10.0.0.2:2", "early")
+
+
+@pytest.mark.real
+async def test_who_leaves_while_the_bus_is_being_opened_leaves_in_order(free_endpoint):
+    """A process that ends inside Zenoh's code dies by SIGABRT: its thread is waited for."""
+    for _ in range(3):
+        bus = await open_zenoh(free_endpoint)
+        await asyncio.sleep(0.45)  # the next attempt begins about now
+        await bus.close()
+        assert not bus._thread.is_alive()

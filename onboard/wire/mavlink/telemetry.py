@@ -22,6 +22,8 @@ from onboard.wire.mavlink.values import (
     Attitude,
     Battery,
     CommandAck,
+    DroneIdentity,
+    DroneLocation,
     EkfStatus,
     ExtendedState,
     GlobalPosition,
@@ -39,6 +41,11 @@ from onboard.wire.mavlink.values import (
     Version,
     Wind,
 )
+
+_NO_HEIGHT = -1000.0  # [m] how Open Drone ID says that a height is unknown
+_ACCURACY_M = {5: 926.0, 6: 555.6, 7: 185.2, 8: 92.6, 9: 30.0, 10: 10.0, 11: 3.0, 12: 1.0}
+"""MAV_ODID_HOR_ACC: 95 % of the positions lie within so many metres."""
+_PLANE_95 = 2.45  # radius of 95 % of a normal distribution in a plane [sigma]
 
 
 def decode(message: MavMessage) -> Value | None:
@@ -240,6 +247,29 @@ def _adsb_vehicle(m: Any) -> AdsbVehicle | None:
     )
 
 
+def _drone_identity(m: Any) -> DroneIdentity | None:
+    name = _text(bytes(m.uas_id)).strip()
+    return DroneIdentity(bytes(m.id_or_mac), name) if name else None
+
+
+def _drone_location(m: Any) -> DroneLocation | None:
+    pressure = m.altitude_geodetic <= _NO_HEIGHT
+    altitude = m.altitude_barometric if pressure else m.altitude_geodetic
+    placed = m.latitude != 0 or m.longitude != 0  # 0°, 0° is how the standard says unknown
+    if not (placed and _on_earth(m.latitude, m.longitude) and isfinite(altitude) and altitude > _NO_HEIGHT):
+        return None
+    velocity = None
+    if m.direction < 36_000 and m.speed_horizontal < 25_500:
+        course, speed = radians(m.direction * 0.01), m.speed_horizontal * 0.01
+        climb = m.speed_vertical * 0.01 if abs(m.speed_vertical) < 6_300 else 0.0
+        velocity = Vec(speed * cos(course), speed * sin(course), -climb)
+    bound = _ACCURACY_M.get(m.horizontal_accuracy)
+    sigma = UNKNOWN if bound is None else bound / _PLANE_95
+    return DroneLocation(
+        bytes(m.id_or_mac), m.latitude * 1e-7, m.longitude * 1e-7, altitude, pressure, velocity, sigma
+    )
+
+
 def _radio_status(m: Any) -> RadioStatus:
     return RadioStatus(min(m.txbuf, 100) * 0.01, m.rssi, m.remrssi, m.rxerrors)
 
@@ -283,6 +313,8 @@ _READERS: dict[int, Callable[[Any], Value | None]] = {
     dialect.MAVLINK_MSG_ID_AUTOPILOT_VERSION: _version,
     dialect.MAVLINK_MSG_ID_TIMESYNC: _timesync,
     dialect.MAVLINK_MSG_ID_ADSB_VEHICLE: _adsb_vehicle,
+    dialect.MAVLINK_MSG_ID_OPEN_DRONE_ID_BASIC_ID: _drone_identity,
+    dialect.MAVLINK_MSG_ID_OPEN_DRONE_ID_LOCATION: _drone_location,
     dialect.MAVLINK_MSG_ID_RADIO_STATUS: _radio_status,
     dialect.MAVLINK_MSG_ID_RADIO: _radio_status,  # of older radios: the same fields
     dialect.MAVLINK_MSG_ID_MESSAGE_INTERVAL: _message_interval,

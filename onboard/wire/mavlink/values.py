@@ -179,6 +179,25 @@ class AdsbVehicle(NamedTuple):
     velocity_valid: bool
 
 
+class DroneIdentity(NamedTuple):
+    """OPEN_DRONE_ID_BASIC_ID."""
+
+    transmitter: bytes  # whose broadcast it is: the address of its radio
+    uas_id: str
+
+
+class DroneLocation(NamedTuple):
+    """OPEN_DRONE_ID_LOCATION."""
+
+    transmitter: bytes
+    latitude_deg: float
+    longitude_deg: float
+    altitude_m: float  # above the ellipsoid of WGS-84, or of the standard atmosphere: see `pressure`
+    pressure: bool
+    velocity: Vec | None  # [m/s; ground, NED]
+    accuracy_m: float  # horizontal, one sigma an axis; −1 = unknown
+
+
 class RcChannels(NamedTuple):
     """RC_CHANNELS."""
 
@@ -219,6 +238,8 @@ Value = (
     | Version
     | Timesync
     | AdsbVehicle
+    | DroneIdentity
+    | DroneLocation
     | RadioStatus
     | MessageInterval
     | RcChannels

@@ -1,0 +1,43 @@
+"""Commands of `gcs` for a field: tracks of opponents, take-off, signing keys."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Annotated
+
+import typer
+
+from gcs.options import Options, takes
+from onboard.config.strict import ConfigError
+
+MapOption = Annotated[
+    list[str] | None,
+    typer.Option("--map", metavar="NUMBER=ID", help="A target of the source is this vehicle; repeatable."),
+]
+
+
+@takes("config", "game", "bus", "zenoh")
+def tracks(
+    options: Options,
+    source: Annotated[str, typer.Argument(help="Link URL, sbs://HOST:PORT, http URL, or .csv, .json, .sbs.")],
+    map_: MapOption = None,
+    origin: Annotated[str, typer.Option("--origin", help="LAT,LON,ALT of the game frame [the game's].")] = "",
+    qnh: Annotated[
+        float | None, typer.Option("--qnh", help="Air pressure at sea level [hPa], for pressure altitudes.")
+    ] = None,
+    geoid: Annotated[
+        float | None, typer.Option("--geoid", help="Sea level above the ellipsoid [m], for GPS heights.")
+    ] = None,
+) -> int:
+    """Feed tracks of opponents into a game from MAVLink telemetry, ADS-B receivers or files."""
+    from gcs.tracks import program
+    from gcs.tracks.report import Corrections, mapping
+
+    for name, number, low, high in (("--qnh", qnh, 870.0, 1085.0), ("--geoid", geoid, -110.0, 90.0)):
+        if number is not None and not low <= number <= high:
+            raise ConfigError(f"{name}: found {number:g}, expected {low:g} to {high:g}")
+    if not map_:
+        raise ConfigError("--map: found none, expected NUMBER=ID, e.g. --map 4CA7B3=1")
+    ids, place = mapping(tuple(map_)), program.origin_of(origin)
+    wanted = program.Wanted(source, ids, place, Corrections(qnh, geoid))
+    return asyncio.run(program.run(options.settings(), wanted))
