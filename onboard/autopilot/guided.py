@@ -9,7 +9,7 @@ from typing import NamedTuple, Protocol
 from onboard.autopilot.base import Note, Pilot, ReleaseMode, Setpoint, Stage, Step, Telemetry
 from onboard.autopilot.mode_machine import ModeMachine, ModeStep
 from onboard.autopilot.pilot_hands import flown_by_hand, live
-from onboard.autopilot.release_modes import Release, chain
+from onboard.autopilot.release_modes import Release, chain, positioned
 from onboard.wire.mavlink import commands
 from onboard.wire.mavlink.commands import Outgoing, Target
 from onboard.wire.mavlink.ids import MessageId
@@ -88,6 +88,7 @@ class GuidedAdapter:
         self._machine = ModeMachine(to.system, traits.guided_mode, may_arm=may_arm)
         self._release = Release(traits.kind, parameters, to.system, traits.hold_mode)
         self._telemetry = Telemetry()  # of the last step
+        self._told = False  # to leave, since then
         self._notes: list[Note] = []
         self._fault = ""  # of the newest setpoint
 
@@ -122,6 +123,14 @@ class GuidedAdapter:
     def leave(self, now: float, mode: ReleaseMode) -> None:
         """End the setpoints; ask for a mode that the autopilot holds alone."""
         self._machine.leave(mode, chain(mode, now, self._telemetry, self._release))
+        self._told = True
+
+    def _see(self, now: float, telemetry: Telemetry) -> None:
+        """Take what is known now: where it is left to is chosen in its light, for a fix may just be lost."""
+        self._telemetry = telemetry
+        told, self._told = self._told, False
+        if self.stage is Stage.LEAVING and (told or not positioned(telemetry)):
+            self._machine.choose_among(chain(self._machine.leaving_by, now, telemetry, self._release))
 
     def end(self, now: float) -> None:
         """End the stream: the next setpoint begins a new one."""
@@ -141,7 +150,7 @@ class GuidedAdapter:
 
     def step(self, now: float, telemetry: Telemetry, setpoint: Setpoint | None) -> Step:
         """Return mode commands that are due, and the setpoint's messages where setpoints count."""
-        self._telemetry = telemetry
+        self._see(now, telemetry)
         asked = self._machine.step(now, telemetry, ready=self._encoder.ready(now))
         messages = [*self._mode_messages(asked), *self._arming(asked)]
         notes = [*asked.notes, *self._notes]

@@ -156,7 +156,7 @@ class MavsdkAdapter(GuidedAdapter):
     def step(self, now: float, telemetry: Telemetry, setpoint: Setpoint | None) -> Step:
         """Pass orders and setpoints on to the child; return the messages for arming alone."""
         notes = self._ended()  # before the mode is judged: it was the child that changed it
-        self._telemetry = telemetry
+        self._see(now, telemetry)
         asked = self._machine.step(now, telemetry)
         notes += asked.notes
         leaving = bool(asked.mode) and self.stage is Stage.LEAVING

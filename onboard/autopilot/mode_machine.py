@@ -79,11 +79,14 @@ class ModeMachine:
         self._left_in = ""  # LEFT: the mode that was confirmed
         self._mode_heard = ""
         self._silent_at = self._stepped_at = NEVER
+        self._entered_at = NEVER  # ENTERING: since when
         self._reboots = 0
         self._taken_at = NEVER
 
     def enter(self) -> None:
         """Ask for the guided mode; nothing to do where the vehicle is in it already."""
+        if self.stage is not Stage.ENTERING:
+            self._entered_at = self._stepped_at
         self._happened(ModeEvent.ENTER, "")
 
     def leave(self, mode: ReleaseMode, chain: Sequence[str]) -> None:
@@ -93,6 +96,12 @@ class ModeMachine:
         if not again:
             self._chain, self._link = tuple(chain), 0
         self._happened(ModeEvent.LEAVE_AGAIN if again else ModeEvent.LEAVE, "")
+
+    def choose_among(self, chain: Sequence[str]) -> None:
+        """Leave into another chain of modes than the one at hand: more is known now."""
+        if self.stage is Stage.LEAVING and tuple(chain) != self._chain:
+            self._chain, self._link = tuple(chain), 0
+            self._ask()
 
     def give_up(self) -> None:
         """Give up control: what flew by this machine's leave has ended."""
@@ -139,6 +148,8 @@ class ModeMachine:
             self._happened(event, telemetry.mode, now)
             if event is ModeEvent.RELEASED and self.stage is Stage.LEFT:
                 self._left_in = telemetry.mode
+        if self.stage is Stage.ENTERING and flown_by_hand(telemetry) and self.hands.at > self._entered_at:
+            self._happened(ModeEvent.OTHER, telemetry.mode, now)  # a pilot's hand is on it
         mode, prove = "", False
         silent = now - max(telemetry.heartbeat_at, telemetry.position_at) > UNANSWERED
         if silent:  # without a link there is no time to answer in
@@ -265,7 +276,7 @@ class ModeMachine:
     def _happened(self, event: ModeEvent, mode: str, now: float = NEVER) -> None:
         """Run the table's row; `mode` is the one reported, `now` the instant where the event has one."""
         step = transition(self.stage, event)
-        was = self._wanted
+        was = self._left_in if self.stage is Stage.LEFT else self._wanted
         self.stage = step.to
         for action in step.actions:
             self._do(action, mode, was, now)

@@ -69,6 +69,11 @@ class PilotHands:
             else:
                 self.switch_at = at
 
+    @property
+    def at(self) -> float:
+        """When a stick or a switch was last seen to have moved."""
+        return max(self.stick_at, self.switch_at)
+
     def turned(self, now: float, changed_at: float) -> bool:
         """Whether a switch was turned about when the mode changed."""
         return self.switch_at != NEVER and abs(self.switch_at - changed_at) <= TURNED_S and now >= changed_at

@@ -1,9 +1,9 @@
 """Every way in which a flight of the agent ends: the vehicle then holds, returns or lands, as its row says.
 
 The rows are what is demanded of a real vehicle, not what the code has: docs/safety.md prints them. Each is
-flown on the simulated autopilot, on virtual time: within 3 s of the ending (6 s where the autopilot's own
-failsafe acts) the vehicle is in the row's mode, and for the ten seconds after that it holds, comes home or
-lands. Before and after, it sinks in no other mode than LAND, RTL or the autopilot's own descent.
+flown on the simulated autopilot, on virtual time: within 9 s of the ending (the slowest failsafe acts after
+5 s, and PX4 brakes before it lands) the vehicle is in the row's mode, and for the ten seconds after that it
+holds, comes home or lands. Before and after, it sinks in no other mode than LAND and RTL.
 """
 
 from __future__ import annotations
@@ -20,7 +20,9 @@ from onboard.agent.preflight import Ears, Sight
 from onboard.game.scenario import Kind, SimulatedSpec, Transmitter
 from onboard.pilot.predictor_choice import Predicting
 from onboard.wire.bus.messages import CommandKind
+from sim_bridge.vehicle.autopilot.command import Command
 from sim_bridge.vehicle.autopilot.health import Fault
+from tests.support.paths import ROOT
 from tests.support.small_scenarios import PURSUER, chase
 from tests.support.virtual_time import virtual
 from tests.support.whole_games import (
@@ -31,6 +33,7 @@ from tests.support.whole_games import (
     mode,
     order,
     place,
+    speed,
     under_way,
 )
 
@@ -41,6 +44,7 @@ COPTER, PLANE, PX4 = Kind.ARDUCOPTER, Kind.ARDUPLANE, Kind.PX4
 WITHOUT = (LOW, NONE)
 ALL = (STICK, LOW, NONE)
 SINKS_IN = frozenset(("LAND", "RTL"))
+HEARTBEAT, DO_SET_MODE = 0, 176
 HELD, RETURNING, LANDING = "held", "returning", "landing"
 # Parameters of a vehicle that was set up as `onboard-agent check` demands.
 SET_UP = {
@@ -86,7 +90,9 @@ TABLE = [
       for kind, left, what in ((COPTER, "RTL", RETURNING), (PLANE, "RTL", RETURNING), (PX4, "HOLD", HELD))),
     *(Row("check ends", kind, sticks, left, HELD)  # it was never flown by us: nothing changes
       for kind, sticks, left in ((COPTER, (STICK,), "LOITER"), (COPTER, WITHOUT, "BRAKE"),
-                                 (PLANE, ALL, "LOITER"), (PX4, ALL, "HOLD"))),
+                                 (PX4, ALL, "HOLD"))),
+    # ArduPlane's GCS failsafe counts from boot, heard or not: here it is off.
+    Row("check ends", PLANE, ALL, "LOITER", HELD, (("FS_GCS_ENABL", 0.0),)),
     # The agent lives, and cannot go on.
     *(Row("lost bus", kind, ALL, left, HELD)
       for kind, left in ((COPTER, "GUIDED"), (PLANE, "LOITER"), (PX4, "OFFBOARD"))),
@@ -96,12 +102,32 @@ TABLE = [
     # Without position: the autopilot's own failsafe, and no mode that needs position.
     *(Row(ending, kind, ALL, left, what)
       for ending in ("GPS", "EKF", "hold without GPS", "ctrl-C without GPS")
-      for kind, left, what in ((COPTER, "LAND", LANDING), (PLANE, "CIRCLE", HELD), (PX4, "LAND", LANDING))),
+      for kind, left, what in ((COPTER, "LAND", LANDING), (PLANE, "CIRCLE", HELD), (PX4, "LAND", LANDING))
+      if (ending, kind) != ("ctrl-C without GPS", PLANE)),
+    # … out of which ArduPlane's GCS failsafe flies home by what it reckons.
+    Row("ctrl-C without GPS", PLANE, ALL, "RTL", RETURNING),
 ]  # fmt: skip
+BEGIN, END = "<!-- begin: endings -->", "<!-- end: endings -->"
 NEEDS_NO_POSITION = frozenset(("LAND", "CIRCLE"))
 EVERYWHERE = {  # what the suite flies each time; all else is `long`
     ("abort", COPTER, NONE), ("ctrl-C, SIGTERM", COPTER, LOW), ("crash", PLANE, NONE), ("GPS", PX4, NONE),
 }  # fmt: skip
+
+
+def printed() -> str:
+    """The table as docs/safety.md has it."""
+    columns = ((COPTER, STICK), (COPTER, NONE), (PLANE, NONE), (PX4, NONE))
+    left = {
+        (row.ending, row.kind, sticks): row.mode if row.what == HELD or row.mode == "LAND" else "RTL"
+        for row in TABLE
+        for sticks in row.sticks
+    }
+    lines = ["| the flight ends by | ArduCopter, stick centred | ArduCopter without | ArduPlane | PX4 |",
+             "|---|---|---|---|---|"]  # fmt: skip
+    for ending in dict.fromkeys(row.ending for row in TABLE):
+        cells = [left.get((ending, *column), "") for column in columns]
+        lines.append(f"| {ending} | {' | '.join(cells)} |")
+    return "\n".join(lines)
 
 
 async def _killed(game: WholeGame) -> None:
@@ -121,10 +147,17 @@ async def _crashed(game: WholeGame) -> None:
 
 async def _checked(game: WholeGame) -> None:
     """A preflight check listens for five seconds, asks what it asks, and ends."""
+    own, heard = autopilot(game, PURSUER), set[int]()
+    receive = own.receive
+    own.receive = lambda now, data, peer: (  # type: ignore[method-assign]
+        heard.add(int.from_bytes(data[7:10], "little")) or receive(now, data, peer)  # type: ignore[func-returns-value]
+    )
     bus = game.broker.connect("check")
     ears = Ears(AgentConfig(id=PURSUER), [game.links[PURSUER]], bus, None, game.clock)
     seen = await ears.listen(Sight(bytecode=True, free_bytes=1e9), 5.0)
     assert seen.kind
+    assert heard
+    assert HEARTBEAT not in heard
     game.links[PURSUER].receive(lambda data, peer: None)
 
 
@@ -217,18 +250,35 @@ async def flown(row: Row, sticks: Transmitter) -> None:
         else:
             await under_way(game, 3.0)
         sinking = Sinking(game)
-        asked: list[str] = []
-        own = autopilot(game, PURSUER)
-        request = own.request_mode
-        names = {number: name for name, number in own.modes.items()}
-        own.request_mode = lambda now, wanted: (  # type: ignore[method-assign]
-            asked.append(names[wanted]) or request(now, wanted)  # type: ignore[func-returns-value]
-        )
+        asked = _modes_asked(game)
         await ENDINGS[row.ending](game)
-        await game.forward(9.0, until=lambda: sinking.look() or mode(game, PURSUER) == row.mode)
+        within = 60.0 if row.ending == "lost bus" else 9.0  # until what was last known is known no more
+        await game.forward(within, until=lambda: sinking.look() or _there(game, row))
         await _then(game, row, sinking)
         if "GPS" in row.ending or row.ending == "EKF":
             assert set(asked) <= NEEDS_NO_POSITION, asked
+
+
+def _modes_asked(game: WholeGame) -> list[str]:
+    """A list that from now on receives each mode that anybody orders by DO_SET_MODE."""
+    own, asked = autopilot(game, PURSUER), list[str]()
+    obey = own.commands[DO_SET_MODE]
+    names = {number: name for name, number in own.modes.items()}
+    px4 = "OFFBOARD" in own.modes
+
+    def obeyed(now_ns: int, order: Command) -> int:
+        number = int(order.p2) << 16 | int(order.p3) << 24 if px4 else int(order.p2)
+        asked.append(names[number])
+        return obey(now_ns, order)
+
+    own.commands[DO_SET_MODE] = obeyed
+    return asked
+
+
+def _there(game: WholeGame, row: Row) -> bool:
+    """Whether the row's mode is entered; one that was flown in, too, counts once it does not move."""
+    still = row.mode not in ("GUIDED", "OFFBOARD") or speed(game, PURSUER) < 0.5
+    return mode(game, PURSUER) == row.mode and still
 
 
 async def _then(game: WholeGame, row: Row, sinking: Sinking) -> None:
@@ -277,6 +327,11 @@ def cases() -> list[object]:
 @virtual
 async def test_the_vehicle_is_left_as_its_row_says(row: Row, sticks: Transmitter) -> None:
     await flown(row, sticks)
+
+
+def test_the_handbook_prints_the_table() -> None:
+    page = (ROOT / "docs" / "safety.md").read_text(encoding="utf-8")
+    assert f"{BEGIN}\n{printed()}\n{END}" in page, printed()
 
 
 def test_every_ending_is_in_the_table_for_every_kind_with_every_state_of_the_sticks() -> None:

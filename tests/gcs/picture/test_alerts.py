@@ -72,6 +72,8 @@ def test_an_agent_whose_autopilot_fell_silent_is_not_lost():
         ({"clock_offset_s": -0.3}, "clock:2", Severity.ERROR),
         ({"heartbeat_age_s": 2.5}, "autopilot_silent:2", Severity.ERROR),
         ({"stage": AgentStage.HANDED_OVER}, "handed_over:2", Severity.WARNING),
+        ({"stage": AgentStage.HANDED_OVER, "failsafe": True}, "handed_over:2", Severity.WARNING),
+        ({"hold_lost": "LOITER does not hold"}, "hold_lost:2", Severity.ERROR),
         ({"ekf_ok": False}, "estimate:2", Severity.ERROR),
         ({"gps_fix": 1}, "estimate:2", Severity.ERROR),
         ({"version": "0.0.9"}, "version:2", Severity.WARNING),
@@ -87,6 +89,18 @@ def test_what_health_tells_is_raised_and_cleared(changes, name, severity):
     tower.fly(3.0, 2)
     assert tower.alerts() == set()
     assert [a.name for a in tower.picture.past_alerts] == [name]
+
+
+def test_a_lost_hold_stands_until_somebody_moves_the_vehicle():
+    tower = Tower()
+    tower.fly(2.0, 2)
+    tower.fly(60.0, 2, hold_lost="LOITER does not hold: 31.0 m above home, climbing -2.5 m/s")
+    tower.note(station_journal.ACKNOWLEDGED, station_journal.Acknowledged("hold_lost:2", "anna"))
+    tower.fly(60.0, 2, hold_lost="LOITER does not hold: 31.0 m above home, climbing -2.5 m/s")
+    (alert,) = tower.picture.alerts
+    assert (alert.name, alert.acknowledged) == ("hold_lost:2", True)
+    assert "31.0 m above home" in alert.text
+    assert "return 2" in alert.advice
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,17 @@ from onboard.game.scenario import Kind, SimulatedSpec, Transmitter
 from onboard.wire.bus.messages import CommandKind, CommandState
 from tests.support.small_scenarios import PURSUER, chase
 from tests.support.virtual_time import virtual
-from tests.support.whole_games import WholeGame, autopilot, command, game_of, mode, order, place, under_way
+from tests.support.whole_games import (
+    WholeGame,
+    autopilot,
+    choose_mode,
+    command,
+    game_of,
+    mode,
+    order,
+    place,
+    under_way,
+)
 
 STICK, LOW, NONE = Transmitter.CENTRED, Transmitter.LOW, Transmitter.NONE
 
@@ -79,9 +89,13 @@ async def test_a_hold_is_told_when_it_is_one_and_its_loss_is_an_alert() -> None:
         await order(game, PURSUER, command(CommandKind.HOLD))
         await game.forward(10.0, until=lambda: "held" in game.kinds(PURSUER))
         assert mode(game, PURSUER) == "LOITER"
-        game.expects(PURSUER, "hold_lost")
+        game.expects(PURSUER, "hold_lost", "supervisor_end")
         autopilot(game, PURSUER).set_throttle(game.bridge.world.elapsed_ns, 0.0)  # the stick falls
         await game.forward(6.0, until=lambda: "hold_lost" in game.kinds(PURSUER))
         told = game.kinds(PURSUER).count("hold_lost")
         await game.forward(5.0)
         assert game.kinds(PURSUER).count("hold_lost") == told  # once
+        assert "LOITER does not hold" in game.health[PURSUER].hold_lost  # … and it stands
+        choose_mode(game, PURSUER, "ALT_HOLD")
+        await game.forward(2.0)
+        assert game.health[PURSUER].hold_lost == ""

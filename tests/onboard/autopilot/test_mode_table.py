@@ -254,6 +254,22 @@ def test_what_an_old_request_does_against_a_pilot_is_not_flown() -> None:
     assert flight.kinds[-1] == "late_answer"
 
 
+def test_a_pilot_who_moves_a_stick_while_the_agent_asks_keeps_the_vehicle() -> None:
+    """He is in LOITER already, and chooses nothing: only his stick says that he flies."""
+    machine = ModeMachine(1, "GUIDED")
+    beat = Telemetry(
+        kind=Kind.ARDUCOPTER, mode="LOITER", heartbeat_at=100.0, armed=True, channels=(1500,) * 5,
+        channels_at=100.0,
+    )  # fmt: skip
+    machine.step(100.0, beat)
+    machine.enter()
+    assert machine.step(100.1, beat._replace(position_at=100.1)).mode == "GUIDED"
+    moved = beat._replace(channels=(1500, 1600, 1500, 1500, 1500), channels_at=100.2, position_at=100.2)
+    asked = [machine.step(100.2 + 0.1 * k, moved._replace(position_at=100.2 + 0.1 * k)) for k in range(30)]
+    assert machine.stage is Stage.TAKEN
+    assert not [step.mode for step in asked if step.mode]
+
+
 def test_one_request_at_a_time_is_on_its_way() -> None:
     """Once the round trip is known, a mode is asked for again only when that time has passed."""
     machine = ModeMachine(1, "GUIDED")
