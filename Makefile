@@ -9,7 +9,7 @@ export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
-.PHONY: help install demo test check check-long bench figures bench-predictor check-aarch64 golden fuzz soak mutants mavproxy clean lock
+.PHONY: help install demo test check check-long check-pythons bench figures bench-predictor check-aarch64 golden fuzz soak mutants mavproxy clean lock
 
 help:
 	@echo "make install   the environment only"
@@ -17,6 +17,7 @@ help:
 	@echo "make test      set everything up and pass the tests"
 	@echo "make check     ruff, mypy strict, import contracts, closed locks"
 	@echo "make check-long   the long tests, and every property with five times other examples"
+	@echo "make check-pythons   a share of the tests on the later Pythons that this machine has"
 	@echo "make bench     benchmarks; results go to benchmarks/results/"
 	@echo "make figures   the committed tables of games, routes and predictors again, in one sweep"
 	@echo "make bench-predictor   the comparison with LSTM and GRU"
@@ -59,6 +60,9 @@ check-long: install
 	for seed in 1 2 3 4 5; do \
 	  HYPOTHESIS_PROFILE=long $(BIN)/python -m pytest -m hypothesis -n 2 --dist worksteal --timeout 1200 \
 	    --hypothesis-seed $$seed || exit 1; done
+
+check-pythons: install
+	@$(BIN)/python -m tests.install.pythons
 
 bench: install
 	$(BIN)/python -m pytest tests/benchmarks -n 0 --timeout 1800 -o python_files="test_*.py bench_*.py" --benchmark-json benchmarks/results/latest.json
@@ -123,4 +127,4 @@ lock:
 	uv run --no-project --with packaging python locks/closed.py --write
 
 clean:
-	rm -rf $(VENV) build dist figures runs .golden
+	rm -rf $(VENV) .venv-3.* build dist figures runs .golden

@@ -112,7 +112,7 @@ def commands(folder: Path) -> list[Command]:
         (("sim_bridge.cli", "design"), "", False),
         (("sim_bridge.cli", "design", "ARGUMENT"), "ARGUMENT", False),
         (("sim_bridge.cli", "predict", str(track)), str(track), False),
-        (("sim_bridge.campaign", "encircled", "--games", "2", "--out", str(folder)), "", False),
+        (("sim_bridge.campaign", "encircled", "--games", "0"), "", False),
         (("sim_bridge.campaign", "games", "--seeds", "1", "--scenario", "ARGUMENT"), "ARGUMENT", False),
         (("gcs.cli", *bus), "", False),
         (("gcs.cli", "--plain", *bus, *runs), "", True),
