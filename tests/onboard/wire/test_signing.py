@@ -62,6 +62,8 @@ def test_what_is_stored_is_above_all_that_was_heard_and_ahead_by_the_reserve() -
     for k in (0, 1, 3, 7, 1000, 99_999):  # ticks: bits that carry, and bits that do not
         assert judged(hearing, NOW + 10_000 * k) is SignatureCheck.GOOD
         kept = store.stamps.streams[(3, 1, 191)]
+        if k == 0:
+            assert kept == ticks(NOW) + RESERVE
         assert kept > ticks(NOW) + k
         assert kept <= ticks(NOW) + k + RESERVE
 
