@@ -25,6 +25,7 @@ from onboard.game.scenario import Scenario
 from onboard.runtime.bus_security import Lock
 from onboard.runtime.clock import RealClock
 from onboard.runtime.progress import Progress
+from onboard.runtime.spoken_lines import SpokenLines
 from onboard.wire.bus.messages import Role
 
 if TYPE_CHECKING:
@@ -75,12 +76,12 @@ async def print_lines(session: Session, over: Callable[[], bool] = lambda: False
     loop = asyncio.get_running_loop()
     for number in (signal.SIGINT, signal.SIGTERM):
         loop.add_signal_handler(number, stop.set)
-    lines = PlainLines()
-    print(session.status(), flush=True)
+    lines, out = PlainLines(), SpokenLines()
     try:
+        out.say(session.status())
         while not stop.is_set():
             for line in lines.lines(session.picture()):
-                print(line, flush=True)
+                out.say(line)
             if over():
                 break
             with suppress(TimeoutError):
@@ -89,6 +90,7 @@ async def print_lines(session: Session, over: Callable[[], bool] = lambda: False
     finally:
         for number in (signal.SIGINT, signal.SIGTERM):
             loop.remove_signal_handler(number)
+        out.close()
     return 0
 
 

@@ -112,7 +112,7 @@ def serve(
         game=game, bus=bus, listen=listen, zenoh=zenoh, referee=referee, once=once, seed=seed, ports=ports
     )
     path = shipped_file(scenario, SCENARIOS)
-    run_server(path, chosen, lambda line: print(printable(line), flush=True))
+    run_server(path, chosen)
 
 
 @app.command(epilog="Examples: sim-bridge fly demo | sim-bridge fly --fast --seed 3 my.toml --runs /tmp/runs")

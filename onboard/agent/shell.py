@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
-import os
 import sys
 from collections import OrderedDict, deque
 from collections.abc import Callable, Hashable, Sequence
@@ -12,6 +10,7 @@ from functools import partial
 from math import inf
 from typing import Any, NamedTuple
 
+from onboard.agent.adapter_child import AdapterChild
 from onboard.agent.config import AgentConfig
 from onboard.agent.core.events import (
     ANY_PEER,
@@ -21,9 +20,7 @@ from onboard.agent.core.events import (
     BusMessage,
     BusState,
     ChildEnd,
-    ChildExited,
     ChildLine,
-    ChildSaid,
     ChildStart,
     Count,
     Counted,
@@ -52,7 +49,6 @@ from onboard.agent.event_file import EventFile
 from onboard.agent.strategy_child import ApartThinker
 from onboard.agent.thinker import Thinker
 from onboard.agent.timing import Timing
-from onboard.autopilot.mavsdk import Child
 from onboard.config.printable import printable
 from onboard.core.math.constants import NS_PER_S
 from onboard.game.route_file import Route
@@ -150,8 +146,7 @@ class Agent:
             equipment.events.begin(config, facts)
         self._ports = [_Port(link) for link in links]
         self._link_limit = RateLimit()
-        self._child: Child | None = None
-        self._child_rest = b""
+        self._child = AdapterChild(self.feed)
         self._subscriptions: dict[str, Subscription] = {}
         self._held: list[Subscription] = []
         self._replies: dict[int, bytes] = {}
@@ -175,9 +170,9 @@ class Agent:
             Unsubscribe: lambda effect: self._subscriptions.pop(effect.key).close(),
             Serve: lambda effect: self._held.append(self.bus.serve(effect.key, self._request)),
             Announce: lambda effect: self._held.append(self.bus.announce(effect.key)),
-            ChildStart: self._start_child,
-            ChildLine: self._write_child,
-            ChildEnd: lambda effect: self._close_child(),
+            ChildStart: lambda effect: self._child.start(*effect.arguments),
+            ChildLine: lambda effect: self._child.write(effect.data),
+            ChildEnd: lambda effect: self._child.close(),
             Keep: self._keep,
             Beat: self._beat,
             Note: lambda effect: equipment.log(effect.line),
@@ -203,7 +198,7 @@ class Agent:
             self._ended = None
             if self._timer is not None:
                 self._timer.cancel()
-            self._close_child()
+            self._child.close()
             if self.apart is not None:
                 self.apart.close()
             for subscription in (*self._subscriptions.values(), *self._held):
@@ -345,39 +340,3 @@ class Agent:
             self._put(self.thinker.load(effect))
         else:
             self.apart.load(effect)
-
-    # ------------------------------------------------------------------ the adapter's child process
-
-    def _start_child(self, effect: ChildStart) -> None:
-        self._close_child()
-        self._child = Child(*effect.arguments)
-        self._child_rest = b""
-        asyncio.get_running_loop().add_reader(self._child.output, self._child_speaks)
-
-    def _write_child(self, effect: ChildLine) -> None:
-        if self._child is not None:
-            self._child.send(effect.data)
-
-    def _child_speaks(self) -> None:
-        child = self._child
-        if child is None:
-            return
-        try:
-            data = os.read(child.output, 65536)
-        except BlockingIOError:
-            return
-        except OSError:
-            data = b""
-        *lines, self._child_rest = (self._child_rest + data).split(b"\n")
-        for line in lines:
-            self.feed(ChildSaid(line))
-        if not data and self._child is child:
-            self._close_child()
-            self.feed(ChildExited())
-
-    def _close_child(self) -> None:
-        child, self._child = self._child, None
-        if child is not None:
-            with contextlib.suppress(ValueError, OSError):
-                asyncio.get_running_loop().remove_reader(child.output)
-            child.close()

@@ -23,6 +23,7 @@ from onboard.agent.thinker import Thinker, is_own
 from onboard.config.printable import printable
 from onboard.core.game.views import EvaderView
 from onboard.pilot.setup import Side
+from onboard.runtime.off_loop import off_loop
 from onboard.runtime.protocols import Clock
 
 ANSWER_S = 0.1  # for an answer
@@ -50,6 +51,7 @@ class StrategyChild:
         self._asked: tuple[int, int] | None = None  # number of the open question, when it was asked [ns]
         self._limit: asyncio.TimerHandle | None = None
         self._again: asyncio.TimerHandle | None = None
+        self._starting: asyncio.Task[None] | None = None
         self._why = ""  # why there is no child
         self._decoder = msgspec.msgpack.Decoder(Loaded | Answered)
         self._start()
@@ -88,23 +90,33 @@ class StrategyChild:
     def _start(self) -> None:
         self._again = None
         self.starts += 1
+        self._starting = asyncio.create_task(self._launch(), name="strategy's process")
+        self._set_limit(LOAD_S, f"does not load within {LOAD_S:g} s")
+
+    async def _launch(self) -> None:
+        """Start the process on a thread: a disk that hangs may hold it up."""
         command = [sys.executable, "-m", "onboard.agent.strategy_process",
                    self._wanted.side.value, self._wanted.strategy]  # fmt: skip
         pipe = subprocess.PIPE
-        try:
-            process = subprocess.Popen(
+
+        def start() -> subprocess.Popen[bytes]:
+            return subprocess.Popen(
                 command, stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL, bufsize=0, start_new_session=True
             )
+
+        try:
+            process = await off_loop(start, abandoned=_ended, then=_outlive)
         except OSError as error:
+            self._starting = None
             self._over(f"its process does not start: {(error.strerror or str(error)).lower()}")
             return
+        self._starting = None
         assert process.stdin is not None
         assert process.stdout is not None
         self._process, self._rest = process, b""
         for end in (process.stdin, process.stdout):
             os.set_blocking(end.fileno(), False)
         asyncio.get_running_loop().add_reader(process.stdout.fileno(), self._readable)
-        self._set_limit(LOAD_S, f"does not load within {LOAD_S:g} s")
 
     def _readable(self) -> None:
         process = self._process
@@ -184,18 +196,33 @@ class StrategyChild:
     def _end(self) -> None:
         self._set_limit(None, "")
         self._ready = False
+        if self._starting is not None:
+            self._starting.cancel()
+            self._starting = None
         process, self._process = self._process, None
         if process is None:
             return
-        with contextlib.suppress(OSError):
-            os.killpg(process.pid, signal.SIGKILL)  # before it is waited for: the number is still its own
-        for end in (process.stdin, process.stdout):
-            if end is not None:
-                with contextlib.suppress(ValueError, OSError):
-                    asyncio.get_running_loop().remove_reader(end.fileno())
-                end.close()
+        if process.stdout is not None:
+            with contextlib.suppress(ValueError, OSError):
+                asyncio.get_running_loop().remove_reader(process.stdout.fileno())
+        _ended(process)
         if process.poll() is None:
             asyncio.get_running_loop().call_later(1.0, process.poll)
+
+
+def _outlive(process: subprocess.Popen[bytes]) -> None:
+    """Wait for the end of a process, without reaping it: it is killed when the thread that began it ends."""
+    with contextlib.suppress(ChildProcessError):
+        os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOWAIT)
+
+
+def _ended(process: subprocess.Popen[bytes]) -> None:
+    """Kill a process and all that it has started, and close its pipes."""
+    with contextlib.suppress(OSError):
+        os.killpg(process.pid, signal.SIGKILL)  # before it is waited for: the number is still its own
+    for end in (process.stdin, process.stdout):
+        if end is not None:
+            end.close()
 
 
 class ApartThinker:

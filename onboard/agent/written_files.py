@@ -5,7 +5,6 @@ Lines to standard error have a thread of their own: a disk that hangs does not s
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 from onboard.agent.config import AgentConfig
@@ -14,9 +13,9 @@ from onboard.agent.opening import stamps_of
 from onboard.config.printable import printable
 from onboard.config.strict import ConfigError
 from onboard.runtime.file_writer import FileWriter, Sink, WrittenFile
+from onboard.runtime.spoken_lines import ERROR, LINES_BYTES, StandardStream
 from onboard.wire.mavlink.tlog import STAMP
 
-LINES_BYTES = 256 << 10  # lines that wait for a reader of standard error
 CLOSE_S = 0.5  # for what waits to reach the disk, when the agent ends
 
 
@@ -32,7 +31,7 @@ class WrittenFiles:
     ) -> None:  # fmt: skip
         self._disk = disk or FileWriter()
         self._line_writer = lines or FileWriter(queue_bytes=LINES_BYTES)
-        self._lines = self._line_writer.open(Path("standard error"), sink=errors or StandardError())
+        self._lines = self._line_writer.open(Path("standard error"), sink=errors or StandardStream(ERROR))
         self._log: WrittenFile | None = None
         if config.log:
             self._log = self._disk.open(Path(config.log), sink=_appending(Path(config.log)))
@@ -70,17 +69,6 @@ class WrittenFiles:
             self._log.close()
         written = self._disk.close(CLOSE_S)
         return self._line_writer.close(CLOSE_S) and written
-
-
-class StandardError:
-    """Standard error as a sink; never closed."""
-
-    def write(self, data: bytes, /) -> int:
-        """Write from the front of `data`."""
-        return os.write(2, data)
-
-    def close(self) -> None:
-        """Leave it open: others write there, too."""
 
 
 def _appending(path: Path) -> Sink:

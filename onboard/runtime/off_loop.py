@@ -11,10 +11,15 @@ from typing import TypeVar
 T = TypeVar("T")
 
 
-async def off_loop(call: Callable[[], T], abandoned: Callable[[T], None] | None = None) -> T:
+async def off_loop(
+    call: Callable[[], T],
+    abandoned: Callable[[T], None] | None = None,
+    then: Callable[[T], object] | None = None,
+) -> T:
     """The call's result, or what it raises. Who is cancelled leaves the call behind.
 
-    `abandoned` takes a result that comes after that, to release it.
+    `abandoned` takes a result that comes after that, to release it. `then` is what the thread does with a
+    result once it is passed on.
     """
     loop = asyncio.get_running_loop()
     future: asyncio.Future[T] = loop.create_future()
@@ -37,6 +42,8 @@ async def off_loop(call: Callable[[], T], abandoned: Callable[[T], None] | None 
             error = trouble
         with contextlib.suppress(RuntimeError):  # the loop has ended: nobody asks any more
             loop.call_soon_threadsafe(settle, result, error)
+        if error is None and then is not None:
+            then(result)  # type: ignore[arg-type]
 
     threading.Thread(target=run, name="off-loop", daemon=True).start()
     return await future

@@ -21,6 +21,7 @@ from onboard.runtime.clock import RealClock, SteadyClock
 from onboard.runtime.impairment import CLEAR, Impaired
 from onboard.runtime.links import open_udp
 from onboard.runtime.protocols import Link
+from onboard.runtime.spoken_lines import SpokenLines
 from onboard.runtime.tasks import Pace, periodic
 from onboard.wire.bus.messages import Outcome, Phase
 from onboard.wire.bus.topics import DEFAULT_GAME
@@ -50,12 +51,16 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
     ground_stations: bool = True  # send to 14550 too
 
 
-def serve(scenario: Path, options: Options, say: Callable[[str], None] = print) -> Outcome | None:
+def serve(scenario: Path, options: Options) -> Outcome | None:
     """Serve a scenario file until ctrl-C or SIGTERM (or the game's end); gives the outcome if there was one.
 
     Raises ConfigError: a wrong scenario, a port or a bus that cannot be.
     """
-    return asyncio.run(serve_scenario(load(scenario), options, say, scenario.parent))
+    lines = SpokenLines()
+    try:
+        return asyncio.run(serve_scenario(load(scenario), options, lines.say, scenario.parent))
+    finally:
+        lines.close()
 
 
 async def serve_scenario(

@@ -6,6 +6,7 @@ import asyncio
 import os
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Callable
 from math import inf
@@ -197,6 +198,39 @@ def test_one_that_was_ended_is_started_again_a_few_times_and_not_at_once(
     asyncio.run(story())
 
 
+def test_a_disk_that_holds_up_the_start_of_a_process_holds_up_nobody(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plugins.install(tmp_path)
+    paths = os.pathsep.join([str(tmp_path), *sys.path])
+    monkeypatch.setenv("PYTHONPATH", paths)
+    thaw, popen = threading.Event(), subprocess.Popen
+
+    def frozen(*words: object, **how: object) -> object:
+        assert thaw.wait(60.0)
+        return popen(*words, **how)  # type: ignore[call-overload]
+
+    async def story() -> None:
+        asker = Asker()
+        monkeypatch.setattr(strategy_child.subprocess, "Popen", frozen)
+        begun = time.monotonic()
+        asker.thinker.load(Load(Side.PURSUER, "good"))
+        answer = await asker.ask(1, "good")
+        assert time.monotonic() - begun < patience(0.2)
+        assert "being started" in answer.error
+        thaw.set()
+        while not asker.loaded:  # noqa: ASYNC110
+            await asyncio.sleep(0.01)
+        assert asker.loaded[0].error == ""
+        assert (await asker.ask(2, "good")).decision is not None
+        child = asker.pid("good")
+        await asyncio.sleep(1.0)  # the thread that began it still lives: nothing kills it
+        assert (asker.pid("good"), child is not None) == (child, True)
+        asker.thinker.close()
+
+    asyncio.run(story())
+
+
 def test_none_outlives_an_agent_that_is_killed(tmp_path: Path) -> None:
     plugins.install(tmp_path)
     code = (
@@ -204,6 +238,7 @@ def test_none_outlives_an_agent_that_is_killed(tmp_path: Path) -> None:
         "strategy_child.LOAD_S = 60.0\n"
         "async def begin():\n"
         "    asker = Asker(); asker.thinker.load(Load(Side.PURSUER, 'hangs_at_import'))\n"
+        "    while asker.pid('hangs_at_import') is None: await asyncio.sleep(0.01)\n"
         "    print(asker.pid('hangs_at_import'), flush=True); await asyncio.sleep(60)\n"
         "asyncio.run(begin())\n"
     )

@@ -160,8 +160,8 @@ def test_a_signal_ends_it_cleanly(number: signal.Signals, tmp_path: Path) -> Non
     scenario.write_text(TOML)
     program = (
         "import sys; from pathlib import Path; from sim_bridge.programs.serve import Options, serve\n"
-        f"serve(Path({str(scenario)!r}), Options(bus='tcp/127.0.0.1:{free_port()}', listen=True),"
-        " lambda line: print(line, flush=True))\nprint('ended')"
+        f"serve(Path({str(scenario)!r}), Options(bus='tcp/127.0.0.1:{free_port()}', listen=True))\n"
+        "print('ended')"
     )
     child = subprocess.Popen(
         [sys.executable, "-c", program], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
