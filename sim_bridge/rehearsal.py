@@ -36,6 +36,7 @@ from sim_bridge.world.truth import TRUTH, TruthLog
 GAME = "rehearsal"
 TOLD_MAX = 100_000
 LOOK_S = 0.05
+PLACES_S = 200.0  # within which everybody is at its place
 
 
 class BusRecorder:
@@ -166,7 +167,7 @@ class Rehearsal:
     async def until_ended(self, tell: Tell = silent) -> Outcome:
         """Let the game go to its end, telling how far it is; the master's patience bounds the wait."""
         flight, horizon = self.scenario.flight, self.scenario.parameters.horizon
-        bound = flight.timeout_s + 10.0 * flight.ready_s + horizon + 30.0
+        bound = flight.timeout_s + 10.0 * flight.ready_s + PLACES_S + horizon + 30.0
 
         def over() -> bool:
             now = max(self.now, 0.0)

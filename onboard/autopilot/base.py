@@ -75,6 +75,7 @@ class Setpoint(NamedTuple):
 
     velocity: Vec  # [m/s; relative to the air, NED]
     wind: Vec = ZERO  # [m/s; NED] added for motion over ground; 0 for those who hold groundspeed
+    yaw: float | None = None  # [rad] where a multicopter's nose is to point; None: as its encoder likes
 
 
 class Stage(Enum):

@@ -90,7 +90,9 @@ class VelocityEncoder:
         """Return the target for a setpoint without fault."""
         self._stream.sent(now)
         wanted = add(setpoint.velocity, setpoint.wind)
-        yaw = yaw_along(wanted, telemetry.yaw) if self._looks else None
+        yaw = setpoint.yaw
+        if yaw is None and self._looks:
+            yaw = yaw_along(wanted, telemetry.yaw)
         return VelocityTarget(self._to, telemetry.time_boot_s, wanted, yaw)
 
     def acknowledge(self, ack: CommandAck) -> list[Note]:

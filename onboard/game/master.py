@@ -46,6 +46,9 @@ LISTEN_NS = 12 * NS_PER_S // 10  # a master that holds the lease speaks twice in
 UNSEEN_NS = 10 * NS_PER_S  # a game whose evader nobody sees for so long cannot be judged
 HEALTH_NS = 3 * NS_PER_S  # an agent silent for longer is not there: six heartbeats lost in a row
 SUPERSEDED_NS = 15 * NS_PER_S // 10  # an agent's earlier process counts as gone after this silence
+PLACES_NS = 180 * NS_PER_S  # for which t₀ is put off at most, so that everybody is at its place
+PLACE_TOLD_NS = NS_PER_S  # after a t₀ is said, until reports reckon with it
+PLACE_LATE_S = 0.2  # nobody waits for who is late by less
 READY_STAGES = (AgentStage.READY, AgentStage.ACTING)  # of agents that can begin
 _RESULTS = {
     GameResult.CAPTURED: OutcomeResult.CAPTURED,
@@ -65,7 +68,7 @@ class Standing(Enum):
 class Timing(NamedTuple):
     """The master's patience."""
 
-    ready_s: float = 5.0  # from ready to t₀
+    ready_s: float = 5.0  # from ready to t₀ at least; longer where a vehicle needs longer to its place
     timeout_s: float = 60.0  # to get everybody ready; 0 = for ever
     recovery_s: float = 3.0  # from the end to recovery
     auto_start: bool = True  # otherwise ready comes only after `start()`
@@ -123,6 +126,7 @@ class GameMaster:
         self._began_ns = -1
         self._lease_ns = 0
         self._staged_ns = 0
+        self._ready_ns = self._t0_said_ns = 0  # when t₀ was said first, and last [ns, monotonic]
         self._ended_ns = 0
         self._started = timing.auto_start
         self._before: dict[int, Vec] = {}
@@ -267,7 +271,9 @@ class GameMaster:
         if not lacking and self._started:
             for agent in self._agents.values():
                 agent.acting_nonce = agent.health.nonce if agent.health else 0
-            self.t0_ns = wall_ns + round(self._timing.ready_s * NS_PER_S)
+            needed = max((a.health.place_s for a in self._agents.values() if a.health), default=0.0)
+            self.t0_ns = wall_ns + round(max(self._timing.ready_s, needed) * NS_PER_S)
+            self._ready_ns = self._t0_said_ns = now_ns
             self._follow(PhaseEvent.ALL_READY, wall_ns)
         elif lacking and patience_ns > 0 and now_ns - self._staged_ns > patience_ns:
             missing = "; ".join(f"vehicle {id}: {reason}" for id, reason in sorted(lacking.items()))
@@ -283,6 +289,23 @@ class GameMaster:
             self._follow(PhaseEvent.NOT_READY, wall_ns, f"vehicle {id}: {reason}")
         elif wall_ns >= self.t0_ns:
             self._follow(PhaseEvent.BEGINNING, wall_ns)
+        elif now_ns - self._t0_said_ns > PLACE_TOLD_NS:
+            self._await_places(wall_ns, now_ns)
+
+    def _await_places(self, wall_ns: int, now_ns: int) -> None:
+        """Put t₀ off where a vehicle cannot be at its place by then, for three minutes at most in all."""
+        heard = self._t0_said_ns + PLACE_TOLD_NS
+        late = {id: a.health.place_s for id, a in self._agents.items() if a.health and a.heard_ns > heard}
+        last = max(late, key=late.__getitem__, default=0)
+        if not late or late[last] < PLACE_LATE_S:
+            return
+        more_ns = round(late[last] * NS_PER_S)
+        if now_ns - self._ready_ns + (self.t0_ns - wall_ns) + more_ns > PLACES_NS:
+            self._say_once(("place", last), f"vehicle {last} will not be at its place by t₀: begun without")
+            return
+        self.t0_ns += more_ns
+        self._t0_said_ns = now_ns
+        self._publish_phase(wall_ns, f"vehicle {last} needs {late[last]:.0f} s more to its place")
 
     def _look_after(self, wall_ns: int, now_ns: int) -> None:
         """Agents that fell silent, came back, or were started again while the game runs."""

@@ -2,9 +2,36 @@
 
 from __future__ import annotations
 
-from onboard.core.math.vectors import Vec
+from math import radians
+
+from onboard.core.math.vectors import NORTH, Vec, direction, sub, unit, yaw_of
 from onboard.game.scenario import Scenario, VehicleSpec, vec
 from onboard.wire.bus.messages import Fence, LimitsMessage, Member, Origin, Role, RulesMessage, Setup
+
+
+def places_of(scenario: Scenario) -> tuple[Vec, ...]:
+    """Where all vehicles start [m; NED], the evader first."""
+    return tuple(spec.start() for spec in scenario.vehicles)
+
+
+def heading_of(spec: VehicleSpec, place: Vec, towards: Vec) -> Vec:
+    """Heading at the start (unit): as declared, else level from `place` towards a point, else north."""
+    if spec.heading_deg is not None:
+        return direction(0.0, radians(spec.heading_deg))
+    line = sub(towards, place)
+    return unit(Vec(line.x, line.y, 0.0), NORTH)
+
+
+def start_headings(scenario: Scenario, places: tuple[Vec, ...] | None = None) -> tuple[Vec, ...]:
+    """Headings of all vehicles at the start: the evader towards its target, the pursuers towards it.
+
+    `places` are where they start where that is not the scenario's [m; NED].
+    """
+    e, *others = places_of(scenario) if places is None else places
+    target = scenario.evader.target
+    goal = e if target is None else vec(target)
+    pursuers = zip(scenario.pursuers, others, strict=True)
+    return (heading_of(scenario.evader, e, goal), *(heading_of(spec, p, e) for spec, p in pursuers))
 
 
 def flown(scenario: Scenario, point: Vec) -> Vec:
@@ -28,7 +55,8 @@ def setup_of(scenario: Scenario, game: str, master: str) -> Setup:
     """`game/setup`: everything but the evader's target."""
     flight = scenario.flight
     roster = []
-    for index, (id, spec) in enumerate(zip(scenario.ids, scenario.vehicles, strict=True)):
+    everybody = zip(scenario.ids, scenario.vehicles, start_headings(scenario), strict=True)
+    for index, (id, spec, heading) in enumerate(everybody):
         place = staging_place(scenario, spec)
         roster.append(
             Member(
@@ -39,6 +67,7 @@ def setup_of(scenario: Scenario, game: str, master: str) -> Setup:
                 limits=LimitsMessage(*spec.limits()),
                 strategy=spec.strategy,
                 tracked=spec.tracked,
+                heading=yaw_of(heading),
             )
         )
     fence = flight.fence

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from onboard.core.game.referee import GameResult
 from onboard.core.math.vectors import Vec, add, yaw_of
 from onboard.game.scenario import Scenario, load
+from onboard.game.staging import places_of, start_headings
 from onboard.runtime.progress import Tell, over, part, silent
 from onboard.runtime.resources import configs
 from onboard.runtime.run_folder import made
@@ -26,7 +27,7 @@ from sim_bridge.campaign.compiled import KERNELS as CORE
 from sim_bridge.campaign.compiled import register
 from sim_bridge.campaign.plane_in_wind import GUST_EVERY, Flown, climate_of, launched, wind_at
 from sim_bridge.campaign.spatial_game import Band, Evasion, Fleet, Noise, Sensor, SpatialPlay, Start, play
-from sim_bridge.plane_game.setup import conditions_of, game_of, places_of, start_headings
+from sim_bridge.plane_game.setup import conditions_of, game_of
 from sim_bridge.vehicle.flight import KERNELS as FLIGHT
 from sim_bridge.vehicle.flight.aircraft import named, within
 from sim_bridge.vehicle.flight.plane import Command, Steer, start_state, trimmed

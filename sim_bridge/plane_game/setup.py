@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from math import radians
-
 from onboard.core.game.advance import Conditions, Game, begin
 from onboard.core.game.rules import NO_TARGET, Control, Target
 from onboard.core.math.states import Vehicle
-from onboard.core.math.vectors import NORTH, Vec, direction, scale, sub, unit
-from onboard.game.scenario import Scenario, VehicleSpec, vec
+from onboard.core.math.vectors import Vec, scale
+from onboard.game.scenario import Scenario, vec
+from onboard.game.staging import places_of, start_headings
 
 
 def conditions_of(scenario: Scenario, dt: float | None = None) -> Conditions:
@@ -19,31 +18,6 @@ def conditions_of(scenario: Scenario, dt: float | None = None) -> Conditions:
         NO_TARGET if target is None else Target(True, vec(target)),
         Control(scenario.parameters.dt if dt is None else dt),
     )
-
-
-def places_of(scenario: Scenario) -> tuple[Vec, ...]:
-    """Where all vehicles start [m; NED], the evader first."""
-    return tuple(spec.start() for spec in scenario.vehicles)
-
-
-def heading_of(spec: VehicleSpec, place: Vec, towards: Vec) -> Vec:
-    """Heading at the start (unit): as declared, else level from `place` towards a point, else north."""
-    if spec.heading_deg is not None:
-        return direction(0.0, radians(spec.heading_deg))
-    line = sub(towards, place)
-    return unit(Vec(line.x, line.y, 0.0), NORTH)
-
-
-def start_headings(scenario: Scenario, places: tuple[Vec, ...] | None = None) -> tuple[Vec, ...]:
-    """Headings of all vehicles at the start: the evader towards its target, the pursuers towards it.
-
-    `places` are where they start where that is not the scenario's [m; NED].
-    """
-    e, *others = places_of(scenario) if places is None else places
-    target = scenario.evader.target
-    goal = e if target is None else vec(target)
-    pursuers = zip(scenario.pursuers, others, strict=True)
-    return (heading_of(scenario.evader, e, goal), *(heading_of(spec, p, e) for spec, p in pursuers))
 
 
 def vehicles_of(scenario: Scenario, places: tuple[Vec, ...] | None = None) -> tuple[Vehicle, ...]:

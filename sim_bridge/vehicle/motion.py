@@ -29,6 +29,7 @@ class Demand(NamedTuple):
     angle: float  # [rad]
     climb: float  # [m/s; up]
     airspeed: float  # [m/s]
+    facing: float | None = None  # [rad] where the nose is to point, VELOCITY only; None: along the path
 
 
 class Motion(NamedTuple):

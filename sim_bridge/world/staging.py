@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import degrees, inf
 from pathlib import Path
 from zlib import crc32
 
 import numpy as np
 from msgspec import convert
+from msgspec.structs import replace
 from numpy.random import Generator, SeedSequence
 
 from onboard.core.math.vectors import yaw_of
 from onboard.game.scenario import AirframeKind, Kind, Scenario, VehicleSpec
-from onboard.game.staging import staging_place
+from onboard.game.staging import staging_place, start_headings
 from onboard.runtime.impairment import Impairment
 from onboard.wire.geodesy import Frame
-from sim_bridge.plane_game.setup import start_headings
 from sim_bridge.vehicle.flight.kinematic import kinematic, start_motion
 from sim_bridge.vehicle.motion import CALM, Air, Airframe, Motion
 from sim_bridge.vehicle.wind.field import WindField
@@ -72,6 +73,12 @@ def starts(scenario: Scenario, wind: Wind) -> dict[int, Motion]:
         still = start_motion(place, yaw, kind, spec.speed, CALM, airborne)
         motions[id] = start_motion(place, yaw, kind, spec.speed, wind(id, still, 0.0), airborne)
     return motions
+
+
+def holding(spec: VehicleSpec, airframe: Airframe) -> VehicleSpec:
+    """A vehicle as its autopilot is set up: with no more than the turn that its airframe can hold."""
+    rate = degrees(getattr(airframe, "turn_rate", inf))
+    return spec if rate >= spec.turn_rate_deg else replace(spec, turn_rate_deg=rate)
 
 
 def airframe_of(scenario: Scenario, spec: VehicleSpec, start: Motion, air: Air) -> Airframe:

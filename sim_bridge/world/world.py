@@ -15,7 +15,7 @@ from onboard.runtime.protocols import Clock, Link
 from sim_bridge.vehicle.autopilot.autopilot import Autopilot
 from sim_bridge.vehicle.autopilot.make import autopilot_for, options_of, parameter_names
 from sim_bridge.vehicle.motion import CALM, Airframe, Motion
-from sim_bridge.world.staging import Wind, airframe_of, calm, frame_of, generator, kind_of, starts
+from sim_bridge.world.staging import Wind, airframe_of, calm, frame_of, generator, holding, kind_of, starts
 
 RATE_HZ = 100.0
 BEHIND_MAX = 50  # physics steps made up for in one call; beyond them time is lost, and counted
@@ -70,8 +70,8 @@ class World:
             options = options_of(scenario, generator(seed, f"answers-{id}"), asked[kind])._replace(
                 epoch_ns=self._epoch_ns, battery_s=battery_s
             )
-            autopilot = autopilot_for(spec, kind, id, frame, start, options)
             airframe = airframe_of(scenario, spec, start, air)
+            autopilot = autopilot_for(holding(spec, airframe), kind, id, frame, start, options)
             self.vehicles[id] = vehicle = SimVehicle(id, spec, autopilot, airframe, links.get(id, ()))
             vehicle.air = air
             for number, link in enumerate(vehicle.links):

@@ -7,13 +7,23 @@ from pathlib import Path
 import pytest
 
 from onboard.game.scenario import ImpairmentSpec, Kind, SensorSpec
-from onboard.wire.bus.messages import OutcomeResult, Phase
+from onboard.wire.bus.messages import OutcomeResult
 from onboard.wire.bus.topics import EVADER_BRIEF, OUTCOME, TOPICS, Party
 from onboard.wire.mavlink.tlog import read_tlog
 from tests.support.flown_autopilot import FLOWN
 from tests.support.small_scenarios import EVADER, GUIDED, HOLD, MATE, PURSUER, duel
 from tests.support.virtual_time import virtual
-from tests.support.whole_games import STORY, HeardOfGame, WholeGame, game_of, mode, phases, place, speed
+from tests.support.whole_games import (
+    STORY,
+    HeardOfGame,
+    WholeGame,
+    game_of,
+    mode,
+    phases,
+    place,
+    speed,
+    under_way,
+)
 
 pytestmark = pytest.mark.game
 
@@ -22,7 +32,7 @@ pytestmark = pytest.mark.game
 @virtual
 async def test_a_game_stages_starts_plays_and_ends_with_a_capture(kind: Kind) -> None:
     async with game_of(duel(kind)) as game:
-        await game.forward(20.0, until=lambda: game.phase is Phase.RUNNING and game.now > 2.0)
+        await under_way(game, 2.0)
         assert [mode(game, id) for id in (EVADER, PURSUER)] == [GUIDED[kind]] * 2
         assert speed(game, EVADER) == pytest.approx(40.0 if kind is Kind.ARDUPLANE else 4.0, rel=0.1)
         outcome = await game.until_ended()

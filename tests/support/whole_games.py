@@ -36,6 +36,7 @@ from sim_bridge.rehearsal import Options, Rehearsal
 from sim_bridge.vehicle.autopilot.autopilot import Autopilot
 
 STORY = ["staging", "ready", "running", "ended", "recovery"]
+TO_START_S = 120.0  # of game time; planes fly to their places first
 LAST_EVENTS = 20  # of each vehicle, in the text of a failure
 SETPOINT = 84  # SET_POSITION_TARGET_LOCAL_NED, as the eighth byte of a frame tells
 
@@ -141,10 +142,10 @@ def game_of(scenario: Scenario, **options: Any) -> WholeGame:
 
 async def under_way(game: WholeGame, seconds: float = 5.0) -> None:
     """Forward until the game has run for some seconds."""
-    await game.forward(60.0, until=lambda: game.phase is Phase.RUNNING and game.now >= seconds)
+    await game.forward(TO_START_S, until=lambda: game.phase is Phase.RUNNING and game.now >= seconds)
 
 
-async def at_phase(game: WholeGame, phase: Phase, within_s: float = 60.0) -> None:
+async def at_phase(game: WholeGame, phase: Phase, within_s: float = TO_START_S) -> None:
     """Forward until the game is in a phase."""
     await game.forward(within_s, until=lambda: game.phase is phase)
 

@@ -15,11 +15,12 @@ from onboard.agent.core.hold_alert import HoldAlert
 from onboard.agent.core.journal import Journal
 from onboard.agent.core.part import Part, PartState
 from onboard.agent.core.takeoff import TakeOff
+from onboard.agent.core.to_place import own_state
 from onboard.agent.core.vehicle_link import Control, VehicleLink
 from onboard.autopilot.base import Adapter, ReleaseMode, Stage, Telemetry
 from onboard.config.printable import named
 from onboard.core.math.constants import NEVER
-from onboard.core.math.vectors import ZERO, Vec, along, sub
+from onboard.core.math.vectors import ZERO, Vec, sub
 from onboard.core.safety.policy import Action, Cause, Command, Policy, SupervisorInput
 from onboard.core.safety.supervisor import (
     SupervisorOutput,
@@ -31,13 +32,11 @@ from onboard.core.safety.supervisor import (
 )
 from onboard.core.safety.words import ACTIONS, CAUSES
 from onboard.pilot.pilot import PilotDecision, Question
-from onboard.pilot.setup import Own
 from onboard.wire.bus import messages
 from onboard.wire.bus.messages import Severity
 
 SILENT_S = 1.0  # a link silent for longer explains that the autopilot changed to hold by itself
 REGAIN_S = 6.0  # … for so long afterwards
-WIND_FRESH_S = 10.0
 RELEASES = {
     Command.RELEASE_TO_HOLD: ReleaseMode.HOLD,
     Command.RELEASE_TO_RETURN: ReleaseMode.RETURN,
@@ -114,10 +113,11 @@ class Flight:
         if not state.on:
             self.decision = self.output = self.open = None
             self.playing = False
-            self._stand_by(now.s, telemetry, state)
+            self._stand_by(now, telemetry, state)
             return None
         self.playing = True
         self.hands.took = self.hands.took or self.hands.leave
+        self.vehicle.facing = None
         return self._ask(now, telemetry)
 
     def answered(self, answer: Answered) -> bool:
@@ -145,13 +145,11 @@ class Flight:
             self._complete(step, took, f"no answer within {took:.2f} s")
 
     def _ask(self, now: Instant, t: Telemetry) -> Think | None:
-        plane = self.vehicle.hovers is False
-        wind = t.wind if plane and now.s - t.wind_at < WIND_FRESH_S else ZERO
-        position = along(t.position, t.velocity, min(max(0.0, now.s - t.position_at), 0.5))
+        own = own_state(now.s, t, hovers=self.vehicle.hovers is not False)
         self._number += 1
-        step = OpenStep(self._number, now, t, wind, None)
+        step = OpenStep(self._number, now, t, own.wind, None)
         try:
-            asked = self.part.ask(now, Own(position, t.velocity, wind))
+            asked = self.part.ask(now, own)
         except Exception as trouble:  # an error of thinking must not end the flight: the supervisor acts
             self._complete(step, 0.0, named(trouble))
             return None
@@ -285,9 +283,10 @@ class Flight:
 
     # ------------------------------------------------------------------ before and after the part
 
-    def _stand_by(self, now: float, t: Telemetry, state: PartState) -> None:
+    def _stand_by(self, instant: Instant, t: Telemetry, state: PartState) -> None:
         """Take control when the part is about to begin; what is or becomes ours is judged in each step."""
-        adapter = self.vehicle.adapter
+        adapter, now = self.vehicle.adapter, instant.s
+        self.vehicle.facing = None
         if adapter is None:
             return
         held = self._orders.order is not Action.PASS
@@ -299,16 +298,22 @@ class Flight:
             self.drive(now)
             return
         before = self._state
-        # A multicopter hovers; a plane flies on as it does: in its guided mode it circles by itself.
+        # To its place; else a multicopter hovers, and a plane in its guided mode circles by itself.
         hovers = not adapter.holds_airspeed
-        seen = self._input(now, t)._replace(over=state.over, wind=ZERO if hovers else t.wind)
-        still = ZERO if hovers else sub(t.velocity, t.wind)
+        own = own_state(now, t, hovers=hovers)
+        seen = self._input(now, t)._replace(over=state.over, wind=own.wind)
+        still = ZERO if hovers else sub(t.velocity, own.wind)
+        free = not (climbs or unasked or held)
+        way = self.part.approach(instant, own) if free and adapter.stage is Stage.ACTIVE else None
+        if way is not None:
+            still, self.vehicle.facing = way.velocity, way.heading
         if climbs and not (held or ours or wanted):  # what keeps it on the ground is no end of a flight
             if supervise(still, seen, self._thresholds(), before).command is Command.STREAM:
                 self.take_off.step(now, self.vehicle)
             self.drive(now)
             return
-        output = self._judge(still, seen, streams=hovers and not (climbs or unasked), enters=wanted)
+        streams = (hovers or way is not None) and not (climbs or unasked)
+        output = self._judge(still, seen, streams=streams, enters=wanted)
         if not (held or ours):  # what was not ours has latched nothing
             self._state = self._state._replace(floor=before.floor, floor_cause=before.floor_cause)
         if climbs and output.command is Command.STREAM and self.take_off.step(now, self.vehicle):

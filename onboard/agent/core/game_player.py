@@ -9,22 +9,26 @@ from onboard.agent.core import policy_from_config as limits
 from onboard.agent.core.bus_view import BusView
 from onboard.agent.core.events import Instant, Load, Outbox
 from onboard.agent.core.journal import Journal
-from onboard.agent.core.part import PartState
+from onboard.agent.core.part import PartState, Way
 from onboard.agent.core.participation import Participation
 from onboard.agent.core.readiness import lacking
+from onboard.agent.core.to_place import approach_of, own_state
 from onboard.agent.core.vehicle_link import VehicleLink
+from onboard.autopilot.base import Stage
 from onboard.autopilot.flight_limits import FlightLimits
 from onboard.core.game.rules import Target
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec
 from onboard.core.strategy.knowledge import Decision
 from onboard.game.track_watch import TrackWatch
+from onboard.pilot.approach import Approach
 from onboard.pilot.memory import Memory
 from onboard.pilot.pilot import PilotDecision, Question, Viewpoint
 from onboard.pilot.setup import GameSetup, Own, Side, TrackSample
 from onboard.wire.bus.messages import Phase, PhaseChange, Role, Setup, Track
 from onboard.wire.geodesy import Frame
 
+OVERDUE_S = 1.0  # the word that the game runs comes within this after t₀
 TRAINING_SLICES = 2  # of about 1 ms, after each control step
 
 
@@ -33,6 +37,7 @@ class Flying(NamedTuple):
 
     game: GameSetup
     viewpoint: Viewpoint
+    approach: Approach | None = None  # to its place
 
 
 class GamePlayer:
@@ -115,7 +120,7 @@ class GamePlayer:
             return False
         self.policy = limits.policy_of(self.config, setup, hovers, own)
         game = limits.game_setup(self.config, setup, self._bus.target, hovers, own)
-        self.flying = flying._replace(game=game)
+        self.flying = flying._replace(game=game, approach=self._approach(setup, game))
         return True
 
     def state(self, wall_ns: int) -> PartState:
@@ -135,6 +140,31 @@ class GamePlayer:
     def let_in(self) -> None:
         """A person lets this process act, also in a game that it has not seen begin."""
         self._participation.let_in()
+
+    def approach(self, now: Instant, own: Own) -> Way | None:
+        """How to fly to its place, from ready to t₀."""
+        flying, left = self.flying, self._to_start(now.wall_ns)
+        if flying is None or flying.approach is None or left is None or left < -OVERDUE_S:
+            return None
+        if not flying.approach.reaches(own):
+            return None
+        place = flying.approach.place
+        return Way(flying.approach.steer(own, left), place.heading if place.hovers else None)
+
+    def place_s(self, now: Instant) -> float:
+        """Time that the vehicle needs to its place [s]; before t₀, by which it will be late."""
+        flying, vehicle, left = self.flying, self._vehicle, self._to_start(now.wall_ns)
+        flies = self.config.take_control or vehicle.stage is Stage.ACTIVE
+        if flying is None or flying.approach is None or not flies or not vehicle.telemetry.placed:
+            return 0.0
+        own = own_state(now.s, vehicle.telemetry, hovers=vehicle.hovers is not False)
+        return flying.approach.needs(own) if left is None else flying.approach.misses(own, left)
+
+    def _to_start(self, wall_ns: int) -> float | None:
+        """Time left to t₀ [s] while everybody is ready; None before that and after it."""
+        phase = self._bus.phase
+        ready = phase is not None and phase.phase is Phase.READY and phase.t0_ns > 0
+        return -self.time(wall_ns) if ready else None
 
     def ask(self, now: Instant, own: Own) -> Question | PilotDecision:
         """The view of the game at `now`."""
@@ -211,8 +241,13 @@ class GamePlayer:
         opponents = [player.id for player in game.opponents(self.side)]
         self._memory = Memory(self.config.prediction, opponents)
         self.strategy = self._strategy_of(setup)
-        self.flying = Flying(game, Viewpoint(self.config.id, self.side, self.strategy))
+        viewpoint = Viewpoint(self.config.id, self.side, self.strategy)
+        self.flying = Flying(game, viewpoint, self._approach(setup, game))
         self._journal.info("setup", f"{setup.scenario} from {setup.master}: {len(setup.roster)} vehicles")
+
+    def _approach(self, setup: Setup, game: GameSetup) -> Approach | None:
+        member = limits.member_of(setup, self.config.id)
+        return None if member is None else approach_of(member, game, self.policy)
 
     def _strategy_of(self, setup: Setup) -> str:
         member = limits.member_of(setup, self.config.id)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple, Protocol
 
 from onboard.agent.core.events import Instant
+from onboard.core.math.vectors import Vec
 from onboard.core.safety.policy import Policy
 from onboard.core.strategy.knowledge import Decision
 from onboard.pilot.pilot import PilotDecision, Question
@@ -20,6 +21,13 @@ class PartState(NamedTuple):
     late: bool = False  # it runs without this vehicle until the master lets it act
     over: bool = False  # it has ended
     resumed: bool = False  # the master alone let this process in: it flies what it finds guided, no more
+
+
+class Way(NamedTuple):
+    """How to fly to the place where a part begins."""
+
+    velocity: Vec  # [m/s]; a multicopter's over ground, a plane's through the air
+    heading: float | None  # [rad] where a multicopter looks; None: any
 
 
 class Part(Protocol):
@@ -39,6 +47,14 @@ class Part(Protocol):
 
     def state(self, wall_ns: int) -> PartState:
         """Where the part stands."""
+        ...
+
+    def approach(self, now: Instant, own: Own) -> Way | None:
+        """How to fly to the place where the part begins; None where there is none, or no instant for it."""
+        ...
+
+    def place_s(self, now: Instant) -> float:
+        """Time that the vehicle needs to that place [s]; once its instant is fixed, by which it is late."""
         ...
 
     def ask(self, now: Instant, own: Own) -> Question | PilotDecision:

@@ -106,7 +106,7 @@ class Reports:
 
     def health(self, standing: Standing, now: Instant) -> Health:
         """`vehicles/<id>/health`."""
-        vehicle, t, output = self._vehicle, self._vehicle.telemetry, self._flight.output
+        vehicle, t, flight, output = self._vehicle, self._vehicle.telemetry, self._flight, self._flight.output
         return Health(
             id=self._id,
             role=self._role,
@@ -134,6 +134,7 @@ class Reports:
             link_lock=standing.link_lock,
             failsafe=vehicle.by_failsafe,
             hold_lost=self._flight.hold.lost,
+            place_s=flight.part.place_s(now),
         )
 
 

@@ -10,7 +10,7 @@ from onboard.agent.core import policy_from_config as limits
 from onboard.agent.core.bus_view import BusView
 from onboard.agent.core.events import Instant
 from onboard.agent.core.journal import Journal
-from onboard.agent.core.part import PartState
+from onboard.agent.core.part import PartState, Way
 from onboard.agent.core.readiness import vehicle_lacks
 from onboard.agent.core.vehicle_link import VehicleLink
 from onboard.autopilot.base import Stage
@@ -74,6 +74,14 @@ class RoutePlayer:
 
     def let_in(self) -> None:
         """Nothing to do: a route has no beginning to be missed."""
+
+    def approach(self, now: Instant, own: Own) -> Way | None:
+        """A route begins where the vehicle is."""
+        return None
+
+    def place_s(self, now: Instant) -> float:
+        """A route waits for no place."""
+        return 0.0
 
     def ask(self, now: Instant, own: Own) -> Question | PilotDecision:
         """The route's own rules decide: nobody needs to be asked."""

@@ -70,10 +70,10 @@ def _change(before: Stage, after: Stage, *, handed: bool) -> Control:
     return Control.SAME
 
 
-def _let_through(verdict: SupervisorOutput) -> Setpoint | None:
+def _let_through(verdict: SupervisorOutput, facing: float | None) -> Setpoint | None:
     """The setpoint of a verdict; None where it lets none pass."""
     if verdict.command is Command.STREAM:
-        return Setpoint(verdict.air, verdict.wind)
+        return Setpoint(verdict.air, verdict.wind, facing)
     return Setpoint(ZERO) if verdict.command is Command.HOVER else None
 
 
@@ -113,6 +113,7 @@ class VehicleLink:
         self.heard_systems: dict[int, float] = {}
         self.position_rate, self.setpoint_rate = Rate(), Rate()
         self.sent_at = NEVER  # of the last setpoint [s]
+        self.facing: float | None = None  # [rad] where a multicopter is to look; None: as it likes
         self.flown = False  # the vehicle was under this process's control once
         self.version: Version | None = None  # of the autopilot, once it has said so
         self.to = Target(config.id)
@@ -272,7 +273,7 @@ class VehicleLink:
         if verdict is not None and verdict.at != now:
             self.foreign["verdict_of_another_step"] += 1
             verdict = None
-        setpoint = None if verdict is None else _let_through(verdict)
+        setpoint = None if verdict is None else _let_through(verdict, self.facing)
         step = adapter.step(now, self.telemetry, setpoint)
         self._stepped_at = now
         self.flown = self.flown or adapter.stage is Stage.ACTIVE

@@ -127,6 +127,7 @@ class Member(Message, frozen=True):
     limits: LimitsMessage = LimitsMessage()
     strategy: str = ""  # name, "" = the default of the role
     tracked: bool = False  # known by tracks alone: no agent flies it
+    heading: float | None = None  # of the nose at the start [rad, north to east]; None = any
 
 
 class Fence(Message, frozen=True):
@@ -280,6 +281,7 @@ class Health(Message, frozen=True):
     link_lock: LinkLock = LinkLock.OPEN
     failsafe: bool = False  # handed over: to the autopilot's own failsafe, not to a person
     hold_lost: str = ""  # why the mode in which it was left does not hold it; '' = it does, or none was left
+    place_s: float = 0.0  # time that the vehicle needs to its place; before t₀, by which it would be late
 
 
 class Severity(Enum):

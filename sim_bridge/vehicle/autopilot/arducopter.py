@@ -46,7 +46,7 @@ NOT_SIMULATED = frozenset(
 NOT_ARMABLE = frozenset(M[name] for name in ("RTL", "LAND", "BRAKE", "AUTO", "CIRCLE", "DRIFT"))
 USER_TAKEOFF = frozenset(M[name] for name in ("GUIDED", "LOITER", "ALT_HOLD", "POSHOLD"))
 # type_mask: a set bit ignores the field; one bit of a group ignores the group
-NO_POSITION, NO_VELOCITY, NO_ACCELERATION, FORCE_SET = 0x007, 0x038, 0x1C0, 0x200
+NO_POSITION, NO_VELOCITY, NO_ACCELERATION, FORCE_SET, NO_YAW = 0x007, 0x038, 0x1C0, 0x200, 0x400
 LOCAL, LOCAL_OFFSET, BODY, BODY_OFFSET = 1, 7, 8, 9  # MAV_FRAME
 RC_CONTINUE_GUIDED = 4  # FS_OPTIONS: the transmitter's loss does not end GUIDED
 CONTINUE_PILOTED = 16  # FS_OPTIONS: the ground station's silence does not end a mode flown by hand
@@ -235,7 +235,8 @@ class ArduCopter(Multicopter, ArduPilot):
                 position = self.game_from_local(position)
         else:
             position = Vec(here.x + position.x, here.y + position.y, here.z + position.z)
-        self._follow(now_ns, m.type_mask, position, velocity)
+        turn = self.motion.yaw if m.coordinate_frame in (BODY, BODY_OFFSET) else 0.0
+        self._follow(now_ns, m.type_mask, position, velocity, m.yaw + turn)
 
     def _on_global_target(self, now_ns: int, packet: DialectPacket) -> None:
         m = packet.message
@@ -250,9 +251,9 @@ class ArduCopter(Multicopter, ArduPilot):
             self._stop(now_ns)
             return
         position = self.game_position(latitude, longitude, altitude) if wants_place else ZERO
-        self._follow(now_ns, m.type_mask, position, Vec(m.vx, m.vy, m.vz))
+        self._follow(now_ns, m.type_mask, position, Vec(m.vx, m.vy, m.vz), m.yaw)
 
-    def _follow(self, now_ns: int, mask: int, position: Vec, velocity: Vec) -> None:
+    def _follow(self, now_ns: int, mask: int, position: Vec, velocity: Vec, yaw: float) -> None:
         """A target in the frame of motion, as far as the mask says."""
         forced = mask & FORCE_SET and not mask & NO_ACCELERATION
         with_position = not mask & NO_POSITION
@@ -267,7 +268,8 @@ class ArduCopter(Multicopter, ArduPilot):
             self.feed_forward = values[1]
         else:
             self._target_ns = now_ns
-            self.fly_velocity(velocity, now_ns)
+            looks = not mask & NO_YAW and isfinite(yaw)
+            self.fly_velocity(velocity, now_ns, yaw if looks else None)
 
     def _stop(self, now_ns: int) -> None:
         """What ArduCopter does with a target it does not understand."""

@@ -49,9 +49,9 @@ class Speeds(NamedTuple):
     landing: float
 
 
-def velocity_demand(velocity: Vec) -> Demand:
-    """The demand for a ground velocity."""
-    return Demand(Lateral.VELOCITY, velocity, 0.0, 0.0, 0.0)
+def velocity_demand(velocity: Vec, facing: float | None = None) -> Demand:
+    """The demand for a ground velocity, with the nose along the path or at a yaw [rad]."""
+    return Demand(Lateral.VELOCITY, velocity, 0.0, 0.0, 0.0, facing)
 
 
 REST = velocity_demand(ZERO)
@@ -77,6 +77,7 @@ class Multicopter(Autopilot):
         self.leg = Leg.HOLD
         self.target = ZERO  # of GOTO, TAKEOFF, CLIMB, RETURN, LINGER and LAND, and the place held
         self.velocity = ZERO  # of VELOCITY
+        self.facing: float | None = None  # of VELOCITY [rad]; None: along the path
         self.feed_forward = ZERO  # of GOTO: velocity that comes with a moving place
         self._climb = 0.0  # of STICK [m/s, up]
         self._drift: Vec | None = None  # of STICK; None: above one place
@@ -128,10 +129,10 @@ class Multicopter(Autopilot):
         self._held = False
         self._since_ns = now_ns
 
-    def fly_velocity(self, velocity: Vec, now_ns: int) -> None:
-        """Follow a velocity over ground [m/s; NED]."""
+    def fly_velocity(self, velocity: Vec, now_ns: int, facing: float | None = None) -> None:
+        """Follow a velocity over ground [m/s; NED], the nose along it or at a yaw [rad]."""
         self.leg = Leg.VELOCITY
-        self.velocity = velocity
+        self.velocity, self.facing = velocity, facing
         self._since_ns = now_ns
 
     def fly_by_stick(self, now_ns: int, climb: float, drift: Vec | None = None) -> None:
@@ -161,7 +162,7 @@ class Multicopter(Autopilot):
         position = self.motion.position
         leg = self.leg
         if leg == Leg.VELOCITY:
-            return velocity_demand(self.velocity)
+            return velocity_demand(self.velocity, self.facing)
         if leg == Leg.HOLD:
             return self._hold()
         if leg == Leg.LAND:

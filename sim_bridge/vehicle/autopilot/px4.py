@@ -38,7 +38,7 @@ LINK = {1: "HOLD", 2: "RTL", 3: "LAND", 5: "TERMINATE", 6: "TERMINATE"}  # NAV_D
 GEOFENCE = {2: "HOLD", 3: "RTL", 4: "TERMINATE", 5: "LAND"}  # GF_ACTION
 BEAT_AFTER_ORDER_NS = 40_000_000  # from the second acknowledgement of a mode's order
 STATION_HEARD_S = 10.0  # for which a link counts as a ground station's after its heartbeat
-NO_POSITION, NO_VELOCITY, NO_ACCELERATION = 0x007, 0x038, 0x1C0
+NO_POSITION, NO_VELOCITY, NO_ACCELERATION, NO_YAW = 0x007, 0x038, 0x1C0, 0x400
 LOCAL, BODY = 1, 8  # MAV_FRAME
 UNSUPPORTED_FRAME = 8  # MAV_RESULT_COMMAND_UNSUPPORTED_MAV_FRAME: newer than the dialect
 
@@ -56,6 +56,7 @@ class Setpoint(NamedTuple):
 
     position: Vec | None  # [m; NED, frame of motion]
     velocity: Vec | None  # [m/s; NED]
+    yaw: float | None = None  # [rad]
 
 
 class Px4(Autopilot):
@@ -325,7 +326,8 @@ class Px4(Autopilot):
             return
         elif not m.type_mask & NO_POSITION and is_finite(position):
             position = self.game_from_local(position)
-        self._take_setpoint(now_ns, m.type_mask, position, velocity)
+        yaw = m.yaw if m.coordinate_frame == LOCAL else nan
+        self._take_setpoint(now_ns, m.type_mask, position, velocity, yaw)
 
     def _on_global_target(self, now_ns: int, packet: DialectPacket) -> None:
         m = packet.message
@@ -336,15 +338,18 @@ class Px4(Autopilot):
             self.counters["target_refused"] += 1
             return
         position = self.game_position(latitude, longitude, altitude)
-        self._take_setpoint(now_ns, m.type_mask, position, Vec(m.vx, m.vy, m.vz))
+        self._take_setpoint(now_ns, m.type_mask, position, Vec(m.vx, m.vy, m.vz), m.yaw)
 
-    def _take_setpoint(self, now_ns: int, mask: int, position: Vec, velocity: Vec) -> None:
+    def _take_setpoint(self, now_ns: int, mask: int, position: Vec, velocity: Vec, yaw: float) -> None:
         with_position = not mask & NO_POSITION and is_finite(position)
         with_velocity = not mask & NO_VELOCITY and is_finite(velocity)
         if not with_position and not with_velocity:
             self.counters["target_refused"] += 1
             return
-        self._setpoint = Setpoint(position if with_position else None, velocity if with_velocity else None)
+        looks = not mask & NO_YAW and isfinite(yaw)
+        self._setpoint = Setpoint(
+            position if with_position else None, velocity if with_velocity else None, yaw if looks else None
+        )
         self._setpoint_ns = now_ns
 
     # ------------------------------------------------------------------ commands

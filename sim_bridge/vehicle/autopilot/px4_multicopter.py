@@ -82,12 +82,12 @@ class Px4Multicopter(Px4, Multicopter):
 
     def guide(self, now_ns: int, dt: float) -> Demand:
         if self.is_mode("OFFBOARD"):
-            target, velocity = self._setpoint
+            target, velocity, yaw = self._setpoint
             if target is not None:
                 self.fly(Leg.GOTO, now_ns, target)
                 self.feed_forward = velocity or ZERO
             elif velocity is not None:
-                self.fly_velocity(self._clipped(velocity), now_ns)
+                self.fly_velocity(self._clipped(velocity), now_ns, yaw)
         elif self.mode in BY_HAND and not self.landed:
             self._by_hand(now_ns)
         return super().guide(now_ns, dt)

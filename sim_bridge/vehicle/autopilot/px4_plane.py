@@ -126,7 +126,7 @@ class Px4Plane(Px4):
         return False
 
     def _offboard(self, speed: float) -> Demand:
-        place, velocity = self._setpoint
+        place, velocity, _ = self._setpoint
         p = self.motion.position
         if place is None:
             climb = 0.0 if velocity is None else -velocity.z

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import asin, cos, sin, tan
+from math import asin, cos, inf, sin, tan
 
 from onboard.core.math.angles import wrap
 from onboard.core.math.constants import STANDARD_GRAVITY
@@ -69,6 +69,11 @@ class Plane:
     def model(self) -> PlaneModel:
         """Everything fixed about the aircraft, as the kernel steps it."""
         return self._model
+
+    @property
+    def turn_rate(self) -> float:
+        """The turn that it can hold [rad/s]: of an aircraft that turns by its rudder what that holds."""
+        return inf if self._model.path == PathModel.COORDINATED else self._model.yaw_law.rate_limit
 
     @property
     def state(self) -> PlaneState:

@@ -42,7 +42,7 @@ def toward(value: float, target: float, most: float) -> float:
 
 
 class KinematicMulticopter:
-    """Follows a ground velocity under an acceleration limit; its nose turns along the course.
+    """Follows a ground velocity under an acceleration limit; its nose turns along the course, or as demanded.
 
     The wind tilts no path: it only enters the airspeed. Any demand but `Lateral.VELOCITY` means: stop.
     """
@@ -79,9 +79,11 @@ class KinematicMulticopter:
             old.position.y + 0.5 * (old.velocity.y + velocity.y) * dt,
             old.position.z + 0.5 * (old.velocity.z + velocity.z) * dt,
         )
-        yaw = old.yaw
-        if velocity.x * velocity.x + velocity.y * velocity.y > MOVING * MOVING:
-            error = wrap(yaw_of(velocity) - old.yaw)
+        yaw, facing = old.yaw, demand.facing
+        if facing is None and velocity.x * velocity.x + velocity.y * velocity.y > MOVING * MOVING:
+            facing = yaw_of(velocity)
+        if facing is not None:
+            error = wrap(facing - old.yaw)
             yaw = wrap(old.yaw + clamp(error, -a.turn_rate * dt, a.turn_rate * dt))
         c, s = cos(yaw), sin(yaw)
         ax, ay = (velocity.x - old.velocity.x) / dt, (velocity.y - old.velocity.y) / dt

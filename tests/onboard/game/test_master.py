@@ -8,6 +8,7 @@ from typing import Any
 
 import msgspec
 import pytest
+from msgspec.structs import replace
 
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec
@@ -104,6 +105,35 @@ class Range:
         outcomes = [m for _, m in self.said if isinstance(m, Outcome)]
         assert len(outcomes) == 1
         return outcomes[0]
+
+
+def test_it_begins_when_everybody_can_be_at_its_place() -> None:
+    field = Range()
+    field.crew()
+    field.agents[3] = replace(health(3), place_s=12.0)
+    field.fly(1.5)
+    assert field.master.phase is Phase.READY
+    assert field.master.t0_ns == pytest.approx(WALL0 + field.phases()[-1].stamp_ns - WALL0 + 12 * NS_PER_S)
+    said = field.master.t0_ns
+    field.agents = {id: health(id) for id in (1, 2, 3)}
+    field.agents[2] = replace(health(2), place_s=3.0)  # it was turned away, and is late
+    field.fly(1.3)
+    field.crew()
+    field.fly(2.0)
+    assert field.master.t0_ns == said + 3 * NS_PER_S
+    assert "vehicle 2 needs 3 s more" in field.phases()[-1].reason
+    field.fly(14.0)
+    assert field.master.phase is Phase.RUNNING
+
+
+def test_it_puts_t0_off_for_three_minutes_at_most() -> None:
+    field = Range()
+    field.crew()
+    field.agents[2] = replace(health(2), place_s=9.0)  # whatever it is given, it will be late by 9 s
+    field.fly(190.0)
+    assert field.master.phase is Phase.RUNNING
+    assert field.master.t0_ns - WALL0 < 183 * NS_PER_S
+    assert any("vehicle 2 will not be at its place" in line for line in field.news)
 
 
 def test_it_listens_then_stages_then_waits_for_everybody() -> None:

@@ -1,0 +1,33 @@
+"""Where a game wants its vehicle at t₀, and how to get there in time: what `pilot.approach` is told."""
+
+from __future__ import annotations
+
+from onboard.autopilot.base import Telemetry
+from onboard.core.math.vectors import ZERO, Vec, along
+from onboard.core.safety.policy import Policy
+from onboard.pilot.approach import Approach, Place
+from onboard.pilot.setup import GameSetup, Own
+from onboard.wire.bus.messages import Member
+
+WIND_FRESH_S = 10.0
+SPARE = 1.05  # times its least airspeed is as slow as a plane flies to its place
+CARRIED_S = 0.5  # a position is carried forward by its velocity for no longer
+
+
+def own_state(now: float, t: Telemetry, *, hovers: bool) -> Own:
+    """The own state at `now` [s, monotonic]: its last position carried forward, and for planes the wind."""
+    wind = ZERO if hovers or now - t.wind_at >= WIND_FRESH_S else t.wind
+    position = along(t.position, t.velocity, min(max(0.0, now - t.position_at), CARRIED_S))
+    return Own(position, t.velocity, wind)
+
+
+def approach_of(member: Member, game: GameSetup, policy: Policy) -> Approach | None:
+    """The way to a vehicle's place in a game; None where the roster names no speed for it."""
+    player, e = game.player(member.id), policy.envelope
+    if player is None:
+        return None
+    height = policy.layer if policy.layered else player.height
+    speed = member.speed if 0.0 < member.speed <= e.speed_max else e.speed_max
+    place = Vec(member.start[0], member.start[1], -height)
+    slowest = min(speed, SPARE * e.speed_min)
+    return Approach(Place(place, member.heading, speed, slowest, e.hovers, e.turn_radius, e.deceleration))
