@@ -18,9 +18,10 @@ from onboard.core.game.referee import GameResult, Score, Step, judge, opening, p
 from onboard.core.game.rules import Target
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import ZERO, Vec, along, sub
+from onboard.game.heard_agent import HeardAgent
 from onboard.game.phases import TRANSITIONS, PhaseEvent
+from onboard.game.places import PlaceReport, PlaceWatch
 from onboard.game.track_watch import TrackWatch
-from onboard.wire.autopilot_kind import GUIDED_MODE
 from onboard.wire.bus.codec import M
 from onboard.wire.bus.messages import (
     AgentStage,
@@ -41,14 +42,10 @@ from onboard.wire.bus.topics import EVADER_BRIEF, MASTER, OUTCOME, PHASE, SETUP,
 
 LEASE_S = 2.0  # a master silent for longer is no master any more
 LEASE_EVERY_NS = NS_PER_S // 2
-CONTROL_NS = 10 * NS_PER_S  # a process started later than this after the last one flew needs a person's word
 LISTEN_NS = 12 * NS_PER_S // 10  # a master that holds the lease speaks twice in this time
 UNSEEN_NS = 10 * NS_PER_S  # a game whose evader nobody sees for so long cannot be judged
 HEALTH_NS = 3 * NS_PER_S  # an agent silent for longer is not there: six heartbeats lost in a row
 SUPERSEDED_NS = 15 * NS_PER_S // 10  # an agent's earlier process counts as gone after this silence
-PLACES_NS = 180 * NS_PER_S  # for which t₀ is put off at most, so that everybody is at its place
-PLACE_TOLD_NS = NS_PER_S  # after a t₀ is said, until reports reckon with it
-PLACE_LATE_S = 0.2  # nobody waits for who is late by less
 READY_STAGES = (AgentStage.READY, AgentStage.ACTING)  # of agents that can begin
 _RESULTS = {
     GameResult.CAPTURED: OutcomeResult.CAPTURED,
@@ -81,18 +78,6 @@ class Publication(NamedTuple):
     message: Message
 
 
-class _Agent:
-    """What is known of one vehicle's agent."""
-
-    def __init__(self) -> None:
-        self.health: Health | None = None  # its last heartbeat
-        self.heard_ns = 0  # arrival of that heartbeat [ns, monotonic]
-        self.acting_nonce = 0  # of the process that plays
-        self.in_control_ns = -CONTROL_NS  # when it last flew the vehicle [ns, monotonic]
-        self.nonces: dict[int, int] = {}  # nonce of a process → last heard [ns, monotonic]
-        self.silent = False  # as last told to the people
-
-
 class GameMaster:
     """Give it time and messages; take `outgoing()` to the bus and `news()` to the people.
 
@@ -116,7 +101,7 @@ class GameMaster:
         self._timing = timing
         self._target = target
         self._rules = setup.rules.core()
-        self._agents = {member.id: _Agent() for member in setup.roster if not member.tracked}
+        self._agents = {member.id: HeardAgent() for member in setup.roster if not member.tracked}
         self._tracked = tuple(member.id for member in setup.roster if member.tracked)
         self._tracks = TrackWatch()
         self._seen_ns = 0  # when the evader's position was last known [ns, monotonic]
@@ -126,7 +111,7 @@ class GameMaster:
         self._began_ns = -1
         self._lease_ns = 0
         self._staged_ns = 0
-        self._ready_ns = self._t0_said_ns = 0  # when t₀ was said first, and last [ns, monotonic]
+        self._places = PlaceWatch()
         self._ended_ns = 0
         self._started = timing.auto_start
         self._before: dict[int, Vec] = {}
@@ -273,7 +258,7 @@ class GameMaster:
                 agent.acting_nonce = agent.health.nonce if agent.health else 0
             needed = max((a.health.place_s for a in self._agents.values() if a.health), default=0.0)
             self.t0_ns = wall_ns + round(max(self._timing.ready_s, needed) * NS_PER_S)
-            self._ready_ns = self._t0_said_ns = now_ns
+            self._places.begin(now_ns)
             self._follow(PhaseEvent.ALL_READY, wall_ns)
         elif lacking and patience_ns > 0 and now_ns - self._staged_ns > patience_ns:
             missing = "; ".join(f"vehicle {id}: {reason}" for id, reason in sorted(lacking.items()))
@@ -289,23 +274,14 @@ class GameMaster:
             self._follow(PhaseEvent.NOT_READY, wall_ns, f"vehicle {id}: {reason}")
         elif wall_ns >= self.t0_ns:
             self._follow(PhaseEvent.BEGINNING, wall_ns)
-        elif now_ns - self._t0_said_ns > PLACE_TOLD_NS:
-            self._await_places(wall_ns, now_ns)
-
-    def _await_places(self, wall_ns: int, now_ns: int) -> None:
-        """Put t₀ off where a vehicle cannot be at its place by then, for three minutes at most in all."""
-        heard = self._t0_said_ns + PLACE_TOLD_NS
-        late = {id: a.health.place_s for id, a in self._agents.items() if a.health and a.heard_ns > heard}
-        last = max(late, key=late.__getitem__, default=0)
-        if not late or late[last] < PLACE_LATE_S:
-            return
-        more_ns = round(late[last] * NS_PER_S)
-        if now_ns - self._ready_ns + (self.t0_ns - wall_ns) + more_ns > PLACES_NS:
-            self._say_once(("place", last), f"vehicle {last} will not be at its place by t₀: begun without")
-            return
-        self.t0_ns += more_ns
-        self._t0_said_ns = now_ns
-        self._publish_phase(wall_ns, f"vehicle {last} needs {late[last]:.0f} s more to its place")
+        else:
+            told = [PlaceReport(n, a.heard_ns, a.health.place_s) for n, a in self._agents.items() if a.health]
+            put_off = self._places.look(now_ns, self.t0_ns - wall_ns, told)
+            if put_off.more_ns:
+                self.t0_ns += put_off.more_ns
+                self._publish_phase(wall_ns, put_off.text)
+            elif put_off.text:
+                self._say_once("place", put_off.text)
 
     def _look_after(self, wall_ns: int, now_ns: int) -> None:
         """Agents that fell silent, came back, or were started again while the game runs."""
@@ -324,7 +300,7 @@ class GameMaster:
             elif len(agent.nonces) == 1 and health.stage is AgentStage.ACTING:
                 agent.acting_nonce = health.nonce  # by a person's word
             elif len(agent.nonces) == 1 and health.autopilot is not None:
-                if self._never_left(agent, health, now_ns):
+                if agent.never_left(health, now_ns):
                     agent.acting_nonce = health.nonce
                     resume.add(id)
                     self._say(f"agent {id} was started again and may act again")
@@ -334,12 +310,6 @@ class GameMaster:
         if resume != set(self._resume):
             self._resume = tuple(sorted(resume))
             self._publish_phase(wall_ns, "resume" if self._resume else "")
-
-    @staticmethod
-    def _never_left(agent: _Agent, health: Health, now_ns: int) -> bool:
-        """Whether a restarted agent finds its vehicle as the last process left it: guided."""
-        guided = health.autopilot is not None and GUIDED_MODE.get(health.autopilot) == health.mode
-        return guided and now_ns - agent.in_control_ns <= CONTROL_NS
 
     def _judge(self, wall_ns: int, now_ns: int, here: dict[int, Vec]) -> None:
         assert self.score is not None
