@@ -7,10 +7,7 @@ that nobody keeps. (That a value makes a difference is shown by the tests of wha
 from __future__ import annotations
 
 import asyncio
-import os
-import signal
 import sys
-import threading
 from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
@@ -131,6 +128,7 @@ def test_every_key_of_scenario_aircraft_and_agent_is_read(
     assert len(kinds) > 20
     elsewhere = {
         "AgentConfig.route", "AgentConfig.track_ahead_s",  # of a tracker: route_player
+        "SigningConfig.link_id",  # of signed links: agent/core/machine
         "Spec.name", "Spec.description",  # printed by sim-bridge design
     }  # fmt: skip
     assert watch.unread(kinds) == elsewhere
@@ -142,7 +140,9 @@ def game_played(tmp_path: Path) -> None:
     aircraft.load.cache_clear()
 
     async def flown() -> None:
-        async with Rehearsal(game, virtual_clock(), Options(folder=tmp_path)) as playing:
+        fenced = parse(AGENT, agent_config.AgentConfig, "agent.toml").safety
+        options = Options(folder=tmp_path, configure={2: {"safety": fenced}})
+        async with Rehearsal(game, virtual_clock(), options) as playing:
             await playing.until(lambda: playing.now > 0.2, 60.0)
 
     run_virtual(flown())
@@ -156,7 +156,6 @@ def agent_checked_and_started(tmp_path: Path) -> None:
     """An agent as a process has it: its preflight, its files, its links."""
     from onboard.agent.opening import refuse_open_bus, security
     from onboard.agent.preflight import preflight
-    from onboard.agent.program import fly
     from tests.support.sim_bridge_process import free_port
 
     key = tmp_path / "key"
@@ -169,10 +168,20 @@ def agent_checked_and_started(tmp_path: Path) -> None:
     far = msgspec.structs.replace(config, bus="tcp/192.168.10.1:7447")
     refuse_open_bus(far, security(far))
     asyncio.run(asyncio.wait_for(preflight(config, 0.5, lambda line: None), 60.0))
-    timer = threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGTERM))
-    timer.start()
-    assert fly(config) == 0
-    timer.join()
+    asyncio.run(agent_opened(config))
+
+
+async def agent_opened(config: agent_config.AgentConfig) -> None:
+    """What a started agent opens: its files, its links, its bus."""
+    from onboard.agent.opening import close_bus, open_bus, open_links, signing_of
+    from onboard.agent.written_files import WrittenFiles
+
+    files = WrittenFiles(config)
+    signing_of(config, files.stamps)
+    for link in await open_links(config):
+        link.close()
+    await close_bus(await open_bus(config))
+    assert files.close()
 
 
 def test_every_key_of_a_route_and_of_a_roster_is_read(watch: Watch, tmp_path: Path) -> None:

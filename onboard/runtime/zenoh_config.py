@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import NamedTuple
 
@@ -14,6 +15,8 @@ from onboard.runtime.membership import Membership, membership_of
 from onboard.runtime.secret_files import read_secret
 
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
+IP_ENDPOINT = re.compile(r"(?:tcp|tls|udp|quic|ws)/(?P<host>.*):(?P<port>\d+)(?:[?#].*)?\Z")
+PORT_MAX = 65535
 MESSAGE_MAX = 1 << 20  # bytes put together from fragments: what is larger is dropped before it is whole
 LEASE_MS = 2000  # a silent partner is given up after this
 ALWAYS: dict[str, object] = {
@@ -42,6 +45,9 @@ def sessions_of(endpoint: str | None, listen: bool, config_file: Path | None) ->
     if config_file is not None and endpoint is None:
         return [Candidate("client", _config(config_file, ALWAYS))]
     where = endpoint or DEFAULT_ENDPOINT
+    if (named := IP_ENDPOINT.match(where)) and (not named["host"] or int(named["port"]) > PORT_MAX):
+        expected = f"a host and a port up to {PORT_MAX}, as {DEFAULT_ENDPOINT}"
+        raise ConfigError(f"bus: found {where!r}, expected {expected}")
     common = ALWAYS | NO_SCOUTING
     client = {"mode": "client", "connect/endpoints": [where], "listen/endpoints": []}
     sessions = [Candidate("joined" if listen else "client", _config(config_file, common | client))]
@@ -85,7 +91,8 @@ def _sessions_of_member(member: Membership, listen: bool, config_file: Path | No
 
 def first_sentence(error: BaseException) -> str:
     """An error of Zenoh's for people: without the line of its source, which follows ` at /`."""
-    return words_of(error).split(" at /")[0].strip()
+    words = words_of(error).split(" at /")[0].strip()
+    return "nobody answers there" if words.startswith("Unable to connect to any of") else words
 
 
 def _config(file: Path | None, settings: dict[str, object]) -> zenoh.Config:

@@ -75,6 +75,8 @@ def fly(path: Path, options: Options, say: Callable[[str], None] = print) -> Flo
     run_folder.write(folder / "summary.json", summary)
     timing = {"wall_s": round(wall_s, 3), **timing}
     run_folder.write(folder / "timing.json", timing)
+    if summary.verdict == "none":  # a signal ended it: agents and vehicles were brought to an end before
+        raise KeyboardInterrupt(f"{folder} holds an unfinished game")
     report = _report(folder, tell) if options.report else None
     return Flown(folder, summary, report)
 

@@ -54,6 +54,8 @@ def environment() -> dict[str, str]:
         (("--config", "order.toml", "--plain"), "order.toml: alerts.battery_critical: found 0.5, expected"),
         (("--game", "a/b", "--plain"), "options: game: found 'a/b', expected a name without"),
         (("--bus", "nonsense", "--plain"), "bus: "),
+        (("--bus", "tcp/127.0.0.1:99999", "status"), "bus: found 'tcp/127.0.0.1:99999', expected a host and"),
+        (("--bus", "tcp/:7447", "status"), "bus: found 'tcp/:7447', expected a host and a port up to 65535"),
         ((), "the console needs a terminal: found standard input, output, error redirected; without"),
         (("command", "abort"), "whom: found nothing, expected ids, --all or --role"),
         (("command", "abort", "2", "--all"), "whom: found ids and --all, expected"),
@@ -96,7 +98,7 @@ def test_the_settings_file_that_comes_along_holds_every_key_with_its_default():
 def test_nobody_there_is_said_with_exit_code_1(free_endpoint):
     done = gcs("status", "--bus", free_endpoint, "--wait", "0.1")
     assert done.returncode == 1
-    assert f"nobody heard in game game: waiting for a bus at {free_endpoint}" in done.stderr
+    assert f"waiting for a bus at {free_endpoint} (nobody answers there)" in done.stderr
     done = gcs("command", "abort", "--all", "--bus", free_endpoint, "--within", "0.5")
     assert done.returncode == 1
     assert "nobody to command" in done.stderr
