@@ -176,6 +176,29 @@ def export(
     return programs.export(run, tuple(dict.fromkeys(formats or (Format.CSV,))), to, tuple(ids or ()))
 
 
+@app.command(epilog="Examples: gcs fence area.plan | gcs fence area.kml --scenario mine.toml")
+@takes()
+def fence(
+    options: Options,
+    file: Annotated[Path, typer.Argument(help="QGroundControl .plan, MAVProxy's fence file, or KML.")],
+    scenario: Annotated[
+        Path | None,
+        typer.Option(
+            "--scenario",
+            help="Check it with this game, and print it in its frame.",
+            autocompletion=shipped(SCENARIOS),
+        ),
+    ] = None,
+) -> int:
+    """Check a fence from another tool, and print it as a scenario has it."""
+    from gcs.fence import show
+    from onboard.game.scenario import load
+
+    played = None if scenario is None else load(shipped_file(scenario, SCENARIOS))
+    print("\n".join(show(file, played)))
+    return 0
+
+
 @game_app.command(
     "run", epilog="Examples: gcs game run one-on-one | gcs game run mine.toml --wait --config gcs.toml"
 )

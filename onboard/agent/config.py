@@ -22,6 +22,7 @@ from onboard.config.bounds import (
     SystemId,
 )
 from onboard.config.derive import Key, struct_from
+from onboard.config.fence_check import demand_fence
 from onboard.config.names import GameName
 from onboard.config.strict import StrictConfig, demand
 from onboard.core.safety.policy import Action, Policy
@@ -107,8 +108,7 @@ class FenceConfig(StrictConfig, frozen=True):
     height_max: Coordinate
 
     def __post_init__(self) -> None:
-        demand(self.height_min < self.height_max, "height_min", self.height_min,
-               f"less than height_max = {self.height_max:g} m")  # fmt: skip
+        demand_fence(self.polygon, self.height_min, self.height_max)
 
 
 POLICY_KEYS = {

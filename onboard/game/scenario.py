@@ -41,11 +41,14 @@ from onboard.config.bounds import (
 )
 from onboard.config.derive import Key, core_from, struct_from
 from onboard.config.names import Title
-from onboard.config.strict import StrictConfig, demand
+from onboard.config.strict import ConfigError, FieldError, StrictConfig, demand
 from onboard.core.game.rules import Rules
 from onboard.core.math.states import VehicleLimits
 from onboard.core.math.vectors import Vec
+from onboard.game.fence_file import GeoFence, read_fence
+from onboard.game.fence_spec import FenceSpec, demand_start, fence_in
 from onboard.pilot.predictor_choice import Predicting
+from onboard.wire.geodesy import Frame
 
 Point = Annotated[tuple[Coordinate, ...], msgspec.Meta(min_length=2, max_length=3)]
 
@@ -233,23 +236,6 @@ class SimulatedSpec(StrictConfig, frozen=True):
                f"0 or at least answer_delay_s = {self.answer_delay_s:g} s")  # fmt: skip
 
 
-Polygon = Annotated[
-    tuple[tuple[Coordinate, Coordinate], ...], msgspec.Meta(min_length=3, description="three or more corners")
-]
-
-
-class FenceSpec(StrictConfig, frozen=True):
-    """Geofence: polygon of [north, east] and a height band [m]."""
-
-    polygon: Polygon
-    height_min: Coordinate  # [m]
-    height_max: Coordinate  # [m]
-
-    def __post_init__(self) -> None:
-        below = f"less than height_max = {self.height_max:g} m"
-        demand(self.height_min < self.height_max, "height_min", self.height_min, below)
-
-
 class Flight(StrictConfig, frozen=True):
     """What only `serve` and `fly` need."""
 
@@ -307,6 +293,10 @@ class Scenario(StrictConfig, frozen=True):
             demand(len(place) == axes, key, f"{len(place)} numbers",
                    f"{axes} as in evader.position: a game is plane or in space")  # fmt: skip
         self._demand_what_flies()
+        if self.flight.fence is not None and self.flight.fence.polygon:
+            for key, one in self._flown().items():
+                up = one.position[2] if len(one.position) == 3 else self.flight.height
+                demand_start(self.flight.fence, key, one.position, None if self.flight.ground_start else up)
         ids = self.ids
         demand(len(set(ids)) == len(ids), "pursuers.id", list(ids), "ids that differ")
         demand(max(ids) <= 250, "pursuers", f"{len(self.pursuers)} pursuers", "system ids up to 250")
@@ -332,6 +322,12 @@ class Scenario(StrictConfig, frozen=True):
                    "false: its transfer functions hold in flight alone")  # fmt: skip
             demand(vehicle.acceleration == DEFAULT_ACCELERATION, f"{at}acceleration", vehicle.acceleration,
                    f"none with airframe {frame.value}: its file says how it flies")  # fmt: skip
+
+    def _flown(self) -> dict[str, VehicleSpec]:
+        """Those whom an agent flies, by the keys of their positions."""
+        found = {"evader.position": self.evader}
+        found |= {f"pursuers[{i}].position": one for i, one in enumerate(self.pursuers)}
+        return {key: one for key, one in found.items() if not one.tracked}
 
     @property
     def planar(self) -> bool:
@@ -372,4 +368,22 @@ def vec(point: Point) -> Vec:
 
 def load(path: Path) -> Scenario:
     """Read a scenario file. Raises ConfigError that names file, key, found and expected."""
-    return config.read(path, Scenario)
+    scenario = config.read(path, Scenario)
+    fence = scenario.flight.fence
+    if fence is None or not fence.file:
+        return scenario
+    return with_fence(scenario, read_fence(path.parent / fence.file), f"{path}: flight.fence.file")
+
+
+def with_fence(scenario: Scenario, found: GeoFence, name: str) -> Scenario:
+    """A scenario with another tool's fence, in the scenario's frame and height band.
+
+    Raises ConfigError that begins with `name`.
+    """
+    flight = scenario.flight
+    frame = Frame(flight.origin.latitude_deg, flight.origin.longitude_deg, flight.origin.altitude_m)
+    fence = fence_in(frame, flight.fence, found, name)
+    try:
+        return msgspec.structs.replace(scenario, flight=msgspec.structs.replace(flight, fence=fence))
+    except FieldError as error:
+        raise ConfigError(f"{name}: {error}") from None

@@ -65,6 +65,12 @@ sigma_velocity = 0.05          # [m/s]
 delay_s = 0.1
 dropout = 0.05                 # share of measurements lost
 
+# [flight.fence]               # everybody starts within it
+# polygon = [[-300, -300], [-300, 300], [300, 300], [300, -300]]    # north, east [m]
+# file = "area.plan"           # in its place: QGroundControl's plan, MAVProxy's fence, KML; see gcs fence
+# height_min = 20              # above the origin
+# height_max = 120
+
 [flight.impairment]            # what happens to datagrams
 loss = 0.0
 

@@ -48,7 +48,8 @@ def lossy(loss: float) -> ImpairmentSpec:
 
 def fenced() -> FenceSpec:
     """A fence that the evader's way leaves."""
-    return FenceSpec(((-200.0, -200.0), (150.0, -200.0), (150.0, 200.0), (-200.0, 200.0)), 50.0, 200.0)
+    square = ((-200.0, -200.0), (150.0, -200.0), (150.0, 200.0), (-200.0, 200.0))
+    return FenceSpec(polygon=square, height_min=50.0, height_max=200.0)
 
 
 def duel(
