@@ -214,3 +214,26 @@ def test_the_running_agent_names_signing_as_the_cause_once(theirs: bytes, ours: 
         agent.pass_time(0.05)
     assert agent.core.journal.kinds.get("signing", 0) == (1 if said else 0)
     assert said in agent.text("signing")
+
+
+def test_a_battery_that_does_not_know_is_unknown_and_not_empty() -> None:
+    """−1 % and 65535 mV stand for unknown in both messages; a small pack in `voltages_ext` counts."""
+    observer, sender, framer = Observer(2), DialectSender(2, 1), Framer()
+
+    def after(message: MavMessage) -> tuple[float, float]:
+        for _ in range(5):
+            for packet in framer.feed(sender.pack(message)):
+                observer.take(1.0, packet)
+        t = observer.snapshot()
+        return t.battery, t.voltage
+
+    def status(millivolts: int, percent: int) -> MavMessage:
+        found: MavMessage = dialect.MAVLink_sys_status_message(
+            0, 0, 0, 0, millivolts, -1, percent, 0, 0, 0, 0, 0, 0
+        )
+        return found
+
+    assert after(status(65535, -1)) == (-1.0, -1.0)
+    assert after(battery(0, 0, -1, 65535)) == (-1.0, -1.0)
+    assert after(status(15200, 63)) == pytest.approx((0.63, 15.2))
+    assert after(battery(0, 0, 80, 16400)) == pytest.approx((0.8, 16.4))
