@@ -100,6 +100,7 @@ fuzz: install
 	$(BIN)/python -m tests.fuzz.autopilots --count 10000000 --seed 1 --resume .fuzz-autopilots.json
 
 soak: install
+	$(BIN)/python -m tests.soak.endings --games 200 --seed 1
 	$(BIN)/python -m tests.soak.run --hours 4 --seed 1 --resume .soak.json
 
 # cosmic-ray, in an environment of its own that sees this one's packages.

@@ -231,6 +231,10 @@ app.command(
     epilog="Examples: gcs tracks udpin://0.0.0.0:14560 --map 7=1 | gcs tracks radar.csv --map radar-17=1"
     " | gcs tracks sbs://127.0.0.1:30003 --map 4CA7B3=1 --qnh 1021"
 )(field_commands.tracks)
+app.command(
+    epilog="Examples: gcs sign serial:///dev/ttyACM0:115200 --keys roster-keys"
+    " | gcs sign serial:///dev/ttyACM0:115200 --set roster-keys/vehicle-2/mavlink.key"
+)(field_commands.sign)
 
 
 @keys_app.command("init", epilog="Example: gcs keys init roster.toml")

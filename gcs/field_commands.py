@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -41,3 +42,20 @@ def tracks(
     ids, place = mapping(tuple(map_)), program.origin_of(origin)
     wanted = program.Wanted(source, ids, place, Corrections(qnh, geoid))
     return asyncio.run(program.run(options.settings(), wanted))
+
+
+@takes()
+def sign(
+    options: Options,
+    link: Annotated[str, typer.Argument(help="Link to the autopilot: serial or USB to set a key.")],
+    keys: Annotated[
+        list[Path] | None, typer.Option("--keys", help="Key files or folders to compare with; repeatable.")
+    ] = None,
+    set_: Annotated[Path | None, typer.Option("--set", help="Key file to set on the autopilot.")] = None,
+    system: Annotated[int, typer.Option("--system", help="System id, where several are heard.")] = 0,
+    yes: Annotated[bool, typer.Option("--yes", help="Send the key over a network, readable.")] = False,
+) -> int:
+    """List which keys the autopilots on a link sign with; set one with --set, on the ground."""
+    from gcs import signing
+
+    return asyncio.run(signing.sign(link, keys or [], set_, system, yes))

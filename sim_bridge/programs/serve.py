@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import secrets
 import signal
+from collections import Counter
 from collections.abc import Awaitable, Callable, Sequence
 from pathlib import Path
 
@@ -23,8 +24,8 @@ from onboard.runtime.links import open_udp
 from onboard.runtime.protocols import Link
 from onboard.runtime.spoken_lines import SpokenLines
 from onboard.runtime.tasks import Pace, periodic
-from onboard.wire.bus.messages import Outcome, Phase
-from onboard.wire.bus.topics import DEFAULT_GAME
+from onboard.wire.bus.messages import Event, Outcome, Phase
+from onboard.wire.bus.topics import DEFAULT_GAME, EVENTS, Dispatcher
 from sim_bridge.world.bridge import Bridge
 from sim_bridge.world.bridge import Options as BridgeOptions
 from sim_bridge.world.radio import GROUND_STATIONS, Radio, agent_ports
@@ -103,6 +104,7 @@ async def serve_scenario(
         clock = SteadyClock(RealClock())  # a game outlives a clock that is set
         bridge = Bridge(scenario, clock, bus, links, bridge_options, say)
         _introduce(scenario, options, ports, radios, bus, say)
+        _tell_of_doubles(bus, options.game, say)
         if started is not None:
             started(bridge, bus, ports)
         await _until_stopped(bridge, bus, options, stop, say, ending)
@@ -149,6 +151,18 @@ async def _until_stopped(
             await ending()
         for task in tasks:
             task.cancel()
+
+
+def _tell_of_doubles(bus: ZenohBus, game: str, say: Callable[[str], None]) -> None:
+    """Say where another autopilot, a real one perhaps, has a simulated vehicle's id: agents hear both."""
+    told: set[int] = set()
+
+    def hear(event: Event) -> None:
+        if event.kind == "second_autopilot" and event.id not in told and len(told) < 250:
+            told.add(event.id)
+            say(f"vehicle {event.id}: another autopilot has this id, its agent hears both: {event.text}")
+
+    bus.subscribe(EVENTS.key(game), Dispatcher(Counter()).on(EVENTS, hear))
 
 
 def _introduce(

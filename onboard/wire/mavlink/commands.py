@@ -78,7 +78,15 @@ class ParamRead(NamedTuple):
 
 SetpointMessage = VelocityTarget | RollTarget
 """A message of the stream of setpoints: only the newest one counts."""
-Outgoing = OwnHeartbeat | CommandLong | CommandInt | SetpointMessage | ParamRead | Timesync
+class SetupSigning(NamedTuple):
+    """SETUP_SIGNING: the key in clear, so over a wire alone."""
+
+    to: Target
+    key: bytes  # 32 bytes
+    stamp: int  # [10 µs since 2015] the autopilot takes nothing older
+
+
+Outgoing = OwnHeartbeat | CommandLong | CommandInt | SetpointMessage | ParamRead | Timesync | SetupSigning
 """Everything that the agent sends. A `Timesync` with `answered_ns` 0 is a question."""
 
 

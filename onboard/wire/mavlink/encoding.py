@@ -18,6 +18,7 @@ from onboard.wire.mavlink.commands import (
     OwnHeartbeat,
     ParamRead,
     RollTarget,
+    SetupSigning,
     VelocityTarget,
 )
 from onboard.wire.mavlink.dialect import MavMessage, dialect
@@ -113,6 +114,11 @@ def _timesync(m: Timesync) -> MavMessage:
     return _new(dialect.MAVLink_timesync_message, m.answered_ns, m.asked_ns)
 
 
+def _setup_signing(m: SetupSigning) -> MavMessage:
+    kind = dialect.MAVLink_setup_signing_message
+    return _new(kind, m.to.system, m.to.component, list(m.key), m.stamp)
+
+
 _WRITERS: dict[type, Callable[[Any], MavMessage]] = {
     OwnHeartbeat: _heartbeat,
     CommandLong: _command_long,
@@ -121,4 +127,5 @@ _WRITERS: dict[type, Callable[[Any], MavMessage]] = {
     RollTarget: _roll_target,
     ParamRead: _param_read,
     Timesync: _timesync,
+    SetupSigning: _setup_signing,
 }

@@ -61,9 +61,13 @@ class Framer:
     With `signing`, only frames that it verifies pass, and `wall_ns` must be the true time.
     """
 
-    def __init__(self, *, signing: Signing | None = None, causes: Counter[str] | None = None) -> None:
+    def __init__(
+        self, *, signing: Signing | None = None, causes: Counter[str] | None = None, takes_keys: bool = False
+    ) -> None:
+        """`takes_keys`: SETUP_SIGNING passes, signed or not, as at an autopilot's own port."""
         self.causes: Counter[str] = Counter() if causes is None else causes
         self._signing = signing
+        self._takes_keys = takes_keys
         self._rest = b""
         self._blamed = 0  # bytes at the head of `_rest` that belong to a frame already counted as bad
 
@@ -164,9 +168,9 @@ class Framer:
             return None, "unknown_id"
         if not _summed(raw):
             return None, "bad_crc"
-        if number == SETUP_SIGNING:
+        if number == SETUP_SIGNING and not self._takes_keys:
             return None, "setup_signing"
-        if self._signing is not None:
+        if self._signing is not None and number != SETUP_SIGNING:
             verdict = self._signing.verify(raw, bool(flags & SIGNED), system, component, wall_ns)
             if verdict is not SignatureCheck.GOOD:
                 return None, f"signature_{verdict.value}"
@@ -211,12 +215,13 @@ class PeerFramers:
     """A framing state for each peer of one or several links, so that nobody's pieces mix with another's."""
 
     def __init__(
-        self, most: int = 256, *, signing: Signing | None = None, causes: Counter[str] | None = None
-    ) -> None:
+        self, most: int = 256, *, signing: Signing | None = None, causes: Counter[str] | None = None,
+        takes_keys: bool = False,
+    ) -> None:  # fmt: skip
         """`most` peers are told apart; the one that was silent for the longest is forgotten first."""
         self.causes: Counter[str] = Counter() if causes is None else causes
         self._most = most
-        self._signing = signing
+        self._signing, self._takes_keys = signing, takes_keys
         self._framers: OrderedDict[Hashable, Framer] = OrderedDict()
 
     def feed(self, peer: Hashable, data: bytes, wall_ns: int = 0) -> list[Packet]:
@@ -226,7 +231,9 @@ class PeerFramers:
             while len(self._framers) >= self._most:
                 self._framers.popitem(last=False)
                 self.causes["peers_forgotten"] += 1
-            framer = self._framers[peer] = Framer(signing=self._signing, causes=self.causes)
+            framer = self._framers[peer] = Framer(
+                signing=self._signing, causes=self.causes, takes_keys=self._takes_keys
+            )
         self._framers.move_to_end(peer)
         return framer.feed(data, wall_ns)
 

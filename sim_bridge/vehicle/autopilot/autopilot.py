@@ -15,6 +15,7 @@ from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import ZERO
 from onboard.wire.mavlink.dialect import DialectPacket, DialectSender, dialect, dialect_packet
 from onboard.wire.mavlink.frames import PeerFramers
+from onboard.wire.mavlink.signing import MemoryStore, Signing
 from sim_bridge.vehicle.autopilot import telemetry
 from sim_bridge.vehicle.autopilot.command import ACCEPTED, FAILED, UNSUPPORTED, Command, from_int, from_long
 from sim_bridge.vehicle.autopilot.commands import COMMANDS
@@ -49,7 +50,7 @@ class Autopilot(AutopilotState):
         self.commands: dict[int, Callable[[int, Command], int]] = self._command_handlers()
         for number in REMOVED.get((setup.kind, setup.options.firmware), ()):
             self.commands.pop(number, None)
-        self._framers = PeerFramers(PEERS_MAX, signing=setup.options.signing, causes=self.counters)
+        self._framers = self._hearing(setup.options.signing)
         self._late: deque[tuple[int, DialectPacket]] = deque()  # commands and when each is executed
         self._company = Company(setup.options, setup.system, now_ns)
         self._senders: dict[tuple[int, int], DialectSender] = {}  # of the company
@@ -176,6 +177,7 @@ class Autopilot(AutopilotState):
         handlers[dialect.MAVLINK_MSG_ID_COMMAND_LONG] = self._on_command_long
         handlers[dialect.MAVLINK_MSG_ID_COMMAND_INT] = self._on_command_int
         handlers[dialect.MAVLINK_MSG_ID_SET_MODE] = self._on_set_mode
+        handlers[dialect.MAVLINK_MSG_ID_SETUP_SIGNING] = self._on_setup_signing
         return handlers
 
     def _command_handlers(self) -> dict[int, Callable[[int, Command], int]]:
@@ -295,6 +297,21 @@ class Autopilot(AutopilotState):
             self._any_station_ns = now_ns
         if self.watched_ground_station(packet):
             self._ground_station_ns = now_ns
+
+    def _hearing(self, signing: Signing | None) -> PeerFramers:
+        return PeerFramers(PEERS_MAX, signing=signing, causes=self.counters, takes_keys=True)
+
+    def _on_setup_signing(self, now_ns: int, packet: DialectPacket) -> None:
+        """Take a key, on the ground alone: from now on frames are signed, and unsigned ones are dropped."""
+        if self.armed:
+            return
+        key = bytes(packet.message.secret_key)
+        signing = Signing(key, MemoryStore()) if any(key) else None
+        options = self.setup.options._replace(signing=signing)
+        self.setup = self.setup._replace(options=options)
+        self._framers = self._hearing(signing)
+        self._sender = DialectSender(self.system, COMPONENT, signing=signing)
+        self._senders.clear()
 
     def _on_command_long(self, now_ns: int, packet: DialectPacket) -> None:
         self._obey(now_ns, from_long(packet))
