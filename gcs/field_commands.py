@@ -9,7 +9,9 @@ from typing import Annotated
 import typer
 
 from gcs.options import Options, takes
+from onboard.config.bounds import Pressure, Undulation
 from onboard.config.strict import ConfigError
+from onboard.runtime.options import value
 
 MapOption = Annotated[
     list[str] | None,
@@ -24,19 +26,18 @@ def tracks(
     map_: MapOption = None,
     origin: Annotated[str, typer.Option("--origin", help="LAT,LON,ALT of the game frame [the game's].")] = "",
     qnh: Annotated[
-        float | None, typer.Option("--qnh", help="Air pressure at sea level [hPa], for pressure altitudes.")
+        float | None,
+        value(Pressure, "--qnh", words="Pressure at sea level [hPa], for barometric heights.", unit="HPA"),
     ] = None,
     geoid: Annotated[
-        float | None, typer.Option("--geoid", help="Sea level above the ellipsoid [m], for GPS heights.")
+        float | None,
+        value(Undulation, "--geoid", words="Sea level above the ellipsoid [m], for GPS heights.", unit="M"),
     ] = None,
 ) -> int:
     """Feed tracks of opponents into a game from MAVLink telemetry, ADS-B receivers or files."""
     from gcs.tracks import program
     from gcs.tracks.report import Corrections, mapping
 
-    for name, number, low, high in (("--qnh", qnh, 870.0, 1085.0), ("--geoid", geoid, -110.0, 90.0)):
-        if number is not None and not low <= number <= high:
-            raise ConfigError(f"{name}: found {number:g}, expected {low:g} to {high:g}")
     if not map_:
         raise ConfigError("--map: found none, expected NUMBER=ID, e.g. --map 4CA7B3=1")
     ids, place = mapping(tuple(map_)), program.origin_of(origin)

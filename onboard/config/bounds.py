@@ -41,6 +41,8 @@ TimeStep = Annotated[float, Meta(gt=0, le=1, description="a time step in (0, 1] 
 Epochs = Annotated[int, Meta(ge=1, le=1_000_000, description="a whole number from 1 to 1 000 000")]
 Count = Annotated[int, Meta(ge=1, le=1_000_000, description="a whole number from 1 to 1 000 000")]
 Flights = Annotated[int, Meta(ge=2, le=1_000_000, description="a whole number from 2 to 1 000 000")]
+Pressure = Annotated[float, Meta(ge=870, le=1085, description="870 to 1085 hPa")]
+Undulation = Annotated[float, Meta(ge=-110, le=90, description="−110 to 90 m")]
 ListenTime = Annotated[float, Meta(ge=0, le=600, description="0 to 600 s")]
 WaitTime = Annotated[float, Meta(ge=0.1, le=3600, description="0.1 to 3600 s")]
 
