@@ -7,6 +7,7 @@ the examples are others with each `--hypothesis-seed`.
 from __future__ import annotations
 
 import os
+from collections.abc import Generator
 
 for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(name, "1")
@@ -21,11 +22,12 @@ settings.register_profile("long", deadline=None, print_blob=True)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "ci"))
 
 
-def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Give each test its time limit times the slowness of the machine at the start of the session."""
-    asked = config.getoption("timeout")
-    usual_s = float(config.getini("timeout") if asked is None else asked)
-    for item in items:
-        own = item.get_closest_marker("timeout")
-        limit_s = float(own.args[0]) if own is not None else usual_s
-        item.add_marker(pytest.mark.timeout(limit_s * max(2.0, slowness())), append=False)
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, object, object]:
+    """Give the test its time limit times the slowness of the machine, before the limit begins to run."""
+    asked = item.config.getoption("timeout")
+    usual_s = float(item.config.getini("timeout") if asked is None else asked)
+    own = item.get_closest_marker("timeout")
+    limit_s = float(own.args[0]) if own is not None else usual_s
+    item.add_marker(pytest.mark.timeout(limit_s * max(2.0, slowness())), append=False)
+    return (yield)

@@ -14,20 +14,24 @@ SPARE = 5.0  # deadlines on a quiet machine, as a multiple of what is promised
 SLOWNESS_MAX = 40.0
 
 
-@cache
 def slowness() -> float:
     """How much longer this machine takes for a fixed piece of work than a quiet one, 1 to `SLOWNESS_MAX`.
 
-    The greater of what the work takes and of the processes that wait for each core. Measured once in each
-    process, where it is first asked for: at the start of a session of tests.
+    The greater of what the work took at the start of the session of tests, and of the processes that wait for
+    each core now: others may have come since.
     """
     waiting = os.getloadavg()[0] / (os.cpu_count() or 1)
+    return min(max(1.0, waiting, _of_this_machine()), SLOWNESS_MAX)
+
+
+@cache
+def _of_this_machine() -> float:
     begun = time.perf_counter()
     total = 0
     for number in range(PROBE_ADDITIONS):
         total += number
     assert total == PROBE_ADDITIONS * (PROBE_ADDITIONS - 1) // 2
-    return min(max(1.0, waiting, (time.perf_counter() - begun) / PROBE_S), SLOWNESS_MAX)
+    return (time.perf_counter() - begun) / PROBE_S
 
 
 def patience(promised_s: float) -> float:
