@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from onboard.agent.config import AgentConfig
 from onboard.agent.core.bus_view import BusView
+from onboard.agent.core.clip_spells import ClipSpells
 from onboard.agent.core.clocks import JumpWatch
 from onboard.agent.core.command_book import SETS_OFF, Orders
 from onboard.agent.core.events import Answered, Instant, Think
@@ -27,6 +28,7 @@ from onboard.core.safety.supervisor import (
     SupervisorState,
     handed_back,
     in_another_game,
+    reachable,
     reordered,
     supervise,
 )
@@ -71,7 +73,9 @@ class Flight:
         self.decision: PilotDecision | None = None  # the last one; None while the part is not on
         self.output: SupervisorOutput | None = None  # the last one; None while nothing is supervised
         self.playing = False  # the part is on
+        self.wanted = ZERO  # [m/s; air] of the last decision, as far as the vehicle can follow within a step
         self.setpoint = ZERO  # [m/s; ground] let through in this step
+        self.clips = ClipSpells()
         self.failures = 0  # of the strategy
         self.take_off = TakeOff(config.take_off_height)
         self.open: OpenStep | None = None
@@ -177,7 +181,8 @@ class Flight:
             track_sigma=decision.sigma if decision is not None else inf,
         )
         wanted = decision.velocity if decision is not None and decision.decides else ZERO
-        self._judge(wanted, seen)
+        self.wanted = reachable(wanted, seen, self._thresholds(), self._state)
+        self._judge(self.wanted, seen)
 
     def obey(self, now: float) -> None:
         """Follow at once what the ground has ordered, or what it gives back."""
@@ -244,11 +249,13 @@ class Flight:
 
         Without `streams` a velocity that it lets pass is not sent. With `enters` the guided mode is asked for
         where a velocity may pass and the vehicle is not in it."""
+        before = self._state.action
         output = supervise(wanted, seen, self._thresholds(), self._state)
         self._state, self.output = output.state, output
         self._carry_out(seen.now, output, streams=streams, enters=enters)
-        if output.changed:
-            self._say(output)
+        told = self.clips.look(seen.now, before, output.action, output.cause)
+        if told or (output.changed and output.action > Action.CLIP):
+            self._say(output, told)
         return output
 
     def _carry_out(self, now: float, output: SupervisorOutput, *, streams: bool, enters: bool) -> None:
@@ -368,12 +375,13 @@ class Flight:
 
     # ------------------------------------------------------------------ inside
 
-    def _say(self, output: SupervisorOutput) -> None:
-        """Tell a transition of the supervisor, with the level and module whose decision it met."""
+    def _say(self, output: SupervisorOutput, told: str) -> None:
+        """Tell a verdict that is news, with the level and module whose decision it met."""
         action, decision = output.action, self.decision
         severity = Severity.INFO
         if action > Action.CLIP and output.cause is not Cause.OVER:
             severity = Severity.ERROR if action is Action.END else Severity.WARNING
         level, module = (decision.level, decision.module) if decision is not None else ("", "")
         word = ACTIONS[action]
-        self._journal.say(severity, f"supervisor_{word}", f"{word}: {CAUSES[output.cause]}", level, module)
+        text = told or f"{word}: {CAUSES[output.cause]}"
+        self._journal.say(severity, f"supervisor_{word}", text, level, module)

@@ -372,6 +372,7 @@ class AgentCore:
             "control_steps": self.steps,
             "control_steps_by_timer": self.timer_steps,
             **counted.shell,
+            **self.flight.clips.counts,
             "strategy_failures": self.flight.failures,
             "events_suppressed": self.journal.suppressed,
         }

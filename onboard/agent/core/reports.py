@@ -91,7 +91,7 @@ class Reports:
             module=DecisionModule(decision.module),
             strategy=decision.strategy,
             rule=decision.rule,
-            velocity=_sound(decision.velocity),
+            velocity=_sound(flight.wanted),
             aim=_sound(decision.aim),
             time_to_aim=_number(decision.time),
             miss=_number(decision.miss),

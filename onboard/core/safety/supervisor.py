@@ -27,6 +27,9 @@ PROTECTIVE = (
 )
 
 
+FIRST_STEP = 0.05  # [s] for which a velocity is judged that follows no other
+
+
 class SupervisorState(NamedTuple):
     """The supervisor's memory from step to step."""
 
@@ -89,6 +92,28 @@ def supervise(wanted: Vec, seen: SupervisorInput, policy: Policy, state: Supervi
     return SupervisorOutput(
         after.action, after.cause, command, True, ground, allowed.air, after, changed, seen.now, wind
     )
+
+
+def reachable(wanted: Vec, seen: SupervisorInput, policy: Policy, state: SupervisorState) -> Vec:
+    """What of a wanted velocity [m/s; relative to the air] the vehicle can reach within this step.
+
+    By its turn rate and acceleration alone: a velocity beyond its speeds is left as it is, to `supervise`, for
+    which that is a clip, as are fences and mates.
+    """
+    e = policy.envelope
+    wind = ZERO if e.hovers or not believable(ZERO, seen.wind) else seen.wind
+    running = _running(seen, state)
+    if not is_finite(wanted) or not (running or believable(seen.position, seen.velocity)):
+        return wanted
+    before = state.demand if running else bounded(sub(seen.velocity, wind), wanted, e).velocity
+    if bounded(wanted, before, e).cause != Cause.NONE:
+        return wanted
+    return slewed(wanted, before, seen.now - state.stamp if running else FIRST_STEP, e).velocity
+
+
+def _running(seen: SupervisorInput, state: SupervisorState) -> bool:
+    """Whether there is a last setpoint from which velocities go on."""
+    return 0.0 <= seen.now - state.stamp <= 1.0
 
 
 def commanded(action: Action, cause: Cause, order: Action, hovers: bool) -> Command:
@@ -167,17 +192,20 @@ def _allow(wanted: Vec, wind: Vec, seen: SupervisorInput, policy: Policy, state:
     e = policy.envelope
     age = clamp(seen.telemetry_age, 0.0, policy.telemetry_age)
     position = along(seen.position, seen.velocity, age)
-    running = 0.0 <= seen.now - state.stamp <= 1.0
+    running = _running(seen, state)
     before = state.demand if running else bounded(sub(seen.velocity, wind), wanted, e).velocity
+    dt = seen.now - state.stamp if running else FIRST_STEP
+    asked = wanted
     if policy.layered:
         wanted = keep_layer(wanted, position, policy)
     limited = bounded(wanted, before, e)
     cause = limited.cause
     if policy.layered and abs(policy.layer + position.z) > policy.layer_band:
         cause = Cause.LAYER
-    slow = slewed(limited.velocity, before, seen.now - state.stamp if running else 0.05, e)
-    if cause == Cause.NONE:
-        cause = slow.cause
+    slow = slewed(limited.velocity, before, dt, e)
+    if cause == Cause.NONE:  # the way to a layer was not asked for: what was asked is judged without it
+        judged = slewed(bounded(asked, before, e).velocity, before, dt, e) if policy.layered else slow
+        cause = judged.cause
     ground = add(bounded(slow.velocity, before, e).velocity, wind)
     if policy.separation > 0.0:
         apart = keep_apart(ground, position, seen.id, seen.mates, policy)
