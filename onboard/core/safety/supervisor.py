@@ -97,8 +97,8 @@ def supervise(wanted: Vec, seen: SupervisorInput, policy: Policy, state: Supervi
 def reachable(wanted: Vec, seen: SupervisorInput, policy: Policy, state: SupervisorState) -> Vec:
     """What of a wanted velocity [m/s; relative to the air] the vehicle can reach within this step.
 
-    By its turn rate and acceleration alone: a velocity beyond its speeds is left as it is, to `supervise`, for
-    which that is a clip, as are fences and mates.
+    By its turn rate and acceleration alone: a velocity beyond its speeds is left as it is, to `supervise`,
+    for which that is a clip, as are fences and mates.
     """
     e = policy.envelope
     wind = ZERO if e.hovers or not believable(ZERO, seen.wind) else seen.wind

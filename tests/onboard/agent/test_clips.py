@@ -1,4 +1,4 @@
-"""A clip is an exception: what a vehicle can do enters the decision; the rest is counted, told once a spell."""
+"""A clip is an exception: what a vehicle can do enters the decision; the rest is counted and told once."""
 
 from __future__ import annotations
 
