@@ -232,6 +232,10 @@ app.command(
     " | gcs tracks sbs://127.0.0.1:30003 --map 4CA7B3=1 --qnh 1021"
 )(field_commands.tracks)
 app.command(
+    epilog="Example: gcs take-off one-on-one --link 1=udpin://0.0.0.0:14551 --link 2=udpin://0.0.0.0:14552"
+    " --may-arm"
+)(field_commands.take_off)
+app.command(
     epilog="Examples: gcs sign serial:///dev/ttyACM0:115200 --keys roster-keys"
     " | gcs sign serial:///dev/ttyACM0:115200 --set roster-keys/vehicle-2/mavlink.key"
 )(field_commands.sign)

@@ -9,9 +9,10 @@ from typing import Annotated
 import typer
 
 from gcs.options import Options, takes
-from onboard.config.bounds import Pressure, Undulation
+from onboard.config.bounds import Pressure, Undulation, WaitTime
 from onboard.config.strict import ConfigError
 from onboard.runtime.options import value
+from onboard.runtime.resources import SCENARIOS, shipped_file
 
 MapOption = Annotated[
     list[str] | None,
@@ -60,3 +61,25 @@ def sign(
     from gcs import signing
 
     return asyncio.run(signing.sign(link, keys or [], set_, system, yes))
+
+
+@takes()
+def take_off(
+    options: Options,
+    scenario: Annotated[Path, typer.Argument(help="Scenario file, or the name of one that comes along.")],
+    link: Annotated[
+        list[str] | None, typer.Option("--link", metavar="ID=URL", help="Where a vehicle is; repeatable.")
+    ] = None,
+    may_arm: Annotated[bool, typer.Option("--may-arm", help="Arm those that stand disarmed.")] = False,
+    within: Annotated[
+        float, value(WaitTime, "--within", words="Time for each vehicle [s].", unit="S")
+    ] = 180.0,
+) -> int:
+    """Bring vehicles from the ground to their places in a scenario, one after the other."""
+    from gcs import takeoff
+    from onboard.game.scenario import load
+
+    if not link:
+        raise ConfigError("--link: found none, expected ID=URL, e.g. --link 2=udpin://0.0.0.0:14551")
+    links, played = takeoff.links_of(tuple(link)), load(shipped_file(scenario, SCENARIOS))
+    return asyncio.run(takeoff.take_off(played, links, may_arm=may_arm, within_s=within))

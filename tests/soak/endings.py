@@ -138,6 +138,11 @@ EXPLAINS = frozenset({
     "supervisor_hold", "supervisor_return", "supervisor_end", "take_over", "released", "command", "phase",
     "started", "held", "status",
 })  # fmt: skip
+SAFE = {
+    Kind.ARDUCOPTER: {"FS_GCS_ENABLE": 1.0, "SYSID_MYGCS": 2.0},
+    Kind.ARDUPLANE: {"FS_GCS_ENABL": 1.0, "FS_LONG_ACTN": 1.0, "SYSID_MYGCS": 2.0},
+}
+"""The parameters that docs/first-flight.md asks for: the pursuer's own agent is watched."""
 NO_POSITION = frozenset({"no GPS", "no EKF"})  # there a multicopter may drift down while its failsafe begins
 
 
@@ -145,7 +150,9 @@ def scenario(kind: Kind, rng: Rng) -> Scenario:
     """A pursuer on its way to an evader that is far off, and known by its track alone."""
     sticks = list(Transmitter)[int(rng.integers(len(Transmitter)))]
     late = (0.0, 0.0) if rng.random() < 0.7 else (0.1, float(rng.uniform(0.2, 3.0)))
-    spec = SimulatedSpec(transmitter=sticks, answer_delay_s=late[0], answer_delay_max_s=late[1])
+    spec = SimulatedSpec(
+        transmitter=sticks, answer_delay_s=late[0], answer_delay_max_s=late[1], parameters=SAFE.get(kind, {})
+    )
     scale = 10.0 if kind in WINGED else 1.0
     return Scenario(
         name="endings",
@@ -177,6 +184,11 @@ async def end_one(number: int, seed: int, how: str, kind: Kind, watch_s: float) 
         return Ended(number, kind, how, words, mode(game, PURSUER), problem)
 
 
+def at_work(game: WholeGame, how: str) -> bool:
+    """Whether an agent that is alive flies the pursuer."""
+    return how != "kill" and flies(game.agents[PURSUER])
+
+
 async def watch(game: WholeGame, ending: Ending, how: str, watch_s: float) -> str:
     """What is wrong with the pursuer's end; "" = nothing."""
     highest = -place(game, PURSUER).z
@@ -187,13 +199,13 @@ async def watch(game: WholeGame, ending: Ending, how: str, watch_s: float) -> st
         now, height = mode(game, PURSUER), -place(game, PURSUER).z
         if ending.taken and now in GUIDED:
             return f"taken out of the pilot's {ending.taken} into {now}"
-        if now in COMES_DOWN or flies(game.agents[PURSUER]) or how in NO_POSITION:
+        if now in COMES_DOWN or at_work(game, how) or how in NO_POSITION:
             highest = height
         elif height < highest - SINKS_M[winged]:
             return f"sinks in {now}: {highest:.1f} → {height:.1f} m"
         elif height < 1.0 and how not in NO_POSITION:
             return f"on the ground in {now}"
-        nobody = now in GUIDED and not flies(game.agents[PURSUER])
+        nobody = now in GUIDED and not at_work(game, how)
         left_s = left_s + LOOK_S if nobody else 0.0
         if left_s > LATEST_S:
             return f"left in {now}, and nobody flies it"
@@ -213,7 +225,7 @@ def explanation(game: WholeGame, before: tuple[int, int], struck_ns: int, how: s
     if how == "no bus":
         words = [line for line in game.told[before[1] :] if f"vehicle {PURSUER} " in line]
     now = mode(game, PURSUER)
-    if flies(game.agents[PURSUER]):
+    if at_work(game, how):
         words.append("flies on: what it knows suffices")
     elif now not in GUIDED:
         words.append(f"the autopilot's own failsafe: {now}")

@@ -5,10 +5,11 @@
 
 from __future__ import annotations
 
-from math import degrees
+from math import degrees, nan
 from typing import NamedTuple
 
 from onboard.core.math.vectors import Vec
+from onboard.wire.geodesy import Geodetic
 from onboard.wire.mavlink.dialect import dialect
 from onboard.wire.mavlink.ids import AUTOPILOT, CommandId
 from onboard.wire.mavlink.values import Timesync
@@ -143,3 +144,12 @@ def takeoff(to: Target, height_m: float, place: float = 0.0) -> CommandLong:
 
     `place` stands for yaw, latitude and longitude: NaN where PX4 is to rise from where it stands."""
     return CommandLong(to, CommandId.TAKE_OFF, (0.0, 0.0, 0.0, place, place, place, height_m))
+
+
+def reposition(to: Target, place: Geodetic) -> CommandInt:
+    """Ask to go to a place and stay there, in the autopilot's own mode for that (192)."""
+    params = (-1.0, float(dialect.MAV_DO_REPOSITION_FLAGS_CHANGE_MODE), 0.0, nan)
+    x, y = round(place.latitude_deg * 1e7), round(place.longitude_deg * 1e7)
+    return CommandInt(
+        to, CommandId.REPOSITION, dialect.MAV_FRAME_GLOBAL, params, x=x, y=y, z=place.altitude_m
+    )

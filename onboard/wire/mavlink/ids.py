@@ -27,6 +27,7 @@ class CommandId(IntEnum):
     CHANGE_SPEED = dialect.MAV_CMD_GUIDED_CHANGE_SPEED
     CHANGE_ALTITUDE = dialect.MAV_CMD_GUIDED_CHANGE_ALTITUDE
     CHANGE_HEADING = dialect.MAV_CMD_GUIDED_CHANGE_HEADING
+    REPOSITION = dialect.MAV_CMD_DO_REPOSITION
 
 
 class MessageId(IntEnum):
@@ -35,6 +36,8 @@ class MessageId(IntEnum):
     HEARTBEAT = dialect.MAVLINK_MSG_ID_HEARTBEAT
     AUTOPILOT_VERSION = dialect.MAVLINK_MSG_ID_AUTOPILOT_VERSION
     HOME_POSITION = dialect.MAVLINK_MSG_ID_HOME_POSITION
+    GLOBAL_POSITION_INT = dialect.MAVLINK_MSG_ID_GLOBAL_POSITION_INT
+    EXTENDED_SYS_STATE = dialect.MAVLINK_MSG_ID_EXTENDED_SYS_STATE
 
 
 _NUMBERS: dict[str, int] = {kind.msgname: number for number, kind in dialect.mavlink_map.items()}
