@@ -79,14 +79,12 @@ class ModeMachine:
         self._left_in = ""  # LEFT: the mode that was confirmed
         self._mode_heard = ""
         self._silent_at = self._stepped_at = NEVER
-        self._entered_at = NEVER  # ENTERING: since when
+        self._since = NEVER  # of the stage
         self._reboots = 0
         self._taken_at = NEVER
 
     def enter(self) -> None:
         """Ask for the guided mode; nothing to do where the vehicle is in it already."""
-        if self.stage is not Stage.ENTERING:
-            self._entered_at = self._stepped_at
         self._happened(ModeEvent.ENTER, "")
 
     def leave(self, mode: ReleaseMode, chain: Sequence[str]) -> None:
@@ -148,7 +146,8 @@ class ModeMachine:
             self._happened(event, telemetry.mode, now)
             if event is ModeEvent.RELEASED and self.stage is Stage.LEFT:
                 self._left_in = telemetry.mode
-        if self.stage is Stage.ENTERING and flown_by_hand(telemetry) and self.hands.at > self._entered_at:
+        passing = self.stage in (Stage.ENTERING, Stage.LEAVING, Stage.LEFT)
+        if passing and flown_by_hand(telemetry) and self.hands.at > self._since:
             self._happened(ModeEvent.OTHER, telemetry.mode, now)  # a pilot's hand is on it
         mode, prove = "", False
         silent = now - max(telemetry.heartbeat_at, telemetry.position_at) > UNANSWERED
@@ -277,6 +276,8 @@ class ModeMachine:
         """Run the table's row; `mode` is the one reported, `now` the instant where the event has one."""
         step = transition(self.stage, event)
         was = self._left_in if self.stage is Stage.LEFT else self._wanted
+        if step.to is not self.stage:
+            self._since = self._stepped_at
         self.stage = step.to
         for action in step.actions:
             self._do(action, mode, was, now)

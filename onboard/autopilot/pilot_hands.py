@@ -18,6 +18,7 @@ MOVED_S = 10.0  # so long after a stick has moved it is in somebody's hand
 TURNED_S = 2.5  # between a switch and the mode that it chose, either first: channels come twice a second
 STICKS = 4  # channels 1 to 4 are sticks, those above are switches
 STICK_US, SWITCH_US = 25, 100  # [µs] that count as moved
+THROTTLE, BOTTOM_US = 2, 1100  # the throttle stick's index, and where it has fallen to the bottom
 LEAST_US, MOST_US = 800, 2200  # of a channel that is heard
 LOW = 0.1  # share of its travel above which a throttle stick is not at the bottom
 RECEIVER_BAD = 65536  # MAV_SYS_STATUS_SENSOR_RC_RECEIVER, among the unhealthy
@@ -62,7 +63,8 @@ class PilotHands:
             if abs(now - was) < (STICK_US if index < STICKS else SWITCH_US):
                 continue
             before[index] = now
-            if not (_heard(was) and _heard(now)):
+            fallen = index == THROTTLE and now < BOTTOM_US  # no hand is needed for that
+            if fallen or not (_heard(was) and _heard(now)):
                 continue  # it begins to be heard, or is lost
             if index < STICKS:
                 self.stick_at = at

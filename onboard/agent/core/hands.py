@@ -97,13 +97,14 @@ class Hands:
         t, vehicle = self._vehicle.telemetry, self._vehicle
         adapter = vehicle.adapter
         taken = vehicle.stage is Stage.TAKEN
+        pilot = Pilot.NONE if adapter is None else adapter.pilot(now)
+        ours = vehicle.stage not in (Stage.TAKEN, Stage.IDLE)
         if command.kind not in SETS_OFF:
-            return self.whose(f"it, in {t.mode}") if taken else ""
+            flown = taken or (not ours and pilot is Pilot.FLYING)
+            return self.whose(f"it, in {t.mode}") if flown else ""
         if not t.armed and not self._config.may_arm:
             where = "stands on the ground" if t.landed_state == ON_GROUND else "is not armed"
             return f"it {where}, disarmed: arm it and bring it up first, or let the agent (may_arm)"
-        pilot = Pilot.NONE if adapter is None else adapter.pilot(now)
-        ours = vehicle.stage not in (Stage.TAKEN, Stage.IDLE)
         at_rest = not (taken or self._state.late)  # before a game resting sticks may be taken over
         if not ours and (pilot is Pilot.FLYING or (pilot is Pilot.PRESENT and not at_rest)):
             px4 = t.kind in (Kind.PX4_MULTICOPTER, Kind.PX4_PLANE)  # no OFFBOARD without targets

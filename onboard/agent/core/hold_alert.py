@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from onboard.agent.core.journal import Journal
 from onboard.agent.core.vehicle_link import VehicleLink
-from onboard.autopilot.base import Pilot, Stage
+from onboard.autopilot.base import Stage
 from onboard.core.math.constants import NEVER
 from onboard.core.safety.hold_watch import HoldLimits, HoldState, HoldWatch, of_plane
 from onboard.core.safety.policy import Envelope
 
 HOLDING = frozenset(("LOITER", "BRAKE", "HOLD", "POSHOLD"))
 FRESH_S = 0.5
-SINKING = 0.5  # [m/s; down]
 
 
 class HoldAlert:
@@ -35,9 +34,7 @@ class HoldAlert:
             self._watch, self._mode = HoldWatch(now, limits), t.mode
         self._left = left
         if not left or t.mode != self._mode:
-            self._end("in other hands")
-        elif self._watch is not None and _moved_by_hand(now, vehicle):
-            self._end("moved by its pilot's sticks")
+            self._end()
         if self._watch is None or not t.placed or now - t.position_at > FRESH_S:
             return
         airspeed = None if t.airspeed_at == NEVER or envelope.hovers else t.airspeed
@@ -49,14 +46,7 @@ class HoldAlert:
                 self.lost = f"{t.mode} does not hold: {here}"
                 self._journal.error("hold_lost", self.lost)
 
-    def _end(self, why: str) -> None:
+    def _end(self) -> None:
         if self.lost:
-            self._journal.info("hold_over", f"it is {why}")
+            self._journal.info("hold_over", "it is in other hands")
         self._watch, self.lost = None, ""
-
-
-def _moved_by_hand(now: float, vehicle: VehicleLink) -> bool:
-    """Whether a pilot's sticks move it in the mode in which it was left. Sinking is told, whoever does it."""
-    adapter = vehicle.adapter
-    flying = adapter is not None and adapter.pilot(now) is Pilot.FLYING
-    return flying and vehicle.telemetry.velocity.z < SINKING

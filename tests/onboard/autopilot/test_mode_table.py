@@ -270,6 +270,27 @@ def test_a_pilot_who_moves_a_stick_while_the_agent_asks_keeps_the_vehicle() -> N
     assert not [step.mode for step in asked if step.mode]
 
 
+def test_a_throttle_that_falls_is_no_hand_but_a_stick_in_a_hold_is_one() -> None:
+    """LOITER, in which the agent has left a copter, is the pilot's as soon as he moves it."""
+    for channel, pulse, whose in ((2, 1000, Stage.LEFT), (2, 1700, Stage.TAKEN), (0, 1550, Stage.TAKEN)):
+        machine = ModeMachine(1, "GUIDED")
+        rest = [1500] * 5
+        beat = Telemetry(
+            kind=Kind.ARDUCOPTER, mode="GUIDED", heartbeat_at=100.0, armed=True, channels=tuple(rest),
+            channels_at=100.0,
+        )  # fmt: skip
+        machine.step(100.0, beat)
+        machine.leave(ReleaseMode.HOLD, ("LOITER", "RTL", "LAND"))
+        machine.step(100.1, beat)
+        machine.step(100.2, beat._replace(mode="LOITER", heartbeat_at=100.2))
+        assert machine.stage is Stage.LEFT
+        rest[channel] = pulse
+        machine.step(100.7, beat._replace(
+            mode="LOITER", heartbeat_at=100.2, channels=tuple(rest), channels_at=100.7,
+        ))  # fmt: skip
+        assert machine.stage is whose, (channel, pulse)
+
+
 def test_one_request_at_a_time_is_on_its_way() -> None:
     """Once the round trip is known, a mode is asked for again only when that time has passed."""
     machine = ModeMachine(1, "GUIDED")
