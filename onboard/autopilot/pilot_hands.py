@@ -97,9 +97,15 @@ class Throttle(NamedTuple):
     most: float
 
 
+def fresh(now: float, t: Telemetry) -> bool:
+    """Return whether the receiver has told lately what it hears, and is well."""
+    lately = t.channels_at != NEVER and 0.0 <= now - t.channels_at <= HEARD_S
+    return lately and not t.unhealthy & RECEIVER_BAD
+
+
 def throttle(now: float, t: Telemetry, parameters: Mapping[str, float]) -> Throttle | None:
     """Return where the throttle stick stands; None where no channel says so, or none lately."""
-    if t.channels_at == NEVER or not 0.0 <= now - t.channels_at <= HEARD_S or t.unhealthy & RECEIVER_BAD:
+    if not fresh(now, t):
         return None
     channel = round(parameters.get("RCMAP_THROTTLE", 3.0))
     if not 1 <= channel <= len(t.channels) or not _heard(t.channels[channel - 1]):
@@ -114,10 +120,11 @@ def live(now: float, t: Telemetry, parameters: Mapping[str, float], hands: Pilot
 
     A receiver without a transmitter, and software in the loop, report healthy channels with the throttle low.
     """
-    stick = throttle(now, t, parameters)
-    if stick is None:
+    if not fresh(now, t):
         return False
-    return stick.pulse > stick.least + LOW * (stick.most - stick.least) or hands.moving(now)
+    stick = throttle(now, t, parameters)
+    raised = stick is not None and stick.pulse > stick.least + LOW * (stick.most - stick.least)
+    return raised or hands.moving(now)
 
 
 def flown_by_hand(t: Telemetry) -> bool:
