@@ -199,6 +199,19 @@ def fence(
     return 0
 
 
+@app.command(epilog="Example: gcs compare runs/20261126T024249Z-demo runs/20261126T031500Z-demo")
+@takes()
+def compare(
+    options: Options,
+    first: RunArgument,
+    second: Annotated[Path, typer.Argument(help="The run to compare it with.")],
+) -> int:
+    """Tell what two runs were played with, how they went and where they part."""
+    from gcs import programs
+
+    return programs.compare(first, second)
+
+
 @game_app.command(
     "run", epilog="Examples: gcs game run one-on-one | gcs game run mine.toml --wait --config gcs.toml"
 )

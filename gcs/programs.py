@@ -208,3 +208,11 @@ def export(run: Path, formats: Sequence[Format], to: Path | None, ids: tuple[int
     for path in written:
         print(path)
     return 0
+
+
+def compare(first: Path, second: Path) -> int:
+    """Two runs beside each other."""
+    from gcs.export.compare import compare as beside
+
+    print("\n".join(map(printable, beside(first, second).lines())))
+    return 0

@@ -21,9 +21,9 @@ Polygon = Annotated[
 class FenceSpec(StrictConfig, frozen=True, kw_only=True):
     """Geofence: polygon of [north, east], or another tool's file that holds one, and a height band [m]."""
 
-    height_min: Coordinate  # [m]
-    height_max: Coordinate  # [m]
-    polygon: Polygon = ()
+    height_min: Coordinate  # [m] floor
+    height_max: Coordinate  # [m] ceiling
+    polygon: Polygon = ()  # corners [north, east] [m]
     file: str = ""  # beside the scenario: QGroundControl's .plan, MAVProxy's fence, KML
 
     def __post_init__(self) -> None:

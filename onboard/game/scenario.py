@@ -128,7 +128,7 @@ DEFAULT_ACCELERATION = 4.0  # [m/s²]
 class Player(StrictConfig, frozen=True):
     """Who plays and from where."""
 
-    position: Point
+    position: Point  # [m] where it starts
     speed: Speed  # [m/s; air] what the game reckons with
     id: SystemId | None = None  # evader 1, pursuers from 2 where not given
     strategy: str = ""  # "" = the default of the role
@@ -141,7 +141,7 @@ class VehicleSpec(struct_from(VehicleLimits, Player, LIMIT_KEYS)):  # type: igno
 
     acceleration: PositiveAcceleration = DEFAULT_ACCELERATION  # [m/s²] of the kinematic airframe
     autopilot: Kind | None = None  # None = the scenario's
-    airframe: AirframeKind | None = None
+    airframe: AirframeKind | None = None  # None = the scenario's
     tracked: bool = False  # the evader's alone: known by tracks, flown by no agent
 
     def __post_init__(self) -> None:
@@ -165,18 +165,18 @@ class VehicleSpec(struct_from(VehicleLimits, Player, LIMIT_KEYS)):  # type: igno
 class OriginSpec(StrictConfig, frozen=True):
     """Origin of the game frame (WGS-84; altitude above mean sea level)."""
 
-    latitude_deg: Latitude = 47.397742
-    longitude_deg: Longitude = 8.545594
-    altitude_m: Altitude = 488.0
+    latitude_deg: Latitude = 47.397742  # of the origin [deg]
+    longitude_deg: Longitude = 8.545594  # of the origin [deg]
+    altitude_m: Altitude = 488.0  # of the origin, above mean sea level [m]
 
 
 class SensorSpec(StrictConfig, frozen=True):
     """The simulated sensor that publishes tracks."""
 
-    rate_hz: Rate = 10.0
+    rate_hz: Rate = 10.0  # measurements a second of each vehicle [Hz]
     sigma: Distance = 0.0  # position noise, one sigma an axis [m]
     sigma_velocity: Speed = 0.0  # velocity noise [m/s]
-    delay_s: Duration = 0.0
+    delay_s: Duration = 0.0  # from a measurement to its track on the bus [s]
     dropout: PartialShare = 0.0  # share of lost measurements
 
 
@@ -184,14 +184,14 @@ class ImpairmentSpec(StrictConfig, frozen=True):
     """What happens to datagrams (and, where `bus` says so, to the memory bus)."""
 
     loss: Share = 0.0  # share
-    delay_s: Duration = 0.0
-    jitter_s: Duration = 0.0
+    delay_s: Duration = 0.0  # of every datagram [s]
+    jitter_s: Duration = 0.0  # at most so much more, drawn for each [s]
     duplication: Share = 0.0  # share
     reordering: Share = 0.0  # share
     burst_rate: NotNegative = 0.0  # bursts per second
     burst_s: Duration = 0.0  # mean length of a burst in which all is lost
     bit_error: Share = 0.0  # share of datagrams with a flipped bit
-    bus: bool = False
+    bus: bool = False  # whether the memory bus suffers too
 
     def __post_init__(self) -> None:
         demand((self.burst_rate > 0) == (self.burst_s > 0), "burst_rate", f"{self.burst_rate:g} with burst_s"
@@ -202,7 +202,7 @@ class WindSpec(StrictConfig, frozen=True):
     """Wind. `from_deg` is the direction it comes from, as pilots say it."""
 
     speed: Speed = 0.0  # mean, at 6 m (20 ft) above ground [m/s]
-    from_deg: YawDeg = 0.0
+    from_deg: YawDeg = 0.0  # where it comes from, clockwise from north [deg]
     shear: bool = False  # MIL-F-8785C profile
     gust_sigma: Speed = 0.0  # σ of the Dryden gusts [m/s]
     correlation_m: Distance = 0.0  # 0 = each vehicle its own gusts
@@ -220,11 +220,11 @@ class WindSpec(StrictConfig, frozen=True):
 class SimulatedSpec(StrictConfig, frozen=True):
     """What stands around every simulated autopilot, and how it is set up."""
 
-    transmitter: Transmitter = Transmitter.CENTRED
+    transmitter: Transmitter = Transmitter.CENTRED  # where every throttle stick stands
     answer_delay_s: Duration = 0.0  # least time from a command to its execution and answer
     answer_delay_max_s: Duration = 0.0  # most; each command draws its own, so that answers may cross
-    batteries: Annotated[int, msgspec.Meta(ge=1, le=2, description="1 or 2 batteries")] = 1
-    firmware: Firmware = Firmware.RECORDED
+    batteries: Annotated[int, msgspec.Meta(ge=1, le=2, description="1 or 2 batteries")] = 1  # of each vehicle
+    firmware: Firmware = Firmware.RECORDED  # generation of parameter names and commands
     gimbal: bool = False  # whether component 154 sends heartbeats with the vehicle's own system id
     other_station_hz: NotNegative = 0.0  # a second ground station asks for all streams at this rate; 0: none
     full_streams: bool = False  # whether PX4 streams by default what a real one does: 22 kB/s
@@ -239,20 +239,20 @@ class SimulatedSpec(StrictConfig, frozen=True):
 class Flight(StrictConfig, frozen=True):
     """What only `serve` and `fly` need."""
 
-    autopilot: Kind = Kind.ARDUCOPTER
-    airframe: AirframeKind = AirframeKind.KINEMATIC
+    autopilot: Kind = Kind.ARDUCOPTER  # of every vehicle that names none
+    airframe: AirframeKind = AirframeKind.KINEMATIC  # how every vehicle moves that says nothing else
     origin: OriginSpec = OriginSpec()
     height: Distance = 50.0  # [m] at which a plane game is flown
-    ground_start: bool = False
+    ground_start: bool = False  # whether vehicles start on the ground and take off
     ready_s: Duration = 5.0  # from ready to t₀
     timeout_s: Duration = 60.0  # to get everybody ready
     sensor: SensorSpec = SensorSpec()
     impairment: ImpairmentSpec = ImpairmentSpec()
     wind: WindSpec = WindSpec()
     fence: FenceSpec | None = None
-    control_rate_hz: ControlRate = 20.0
+    control_rate_hz: ControlRate = 20.0  # of the agents: control steps a second [Hz]
     prediction: Predicting = Predicting.NETWORK  # what carries tracks forward in the agents
-    field_profile: bool = False
+    field_profile: bool = False  # altitude layers, capture judged horizontally
     simulated: SimulatedSpec = SimulatedSpec()
 
 
@@ -270,11 +270,11 @@ Pursuers = Annotated[tuple[VehicleSpec, ...], msgspec.Meta(min_length=1, descrip
 class Scenario(StrictConfig, frozen=True):
     """A whole scenario."""
 
-    name: Title
+    name: Title  # of the game, for people and for run folders
     evader: VehicleSpec
     pursuers: Pursuers
-    description: str = ""
-    seed: Seed = 0
+    description: str = ""  # for people
+    seed: Seed = 0  # of noise, losses, gusts and training
     parameters: Parameters = Parameters()
     flight: Flight = Flight()
     expect: Expect | None = None
