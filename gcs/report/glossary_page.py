@@ -44,7 +44,8 @@ def _used(known: Mapping[str, Any]) -> dict[str, list[str]]:
 
 
 def _table(rules: Mapping[str, list[str]], last: str) -> list[str]:
-    head = f"| rule | what it says | source |{f' {last} |' if last else ''}\n|---|---|---|{'---|' if last else ''}\n"
+    more, line = (f" {last} |", "---|") if last else ("", "")
+    head = f"| rule | what it says | source |{more}\n|---|---|---|{line}\n"
     rows = []
     for rule, strategies in rules.items():
         said = theme.explained(rule)
