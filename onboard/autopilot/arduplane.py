@@ -9,46 +9,38 @@ end a multicopter's stream.
 
 from __future__ import annotations
 
-from math import atan, atan2, tan
+from math import atan2, tan
 
 from onboard.autopilot.base import Note, Setpoint, Stage, Telemetry
 from onboard.autopilot.guided import LARGEST, Traits
+from onboard.core.guidance.plane import (
+    ALTITUDE_STEP,
+    LOOK_AHEAD,
+    SPEED_STEP,
+    Reference,
+    Said,
+    bank_for,
+    begins,
+    due,
+    followed,
+)
 from onboard.core.math.angles import wrap
 from onboard.core.math.constants import NEVER, STANDARD_GRAVITY
-from onboard.core.math.vectors import Vec, add, clamp, norm
+from onboard.core.math.vectors import Vec, add, norm
 from onboard.wire.mavlink import commands
 from onboard.wire.mavlink.commands import Outgoing, RollTarget, Target
 from onboard.wire.mavlink.ids import CommandId
 from onboard.wire.mavlink.modes import Kind
 from onboard.wire.mavlink.values import CommandAck
 
-GAIN = 1.1  # [1/s] turn rate for an error of the course
 ROLL_EVERY = 0.03  # [s] at least between two roll targets: every step of a 20 Hz loop passes
 COURSE_EVERY = 0.1  # [s] between two course commands of the plain variant
 COURSE_STEP = 0.01  # [rad] that is a new course
-SLOW_EVERY = 0.5  # [s] between two commands of altitude, and of speed: at most 2 Hz
-REFRESH = 3.0  # [s] after which either is said again, though unchanged
-ALTITUDE_STEP = 0.5  # [m] that is a new altitude
-SPEED_STEP = 0.2  # [m/s] that is a new airspeed
-LOOK_AHEAD = 3.3  # [s] a climb rate is an altitude this far ahead, at rate 0
-DRIFT = 8.0  # [m] by which the reference of altitude may leave the aircraft
-CREEP = 3.0  # [m/s; ground] below this there is no course: the nose counts
 NAMES: dict[int, str] = {
     CommandId.CHANGE_SPEED: "airspeed",
     CommandId.CHANGE_ALTITUDE: "altitude",
     CommandId.CHANGE_HEADING: "course",
 }
-
-
-def bank_for(course: float, velocity: Vec, yaw: float, bank_max: float) -> float:
-    """Return the bank [rad, right positive] that turns the flight over ground towards a course [rad].
-
-    φ = atan(V ψ̇ / g) with ψ̇ proportional to the error: a coordinated turn.
-    """
-    ground = (velocity.x * velocity.x + velocity.y * velocity.y) ** 0.5
-    present = atan2(velocity.y, velocity.x) if ground > CREEP else yaw
-    rate = GAIN * wrap(course - present)
-    return clamp(atan(max(ground, CREEP) * rate / STANDARD_GRAVITY), -bank_max, bank_max)
 
 
 class _OnChange:
@@ -59,23 +51,19 @@ class _OnChange:
 
     def __init__(self, step: float) -> None:
         self._step = step
-        self._said = 0.0
-        self._at = NEVER
+        self._said = Said()
         self.open = True  # not acknowledged
 
     def due(self, now: float, value: float) -> bool:
         """Return whether to send `value` now, and count it as sent."""
-        age = now - self._at
-        if age < SLOW_EVERY:
+        if not due(self._said, now, value, self._step, self.open):
             return False
-        if not self.open and abs(value - self._said) < self._step and age < REFRESH:
-            return False
-        self._said, self._at, self.open = value, now, True
+        self._said, self.open = Said(value, now), True
         return True
 
     def forget(self) -> None:
         """The autopilot may have forgotten: say it at once."""
-        self._at = NEVER
+        self._said = Said()
         self.open = True
 
 
@@ -93,8 +81,7 @@ class ArduPlaneEncoder:
         self._plain = plain
         self._to = to
         self._altitude, self._speed = _OnChange(ALTITUDE_STEP), _OnChange(SPEED_STEP)
-        self._reference = 0.0  # [m above sea level] where the commanded climbs lead
-        self._at = NEVER  # of the last setpoint
+        self._reference = Reference()  # [m above sea level]
         self._turned_at = NEVER
         self._course = NEVER  # [rad] of the plain variant's last command
         self._reboots = 0
@@ -166,15 +153,10 @@ class ArduPlaneEncoder:
     def _climb(self, now: float, telemetry: Telemetry, ground: Vec) -> list[Outgoing]:
         """Altitude that follows the commanded climb: a reference integrates it, so that level stays level."""
         climb = -ground.z
-        present = telemetry.altitude_m
-        gap = now - self._at
-        self._at = now
-        if gap > SLOW_EVERY:
-            self._reference = present
+        if begins(self._reference, now):
             self._altitude.forget()
-        else:
-            self._reference = clamp(self._reference + climb * gap, present - DRIFT, present + DRIFT)
-        wanted = self._reference + climb * LOOK_AHEAD
+        self._reference = followed(self._reference, now, telemetry.altitude_m, climb)
+        wanted = self._reference.altitude + climb * LOOK_AHEAD
         if not self._altitude.due(now, wanted):
             return []
         return [commands.change_altitude(self._to, wanted)]

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from onboard.core.game.rules import NO_TARGET, Control, Rules, Target
 from onboard.core.math.states import VehicleLimits
 from onboard.core.math.vectors import ZERO, Vec
-from onboard.pilot.track_filter import Variance
+from onboard.pilot.kalman import Variance
 
 
 class Side(Enum):

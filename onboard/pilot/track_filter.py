@@ -14,13 +14,12 @@ from __future__ import annotations
 from bisect import bisect_left, bisect_right
 from collections import Counter
 from enum import IntEnum
-from math import exp, isfinite, log, sqrt
+from math import isfinite, sqrt
 from typing import NamedTuple
 
 from onboard.core.math.constants import NEVER
 from onboard.core.math.vectors import ZERO, Vec, along, distance
-
-Variance = tuple[float, float, float, float, float, float]  # diagonal: position [m²], velocity [m²/s²]
+from onboard.pilot.kalman import Axes, Axis, Learning, Measured, Variance, carry, corrected
 
 BOUND = 1e12  # no number of a sample is larger; NaN fails the comparison too
 
@@ -35,16 +34,6 @@ class Fate(IntEnum):
     STALE = 4  # refused: older than the history kept
     JUMP = 5  # refused: farther away, or later, than the target can be
     NOT_FINITE = 6  # refused: NaN, infinite, beyond all bounds or with a negative variance
-
-
-class Axis(NamedTuple):
-    """One axis: estimate and covariance."""
-
-    x: float  # [m]
-    v: float  # [m/s]
-    xx: float  # [m²]
-    xv: float  # [m²/s]
-    vv: float  # [m²/s²]
 
 
 class Estimate(NamedTuple):
@@ -84,7 +73,7 @@ class _Step(NamedTuple):
     """The filter after one sample."""
 
     sample: _Sample
-    axes: tuple[Axis, Axis, Axis]
+    axes: Axes
     density: float  # [m²/s³]
 
 
@@ -148,7 +137,7 @@ class TrackFilter:
         if t >= steps[-1].sample.t:
             step = steps[-1]
             dt = t - step.sample.t
-            return _estimate(t, _carry(step.axes, dt, step.density))
+            return _estimate(t, carry(step.axes, dt, step.density))
         if t <= steps[0].sample.t:
             step = steps[0]
             return _estimate(t, _carry_back(step.axes, step.sample.t - t, step.density))
@@ -201,7 +190,7 @@ class TrackFilter:
         dt = sample.t - step.sample.t
         if dt > self.settings.gap_max:
             return False
-        here = _estimate(sample.t, _carry(step.axes, dt, step.density))
+        here = _estimate(sample.t, carry(step.axes, dt, step.density))
         noise = sqrt(sum(sample.variance[:3]))
         reach = self.settings.speed_max * dt + 6.0 * (noise + min(here.sigma, self.settings.speed_max)) + 10.0
         return distance(here.position, sample.position) <= reach
@@ -242,33 +231,12 @@ class TrackFilter:
 
     def _update(self, step: _Step, sample: _Sample) -> _Step:
         """Carry to the sample's instant and correct; (x, v) are measured one after the other."""
+        settings = self.settings
+        learning = Learning(settings.density_min, settings.density_max, settings.adaptation)
+        measured = Measured(sample.position, sample.velocity, sample.variance)
         dt = sample.t - step.sample.t
-        axes: list[Axis] = []
-        surprise = 0.0  # normalised innovation squared, summed
-        terms = 0
-        for i, axis in enumerate(_carry(step.axes, dt, step.density)):
-            r = sample.variance[i]
-            s = axis.xx + r
-            y = sample.position[i] - axis.x
-            surprise += y * y / s
-            terms += 1
-            kx, kv = axis.xx / s, axis.xv / s
-            axis = Axis(axis.x + kx * y, axis.v + kv * y, axis.xx * r / s, axis.xv * r / s,
-                        axis.vv - kv * axis.xv)
-            r = sample.variance[3 + i]
-            if r >= 0.0:
-                s = axis.vv + r
-                y = sample.velocity[i] - axis.v
-                surprise += y * y / s
-                terms += 1
-                kx, kv = axis.xv / s, axis.vv / s
-                axis = Axis(axis.x + kx * y, axis.v + kv * y, axis.xx - kx * axis.xv, axis.xv * r / s,
-                            axis.vv * r / s)
-            axes.append(axis)
-        ratio = min(surprise / terms, 25.0)
-        low, high = log(self.settings.density_min), log(self.settings.density_max)
-        level = log(step.density) + self.settings.adaptation * (ratio - 1.0)
-        return _Step(sample, (axes[0], axes[1], axes[2]), exp(min(max(level, low), high)))
+        found = corrected(carry(step.axes, dt, step.density), step.density, measured, learning)
+        return _Step(sample, found.axes, found.density)
 
 
 def _instant(step: _Step) -> float:
@@ -279,26 +247,10 @@ def _same(a: _Sample, b: _Sample) -> bool:
     return abs(a.t - b.t) < 1e-6 and a.position == b.position
 
 
-def _carry(axes: tuple[Axis, Axis, Axis], dt: float, density: float) -> tuple[Axis, Axis, Axis]:
-    """The axes `dt` seconds later under white acceleration of the given density."""
-    a, b, c = axes
-    return (_carry_axis(a, dt, density), _carry_axis(b, dt, density), _carry_axis(c, dt, density))
-
-
-def _carry_axis(a: Axis, dt: float, density: float) -> Axis:
-    return Axis(
-        a.x + dt * a.v,
-        a.v,
-        a.xx + dt * (2.0 * a.xv + dt * (a.vv + density * dt / 3.0)),
-        a.xv + dt * (a.vv + density * dt / 2.0),
-        a.vv + density * dt,
-    )
-
-
-def _carry_back(axes: tuple[Axis, Axis, Axis], dt: float, density: float) -> tuple[Axis, Axis, Axis]:
+def _carry_back(axes: Axes, dt: float, density: float) -> Axes:
     """The axes `dt` seconds earlier (before the history): as uncertain as the same time later."""
     turned = [Axis(a.x, -a.v, a.xx, -a.xv, a.vv) for a in axes]
-    a, b, c = _carry((turned[0], turned[1], turned[2]), dt, density)
+    a, b, c = carry((turned[0], turned[1], turned[2]), dt, density)
     return (a._replace(v=-a.v, xv=-a.xv), b._replace(v=-b.v, xv=-b.xv), c._replace(v=-c.v, xv=-c.xv))
 
 
@@ -316,7 +268,7 @@ def _between(before: _Step, after: _Step, t: float) -> Estimate:
     return Estimate(t, position, velocity, max(a.sigma, b.sigma), max(a.sigma_velocity, b.sigma_velocity))
 
 
-def _estimate(t: float, axes: tuple[Axis, Axis, Axis]) -> Estimate:
+def _estimate(t: float, axes: Axes) -> Estimate:
     a, b, c = axes
     return Estimate(
         t,

@@ -18,7 +18,7 @@ from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import ZERO, Vec, along
 from onboard.game.plugins import evader_strategy, pursuer_strategy
 from onboard.game.scenario import Scenario, load
-from onboard.pilot.track_filter import Variance
+from onboard.pilot.kalman import Variance
 from sim_bridge.plane_game.setup import conditions_of, game_of
 from sim_bridge.vehicle.motion import Motion
 from sim_bridge.world.sensor import Sensor

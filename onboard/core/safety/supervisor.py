@@ -73,7 +73,7 @@ def supervise(wanted: Vec, seen: SupervisorInput, policy: Policy, state: Supervi
     wind = ZERO if policy.envelope.hovers or not believable(ZERO, seen.wind) else seen.wind
     if demand.action < Action.HOLD:
         if is_finite(wanted):
-            allowed = _allow(wanted, wind, seen, policy, state)
+            allowed = allow(wanted, wind, seen, policy, state)
         if not is_finite(wanted) or not is_finite(allowed.air):
             demand = HealthAction(Action.HOLD, Cause.NOT_FINITE, False)
         elif allowed.cause != Cause.NONE:
@@ -187,7 +187,7 @@ def advance(state: SupervisorState, demand: HealthAction, now: float, settle: fl
     )
 
 
-def _allow(wanted: Vec, wind: Vec, seen: SupervisorInput, policy: Policy, state: SupervisorState) -> Allowed:
+def allow(wanted: Vec, wind: Vec, seen: SupervisorInput, policy: Policy, state: SupervisorState) -> Allowed:
     """Clip by limits, then give way to team mates, then keep inside the fences: the later rule outranks."""
     e = policy.envelope
     age = clamp(seen.telemetry_age, 0.0, policy.telemetry_age)

@@ -9,13 +9,14 @@ from typing import NamedTuple
 import numpy as np
 
 from onboard.core.math.vectors import ZERO, Vec, norm
+from onboard.pilot.kalman import Variance
 from onboard.pilot.predictor import model as flying
 from onboard.pilot.predictor.grid import Grid
 from onboard.pilot.predictor.model import Model, ModelSettings
 from onboard.pilot.predictor.path import Path, at, path, sound
 from onboard.pilot.predictor.prediction import REFUSAL, Prediction, PredictorKind
 from onboard.pilot.predictor.trust import Trust
-from onboard.pilot.track_filter import Fate, FilterSettings, TrackFilter, Variance
+from onboard.pilot.track_filter import Fate, FilterSettings, TrackFilter
 
 FARTHEST = 600.0  # nothing is said about instants farther from the newest sample than this [s]
 

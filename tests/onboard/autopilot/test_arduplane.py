@@ -10,9 +10,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from onboard.autopilot.arduplane import ArduPlaneEncoder, bank_for
+from onboard.autopilot.arduplane import ArduPlaneEncoder
 from onboard.autopilot.base import ReleaseMode, Setpoint, Stage
 from onboard.autopilot.guided import GuidedAdapter
+from onboard.core.guidance.plane import bank_for
 from onboard.core.math.angles import wrap
 from onboard.core.math.vectors import ZERO, Vec, direction, norm, scale
 from onboard.wire.mavlink.commands import CommandInt, CommandLong, RollTarget, Target

@@ -9,7 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onboard.core.math.vectors import Vec, distance, norm
-from onboard.pilot.track_filter import Fate, FilterSettings, TrackFilter, Variance
+from onboard.pilot.kalman import Variance
+from onboard.pilot.track_filter import Fate, FilterSettings, TrackFilter
 
 EXACT: Variance = (0.01, 0.01, 0.01, -1.0, -1.0, -1.0)
 ROUGH: Variance = (9.0, 9.0, 9.0, -1.0, -1.0, -1.0)

@@ -11,8 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onboard.core.math.vectors import Vec, distance
+from onboard.pilot.kalman import Variance
 from onboard.pilot.predictor import PredictorKind, TrackPredictor, Trainer
-from onboard.pilot.track_filter import Variance
 
 UNMEASURED: Variance = (0.01, 0.01, 0.01, -1.0, -1.0, -1.0)
 
