@@ -299,7 +299,6 @@ class Rehearsal:
                     raise error
 
 
-
 async def _live(agent: Agent, bus: MemoryBus) -> None:
     """An agent's life: with its process goes its connection to the bus."""
     try:

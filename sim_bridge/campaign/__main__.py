@@ -100,7 +100,8 @@ def games(
     """The spatial game with the evader's strategy and flying straight, on the same seeds."""
     from onboard.game.scenario import load
     from sim_bridge.campaign.figures import draw_stages
-    from sim_bridge.campaign.spatial_campaign import contest, output, play_seed, spatial, table
+    from sim_bridge.campaign.spatial_campaign import contest, output, play_seed, table
+    from sim_bridge.campaign.spatial_draw import spatial
     from sim_bridge.campaign.spatial_game import Evasion
 
     made(out)

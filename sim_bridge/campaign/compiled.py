@@ -52,8 +52,8 @@ KERNELS = (
 )
 
 # Everything is inlined, or else the many small functions would pass whole games by value; but
-# this one is called from every rule and would swell the code.
-OUT_OF_LINE = frozenset({"free_ray_limited"})
+# these are called from many places and would swell the code.
+OUT_OF_LINE = frozenset({"free_ray_limited", "allow"})
 
 Array = NDArray[np.float64]
 
@@ -75,7 +75,7 @@ def _functions(module: ModuleType) -> list[FunctionType]:
 def _register(function: FunctionType) -> None:
     if id(function) in _registered or function.__module__ == each_module.__name__:
         return
-    if not function.__module__.startswith(("onboard.core", "sim_bridge")):
+    if not function.__module__.startswith(("onboard.core", "onboard.pilot", "sim_bridge")):
         return
     _registered.add(id(function))
     _register_parts(function)

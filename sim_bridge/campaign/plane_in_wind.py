@@ -10,12 +10,31 @@ from typing import NamedTuple
 
 from onboard.core.math.vectors import NORTH, Vec, norm, pitch_of, unit, yaw_of
 from onboard.game.scenario import WindSpec
-from sim_bridge.vehicle.flight.plane import Command, PlaneModel, PlaneState, Steer, nose_yaw, step_plane
+from sim_bridge.draws import Purpose, key_of, threefry, uniform
+from sim_bridge.vehicle.flight.plane import (
+    Command,
+    PlaneModel,
+    PlaneState,
+    Steer,
+    nose_yaw,
+    step_plane,
+    true_airspeed,
+)
 from sim_bridge.vehicle.wind.dryden import GustAxes, GustNoise, GustState, first_gust, gust_of, step_gust
 from sim_bridge.vehicle.wind.field import wind_vector
 from sim_bridge.vehicle.wind.shear import ROUGHNESS, mean_wind
 
 GUST_EVERY = 2  # samples of the aircraft between two of the gusts (100 Hz and 50 Hz)
+
+
+def gust_tick(sample: int) -> int:
+    """The tick of the gusts that comes with a sample of the aircraft, −1 where none does.
+
+    Samples are counted from the beginning of the world, whose first step is from sample 0 to 1, and its air
+    is that of the step's end.
+    """
+    step = sample + 1
+    return step // GUST_EVERY if step % GUST_EVERY == 0 else -1
 
 
 class Climate(NamedTuple):
@@ -40,6 +59,13 @@ def climate_of(wind: WindSpec) -> Climate:
     reference = wind_vector(wind.speed, wind.from_deg)
     axis = unit(reference, NORTH)
     return Climate(reference, wind.shear, wind.gust_sigma, axis.x, axis.y)
+
+
+def drawn_wind(seed: int) -> float:
+    """Where a seed's wind comes from [deg]."""
+    key = key_of(seed, 0, Purpose.WIND)
+    a, _b = threefry(key.a, key.b, 0, 0)
+    return 360.0 * float(uniform(a))
 
 
 def wind_at(climate: Climate, position: Vec) -> Vec:
@@ -68,10 +94,13 @@ def command_for(velocity: Vec, course: float) -> Command:
     return Command(Steer.COURSE, yaw_of(velocity), pitch_of(velocity), speed)
 
 
-def blown(flown: Flown, dt: float, noise: GustNoise) -> Flown:
-    """The gusts after one tick of their grid, `dt` [s]."""
+def blown(flown: Flown, model: PlaneModel, climate: Climate, noise: GustNoise) -> Flown:
+    """The gusts after one tick of their grid."""
     plane = flown.plane
-    return Flown(plane, step_gust(flown.gusts, plane.speed, -plane.position.z, dt, noise))
+    gust = gust_at(climate, flown, model)
+    speed = true_airspeed(plane, wind_at(climate, plane.position), gust)
+    dt = GUST_EVERY * model.dt
+    return Flown(plane, step_gust(flown.gusts, speed, -plane.position.z, dt, noise))
 
 
 def fly(flown: Flown, model: PlaneModel, command: Command, climate: Climate) -> Flown:

@@ -10,12 +10,11 @@ import json
 import subprocess
 import sys
 import tomllib
-from math import atan2, degrees
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from onboard.game.scenario import load
-from sim_bridge.campaign.spatial_campaign import draw
+from sim_bridge.campaign.spatial_draw import drawn_scenario
 from sim_bridge.campaign.spatial_game import Evasion
 
 PATIENCE = 1800.0  # [s] of wall time for one game
@@ -45,13 +44,11 @@ def inline(value: Any) -> str:
 def drawn(path: Path, seed: int, evasion: Evasion) -> str:
     """The scenario file of a seed's draw, and of how the evader flies."""
     data = tomllib.loads(path.read_text(encoding="utf-8"))
-    d = draw(load(path), seed)
-    for spec, flown in zip([data["evader"], *data["pursuers"]], d.players, strict=True):
-        place = flown.plane.position
-        spec["position"] = [round(float(x), 3) for x in (place.x, place.y, -place.z)]
-    wind = d.start.climate.reference
-    data["flight"]["wind"]["from_deg"] = round(degrees(atan2(-wind.y, -wind.x)) % 360.0, 3)
-    data["seed"] = seed
+    found = drawn_scenario(load(path), seed)
+    for spec, vehicle in zip([data["evader"], *data["pursuers"]], found.vehicles, strict=True):
+        spec["position"] = list(vehicle.position)
+    data["flight"]["wind"]["from_deg"] = found.flight.wind.from_deg
+    data["seed"] = found.seed
     if evasion is Evasion.STRAIGHT:
         data["evader"]["strategy"] = "straight"
     return "\n".join(f"{key} = {inline(value)}" for key, value in data.items()) + "\n"

@@ -6,44 +6,20 @@ the gusts and the tracks' noise. Both ways of flying meet the same draw.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import cache
-from math import degrees, exp, radians, sqrt
+from math import degrees, radians
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
 from onboard.core.game.referee import GameResult
-from onboard.core.math.vectors import Vec, add, yaw_of
-from onboard.game.scenario import Scenario, load
-from onboard.game.staging import places_of, start_headings
+from onboard.game.scenario import Scenario
 from onboard.runtime.progress import Tell, over, part, silent
-from onboard.runtime.resources import configs
 from onboard.runtime.run_folder import made
-from sim_bridge.campaign.compiled import KERNELS as CORE
-from sim_bridge.campaign.compiled import register
-from sim_bridge.campaign.plane_in_wind import GUST_EVERY, Flown, climate_of, launched, wind_at
-from sim_bridge.campaign.spatial_game import Band, Evasion, Fleet, Noise, Sensor, SpatialPlay, Start, play
-from sim_bridge.plane_game.setup import conditions_of, game_of
-from sim_bridge.vehicle.flight import KERNELS as FLIGHT
-from sim_bridge.vehicle.flight.aircraft import named, within
-from sim_bridge.vehicle.flight.plane import Command, Steer, start_state, trimmed
-from sim_bridge.vehicle.wind import KERNELS as WIND
-from sim_bridge.vehicle.wind.dryden import GustNoise
+from sim_bridge.campaign.spatial_draw import T0, Draw, compiled_kernel, draw, typed
+from sim_bridge.campaign.spatial_game import Evasion, SpatialPlay, play
 
-KERNELS = (
-    *CORE,
-    *FLIGHT,
-    *WIND,
-    "sim_bridge.campaign.plane_in_wind",
-    "sim_bridge.campaign.spatial_game",
-)
-FILTER_TIME = 0.8  # [s] over which a track filter averages
-PLACE_SIGMA = 300.0  # [m] by which a seed moves each pursuer's start, level
-HEIGHT_SIGMA = 60.0  # [m] and in height
 REVERSAL = radians(10.0)  # a turn one way, then the other
 WITHIN = 2.0  # [s]
 
@@ -62,99 +38,18 @@ class Played(NamedTuple):
     log: Array  # (steps, players, 5): position [m; NED], flown and decided course [rad]
 
 
-class Draw(NamedTuple):
-    """Everything a seed fixes."""
-
-    start: Start
-    players: list[Flown]  # evader first
-    noise: Noise
-
-
-def spatial(name: str) -> Scenario:
-    """`configs/scenarios/spatial/<name>.toml`."""
-    return load(configs() / "scenarios" / "spatial" / f"{name}.toml")
+def play_seed(
+    scenario: Scenario, seed: int, evasion: Evasion, compiled: bool = True, t0: float = T0
+) -> Played:
+    """One game of a scenario, compiled or by the same kernels interpreted; see `draw`."""
+    return play_drawn(draw(scenario, seed, t0, compiled), evasion, compiled)
 
 
-def draw(scenario: Scenario, seed: int) -> Draw:
-    """The game of a seed; seed 0 starts from the scenario's places exactly."""
-    rng = np.random.default_rng([scenario.seed, seed])
-    conditions = conditions_of(scenario)
-    wind = scenario.flight.wind
-    if seed != 0:
-        wind = msgspec.structs.replace(wind, from_deg=float(rng.uniform(0.0, 360.0)))
-    climate = climate_of(wind)
-    places = drawn_places(scenario, rng, 0.0 if seed == 0 else 1.0)
-    aircraft = named(scenario.flight.airframe.value).model
-    fleet = Fleet(*(within(aircraft, spec.limits()) for spec in scenario.vehicles[:2]))
-    horizon, dt = conditions.rules.horizon, conditions.control.dt
-    ticks = int(horizon / fleet.evader.dt) // GUST_EVERY + 8
-    gusts = rng.standard_normal((ticks, len(places), 5))
-    tracks = filtered(rng.standard_normal((int(horizon / dt) + 8, len(places), 6)), dt)
-    game = game_of(scenario, places)
-    players: list[Flown] = []
-    headings = start_headings(scenario, places)
-    for index, (start, heading, spec) in enumerate(zip(places, headings, scenario.vehicles, strict=True)):
-        model = fleet.pursuer if index else fleet.evader
-        plane = trimmed(start_state(start, yaw_of(heading), spec.speed, wind_at(climate, start)), model)
-        players.append(launched(plane, GustNoise(*map(float, gusts[0, index]))))
-    sensor = scenario.flight.sensor
-    # What a constant-velocity filter leaves of white noise.
-    left = min(1.0, sqrt(2.0 / (sensor.rate_hz * FILTER_TIME)))
-    seen = Sensor(sensor.sigma * left, sensor.sigma_velocity * left)
-    fence = scenario.flight.fence
-    band = Band(-1e9, 1e9) if fence is None else Band(fence.height_min, fence.height_max)
-    return Draw(Start(game, conditions, fleet, climate, seen, band), players, Noise(gusts, tracks))
-
-
-def drawn_places(scenario: Scenario, rng: np.random.Generator, share: float) -> tuple[Vec, ...]:
-    """Where everybody starts [m; NED]: the evader at its place, each pursuer off it by `share` of a draw."""
-    evader, *others = places_of(scenario)
-    places = [evader]
-    for place in others:
-        n = rng.standard_normal(3) * share
-        off = Vec(PLACE_SIGMA * float(n[0]), PLACE_SIGMA * float(n[1]), HEIGHT_SIGMA * float(n[2]))
-        places.append(add(place, off))
-    return tuple(places)
-
-
-def filtered(white: Array, dt: float) -> Array:
-    """White noise (steps, …) as a track filter leaves it: unit variance, correlated over FILTER_TIME."""
-    from scipy.signal import lfilter
-
-    a = exp(-dt / FILTER_TIME)
-    first = white[:1] * a / sqrt(1.0 - a * a)  # stationary from the start
-    padded = np.concatenate([first, white])
-    return np.ascontiguousarray(lfilter([sqrt(1.0 - a * a)], [1.0, -a], padded, axis=0)[1:])
-
-
-@cache
-def compiled_play() -> Callable[..., SpatialPlay]:
-    """The game compiled; once for each number of pursuers."""
-    import numba
-
-    register(KERNELS)
-    found: Callable[..., SpatialPlay] = numba.njit(nogil=True)(play)
-    return found
-
-
-def _list(items: list[Any], compiled: bool) -> Any:
-    if not compiled:
-        return list(items)
-    from numba.typed import List
-
-    typed = List()
-    for item in items:
-        typed.append(item)
-    return typed
-
-
-def play_seed(scenario: Scenario, seed: int, evasion: Evasion, compiled: bool = True) -> Played:
-    """One game of a scenario, compiled or by the same kernels interpreted."""
-    d = draw(scenario, seed)
-    log = np.zeros((d.noise.tracks.shape[0], len(d.players), 5))
-    still = [Command(Steer.COURSE, 0.0, 0.0, 0.0)] * len(d.players)
-    found = (compiled_play() if compiled else play)(
-        d.start, evasion, _list(d.players, compiled), _list(still, compiled), d.noise, log
+def play_drawn(d: Draw, evasion: Evasion, compiled: bool = True) -> Played:
+    """Play a drawn game out. It uses up the draw's tracks."""
+    log = np.zeros((d.steps, len(d.players), 5))
+    found = (compiled_kernel(play) if compiled else play)(
+        d.start, evasion, typed(d.players, compiled), typed(d.crew, compiled), d.tracks, log
     )
     log = log[: found.steps]
     span = round(WITHIN / d.start.conditions.control.dt)

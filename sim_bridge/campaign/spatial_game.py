@@ -1,9 +1,9 @@
 """The spatial game of 4.4 with the aircraft as flown, in its wind: one kernel, interpreted or compiled.
 
-Everybody decides at the control rate from what they see, in the moving air; the aircraft and the gusts are
-stepped by the same kernels that the bridge flies. Opponents are seen with the sensor's noise, own states
-exactly. Pursuers see the evader's measured direction of flight, not its decision. Capture, arrival and
-the safety distance are judged on ground positions.
+It is the game that `fly --fast` plays, without its messages: the aircraft, gusts and sensor by the same
+functions and the same random numbers, the tracks filtered as onboard, everybody's decision through the
+supervisor and the autopilot, all of it at the instants of a flight (`Pace`). Capture, arrival and the
+safety distance are judged on ground positions.
 """
 
 from __future__ import annotations
@@ -14,18 +14,30 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from onboard.core.game.advance import Conditions, Game, decide_pursuers, judged
+from onboard.core.game.advance import Conditions, Game, judged
 from onboard.core.game.referee import GameResult
-from onboard.core.game.views import EvaderView, evader_view, heading_at, sighted
+from onboard.core.game.views import (
+    EvaderView,
+    Nearest,
+    evader_view,
+    heading_at,
+    nearest_mate,
+    pursuer_view,
+    sighted,
+)
 from onboard.core.math.each import each
-from onboard.core.math.states import Vehicle, VehicleLimits
-from onboard.core.math.vectors import Vec, clamp, scale
+from onboard.core.math.states import Mate, Vehicle
+from onboard.core.math.vectors import ZERO, Vec, pitch_of, scale, yaw_of
+from onboard.core.safety.policy import Policy
 from onboard.core.strategy.evasion import evader, straight
 from onboard.core.strategy.knowledge import Decision
 from onboard.core.strategy.pursuit import pursuer
-from sim_bridge.campaign.plane_in_wind import GUST_EVERY, Climate, Flown, blown, command_for, fly, wind_at
-from sim_bridge.vehicle.flight.plane import Command, PlaneModel
-from sim_bridge.vehicle.wind.dryden import GustNoise
+from sim_bridge.campaign.aboard import NOBODY, Aboard, Autopilot, Instant, commanded, ordered
+from sim_bridge.campaign.plane_in_wind import Climate, Flown, blown, fly, gust_tick, wind_at
+from sim_bridge.campaign.tracks import Eye, Tracks, track_of, watched
+from sim_bridge.draws import Key
+from sim_bridge.vehicle.flight.plane import Command, PlaneModel, placed
+from sim_bridge.vehicle.wind.dryden import gust_noise
 
 Array = NDArray[np.float64]
 
@@ -44,22 +56,16 @@ class Fleet(NamedTuple):
     pursuer: PlaneModel
 
 
-class Sensor(NamedTuple):
-    """Noise of the tracks, one sigma an axis."""
+class Pace(NamedTuple):
+    """When what happens, in samples of the aircraft, as measured in flight.
 
-    position: float  # [m]
-    velocity: float  # [m/s]
+    Samples are counted from the beginning of the world. A position is told with the sample after its own,
+    and what is decided on it flies from there on.
+    """
 
-
-class Band(NamedTuple):
-    """Heights between which the game is played [m]."""
-
-    low: float
-    high: float
-
-
-MARGIN = 150.0  # [m] over which the pitch limits close towards the band's edges
-BACK = -0.25  # share of the pitch limits at which a vehicle beyond an edge must come back
+    t0: int  # the game begins
+    control: int  # between two decisions
+    decides: int  # remainder at which everybody decides
 
 
 class Envelope(NamedTuple):
@@ -73,34 +79,6 @@ class Envelope(NamedTuple):
     surface: float  # largest share of a servo's stroke
 
 
-def banded(limits: VehicleLimits, height: float, band: Band) -> VehicleLimits:
-    """Limits (2)–(3) at `height` [m]: no descent at the band's lower edge, no climb at its upper one,
-    and beyond them back into it."""
-    down = clamp((height - band.low) / MARGIN, BACK, 1.0)
-    up = clamp((band.high - height) / MARGIN, BACK, 1.0)
-    return VehicleLimits(
-        limits.speed_min,
-        limits.speed_max,
-        limits.pitch_min * down,
-        limits.pitch_max * up,
-        limits.yaw_min,
-        limits.yaw_max,
-        limits.turn_rate,
-    )
-
-
-class Heights(NamedTuple):
-    """What bounds the pitch of a pursuer (for `each`)."""
-
-    states: Array  # as in Sight
-    band: Band
-
-
-def banded_pursuer(limits: VehicleLimits, index: int, heights: Heights) -> VehicleLimits:
-    """Pursuer `index`'s limits where it is (for `each`)."""
-    return banded(limits, -heights.states[index + 1, 2], heights.band)
-
-
 class SpatialPlay(NamedTuple):
     """How a game ended."""
 
@@ -110,38 +88,41 @@ class SpatialPlay(NamedTuple):
     envelope: Envelope
 
 
-class Sight(NamedTuple):
-    """What turns an aircraft into a vehicle as somebody sees it (for `each`)."""
+class Start(NamedTuple):
+    """A game before its first step, and what it is played under."""
 
-    states: Array  # (players, 7): position [m], velocity over ground [m/s; NED], course through the air [rad]
+    game: Game
+    conditions: Conditions
+    fleet: Fleet
     climate: Climate
-    noise: Array  # (players, 6) in sigmas
-    position: float  # sigma [m]
-    velocity: float  # sigma [m/s]
+    eye: Eye
+    pace: Pace
+    policies: tuple[Policy, ...]  # of the supervisors, evader first
+    autopilots: tuple[Autopilot, ...]
+    gusts: tuple[Key, ...]  # of everybody's random numbers
 
 
-def seen(index: int, speed: float, sight: Sight) -> Vehicle:
-    """Player `index` as a vehicle in the moving air, with the sensor's noise."""
-    s = sight.states[index]
-    n = sight.noise[index]
-    p = sight.position
-    v = sight.velocity
-    place = Vec(s[0], s[1], s[2])
-    wind = wind_at(sight.climate, place)
-    return Vehicle(
-        Vec(place.x + p * n[0], place.y + p * n[1], place.z + p * n[2]),
-        Vec(
-            s[3] - wind.x + v * n[3],
-            s[4] - wind.y + v * n[4],
-            s[5] - wind.z + v * n[5],
-        ),
-        speed,
+class Team(NamedTuple):
+    """The pursuers when they decide (for `each`)."""
+
+    start: Start
+    states: (
+        Array  # (players, 6): positions [m; NED] and velocities over ground [m/s] as their agents know them
     )
+    seen: Tracks
+    now: int  # sample
 
 
-def seen_pursuer(vehicle: Vehicle, index: int, sight: Sight) -> Vehicle:
-    """Pursuer `index` (for `each`)."""
-    return seen(index + 1, vehicle.speed, sight)
+def known(states: Array, index: int) -> Vehicle:
+    """Player `index` as its agent knows it: place and velocity over ground (its speed is nobody's)."""
+    s = states[index]
+    return Vehicle(Vec(s[0], s[1], s[2]), Vec(s[3], s[4], s[5]), 0.0)
+
+
+def in_air(vehicle: Vehicle, wind: Vec, speed: float) -> Vehicle:
+    """A vehicle over ground as one in moving air."""
+    v = vehicle.velocity
+    return Vehicle(vehicle.position, Vec(v.x - wind.x, v.y - wind.y, v.z - wind.z), speed)
 
 
 def decide_evader(view: EvaderView, evasion: Evasion) -> Decision:
@@ -151,13 +132,94 @@ def decide_evader(view: EvaderView, evasion: Evasion) -> Decision:
     return evader(view)
 
 
-def order(decision: Decision, course: float) -> Command:
-    """The autopilot's command for a decision: course and pitch through the air, airspeed."""
-    return command_for(scale(decision.direction, decision.speed), course)
+class Watch(NamedTuple):
+    """What the evader sees the pursuers by (for `each`)."""
+
+    seen: Tracks
+    now: int
+    wind: Vec  # at the evader [m/s]
+    dt: float  # [s] of a sample
+
+
+def opponent(vehicle: Vehicle, index: int, watch: Watch) -> Vehicle:
+    """Pursuer `index` as the evader sees it (for `each`)."""
+    return in_air(track_of(watch.seen, index + 1, watch.now, watch.dt), watch.wind, vehicle.speed)
+
+
+def mate_of(_vehicle: Vehicle, index: int, states: Array) -> Mate:
+    """Pursuer `index` as its team mates know it (for `each`)."""
+    here = known(states, index + 1)
+    return Mate(index + 2, here.position, here.velocity, 0.0)
+
+
+def place_of(mate: Mate, _index: int, _shared: float) -> Vec:
+    """Where a mate is (for `each`)."""
+    return mate.position
+
+
+def decide_pursuer(vehicle: Vehicle, index: int, team: Team) -> Decision:
+    """Pursuer `index`'s decision (for `each`)."""
+    start = team.start
+    game = start.game
+    rules, control = start.conditions.rules, start.conditions.control
+    own = known(team.states, index + 1)
+    wind = wind_at(start.climate, own.position)
+    spotted = in_air(track_of(team.seen, 0, team.now, start.fleet.evader.dt), wind, game.evader.speed)
+    sighting = sighted(spotted, heading_at(spotted), control.lookahead)
+    mate = Nearest(False, own.position)
+    if rules.separation > 0.0:
+        places = each(place_of, each(mate_of, game.pursuers, team.states), 0.0)
+        mate = nearest_mate(own.position, places, index)
+    me = in_air(own, wind, vehicle.speed)
+    return pursuer(pursuer_view(me, game.pursuer_limits[index], sighting, mate, control, rules))
+
+
+def order(start: Start, aboard: Aboard, decision: Decision, states: Array, place: tuple[int, int]) -> Aboard:
+    """What becomes of the decision of a player; `place` is its number and the sample."""
+    index, now = place
+    own = known(states, index)
+    at = Instant(
+        now * start.fleet.evader.dt,
+        own.position,
+        own.velocity,
+        wind_at(start.climate, own.position),
+        index + 1,
+    )
+    mates = each(mate_of, start.game.pursuers, states)
+    if index == 0:  # nobody is the evader's mate
+        mates = each(nobody, start.game.pursuers, 0.0)
+    return ordered(aboard, scale(decision.direction, decision.speed), at, start.policies[index], mates)
+
+
+def nobody(_vehicle: Vehicle, _index: int, _shared: float) -> Mate:
+    """A mate that does not count (for `each`)."""
+    return NOBODY
+
+
+def decide_all(
+    start: Start, evasion: Evasion, crew: list[Aboard], seen: Tracks, states: Array, decided: Array
+) -> None:
+    """Everybody's decision into `crew`, evader first, and its course and pitch [rad] into `decided`."""
+    game, conditions = start.game, start.conditions
+    now, dt = int(decided[0, 2]), start.fleet.evader.dt
+    own = known(states, 0)
+    wind = wind_at(start.climate, own.position)
+    others = each(opponent, game.pursuers, Watch(seen, now, wind, dt))
+    me = in_air(own, wind, game.evader.speed)
+    view = evader_view(me, game.evader_limits, others, conditions.target, wind, conditions.rules)
+    decision = decide_evader(view, evasion)
+    crew[0] = order(start, crew[0], decision, states, (0, now))
+    decided[0, 0] = yaw_of(decision.direction)
+    decided[0, 1] = pitch_of(decision.direction)
+    decisions = each(decide_pursuer, game.pursuers, Team(start, states, seen, now))
+    for i in range(len(decisions)):
+        crew[i + 1] = order(start, crew[i + 1], decisions[i], states, (i + 1, now))
+        decided[i + 1, 0] = yaw_of(decisions[i].direction)
+        decided[i + 1, 1] = pitch_of(decisions[i].direction)
 
 
 def note(states: Array, index: int, flown: Flown) -> None:
-    """Write down where aircraft `index` is: what the others can see of it."""
+    """Write down where aircraft `index` is, and its velocity over ground."""
     plane = flown.plane
     states[index, 0] = plane.position.x
     states[index, 1] = plane.position.y
@@ -165,7 +227,6 @@ def note(states: Array, index: int, flown: Flown) -> None:
     states[index, 3] = plane.velocity.x
     states[index, 4] = plane.velocity.y
     states[index, 5] = plane.velocity.z
-    states[index, 6] = plane.course
 
 
 def widened(e: Envelope, flown: Flown, model: PlaneModel, declared: float) -> Envelope:
@@ -185,117 +246,104 @@ def widened(e: Envelope, flown: Flown, model: PlaneModel, declared: float) -> En
     )
 
 
-class Gusts(NamedTuple):
-    """What drives the gusts that one aircraft meets."""
-
-    climate: Climate
-    noise: Array  # (ticks, players, 5) standard normal
-    player: int  # the aircraft, 0 = the evader
-
-
-def flown_on(
-    flown: Flown, model: PlaneModel, command: Command, gusts: Gusts, sample: int, count: int
-) -> Flown:
-    """`count` samples of one aircraft, with the gusts' grid, from sample number `sample` on."""
-    for k in range(sample, sample + count):
-        if k % GUST_EVERY == 0 and k > 0:
-            n = gusts.noise[k // GUST_EVERY, gusts.player]
-            drive = GustNoise(n[0], n[1], n[2], n[3], n[4])
-            flown = blown(flown, GUST_EVERY * model.dt, drive)
-        flown = fly(flown, model, command, gusts.climate)
-    return flown
+def moved_on(start: Start, index: int, flown: Flown, command: Command, sample: int) -> Flown:
+    """One sample of aircraft `index`, with the gusts' grid."""
+    model = start.fleet.pursuer if index else start.fleet.evader
+    tick = gust_tick(sample)
+    if tick >= 0:
+        flown = blown(flown, model, start.climate, gust_noise(start.gusts[index], tick))
+    return fly(flown, model, command, start.climate)
 
 
-class Start(NamedTuple):
-    """A game before its first step, and what it is played under."""
-
-    game: Game
-    conditions: Conditions
-    fleet: Fleet
-    climate: Climate
-    sensor: Sensor
-    band: Band
+def commanded_on(start: Start, index: int, aboard: Aboard, flown: Flown, sample: int) -> Flown:
+    """One sample of aircraft `index` as its autopilot flies it."""
+    model = start.fleet.pursuer if index else start.fleet.evader
+    down = wind_at(start.climate, flown.plane.position).z
+    told = commanded(aboard, flown.plane, model, start.autopilots[index], down)
+    return moved_on(start, index, flown, told, sample)
 
 
-class Noise(NamedTuple):
-    """The random numbers of a game."""
+def approach(start: Start, players: list[Flown], seen: Tracks, level: list[Command]) -> None:
+    """Fly on the start's heading until t₀ and be at the start's place then. Changes its lists in place.
 
-    gusts: Array  # (ticks, players, 5) standard normal
-    tracks: Array  # (steps, players, 6) errors of the tracks, in sigmas
-
-
-def decide_all(
-    start: Start, game: Game, states: Array, noise: Array, evasion: Evasion, commands: list[Command]
-) -> None:
-    """Everybody's decision as `commands`, evader first; `noise` (players, 6) is that of the tracks now."""
-    climate, sensor, band, conditions = start.climate, start.sensor, start.band, start.conditions
-    exact = Sight(states, climate, noise, 0.0, 0.0)
-    noisy = Sight(states, climate, noise, sensor.position, sensor.velocity)
-    own = seen(0, game.evader.speed, exact)
-    others = each(seen_pursuer, game.pursuers, noisy)
-    limits = banded(game.evader_limits, -own.position.z, band)
-    wind = wind_at(climate, own.position)
-    view = evader_view(own, limits, others, conditions.target, wind, conditions.rules)
-    commands[0] = order(decide_evader(view, evasion), states[0, 6])
-    spotted = seen(0, game.evader.speed, noisy)
-    sighting = sighted(spotted, heading_at(spotted), conditions.control.lookahead)
-    team = Game(
-        game.time,
-        spotted,
-        each(seen_pursuer, game.pursuers, exact),
-        game.evader_limits,
-        each(banded_pursuer, game.pursuer_limits, Heights(states, band)),
-        game.score,
-    )
-    decisions = decide_pursuers(team, sighting, conditions, pursuer)
-    for i in range(len(decisions)):
-        commands[i + 1] = order(decisions[i], states[i + 1, 6])
-
-
-def write_down(log: Array, states: Array, commands: list[Command]) -> None:
-    """Everybody's place, flown course and decided course into `log` (players, 5)."""
-    for i in range(len(commands)):
-        log[i, 0] = states[i, 0]
-        log[i, 1] = states[i, 1]
-        log[i, 2] = states[i, 2]
-        log[i, 3] = states[i, 6]
-        log[i, 4] = commands[i].angle
+    What gusts make of an aircraft in that time is so what they make of it in flight before t₀, and the tracks
+    are not new.
+    """
+    pace, eye = start.pace, start.eye
+    dt = start.fleet.evader.dt
+    states = np.empty((len(players), 6))
+    places = np.empty((len(players), 3))
+    for i in range(len(players)):
+        note(states, i, players[i])
+        for axis in range(3):
+            places[i, axis] = states[i, axis]
+    for sample in range(pace.t0):
+        watched(seen, eye, sample, states, dt)
+        for i in range(len(players)):
+            players[i] = moved_on(start, i, players[i], level[i], sample)
+            note(states, i, players[i])
+    for i in range(len(players)):
+        plane = players[i].plane
+        place = Vec(places[i, 0], places[i, 1], places[i, 2])
+        for axis in range(3):
+            off = places[i, axis] - states[i, axis]
+            seen.filters[i, 5 * axis] += off
+            for slot in range(seen.waiting.shape[0]):
+                seen.waiting[slot, i, axis] += off
+        players[i] = Flown(placed(plane, place), players[i].gusts)
 
 
 def play(
-    start: Start, evasion: Evasion, players: list[Flown], commands: list[Command], noise: Noise, log: Array
+    start: Start, evasion: Evasion, players: list[Flown], crew: list[Aboard], seen: Tracks, log: Array
 ) -> SpatialPlay:
-    """Play a game out. Kernel style but for the lists, which it changes in place.
+    """Play a game out from t₀. Kernel style but for the lists and arrays, which it changes in place.
 
-    `players` and `commands`: evader first; `log` (steps, players, 5): position [m; NED], flown and decided
+    `players` and `crew`: evader first; `log` (steps, players, 5): position [m; NED], flown and decided
     course [rad].
     """
-    game, conditions, fleet, climate, _sensor, _band = start
-    ratio = int(conditions.control.dt / fleet.evader.dt + 0.5)
+    game, pace, eye = start.game, start.pace, start.eye
+    dt = start.fleet.evader.dt
     reach = Envelope(0.0, 0.0, 1.0, 1.0, 1e300, 0.0)
-    states = np.empty((len(players), 7))
-    for i in range(len(players)):
-        note(states, i, players[i])
+    count = len(players)
+    here = np.empty((count, 6))
+    before = np.empty((count, 6))
+    decided = np.zeros((count, 3))
+    for i in range(count):
+        note(here, i, players[i])
+        before[i] = here[i]
     steps = 0
-    sample = 0
+    sample = pace.t0
     while game.score.verdict == GameResult.RUNNING:
-        decide_all(start, game, states, noise.tracks[steps], evasion, commands)
-        write_down(log[steps], states, commands)
-        # Between two decisions nobody looks at anybody: each flies on alone.
-        gusts = Gusts(climate, noise.gusts, 0)
-        flown = flown_on(players[0], fleet.evader, commands[0], gusts, sample, ratio)
-        reach = widened(reach, flown, fleet.evader, game.evader.speed)
-        note(states, 0, flown)
-        players[0] = flown
-        for i in range(1, len(players)):
-            gusts = Gusts(climate, noise.gusts, i)
-            flown = flown_on(players[i], fleet.pursuer, commands[i], gusts, sample, ratio)
-            reach = widened(reach, flown, fleet.pursuer, game.pursuers[i - 1].speed)
-            note(states, i, flown)
-            players[i] = flown
-        sample += ratio
-        after = Sight(states, climate, noise.tracks[steps], 0.0, 0.0)
-        e = seen(0, game.evader.speed, after)
-        game = judged(game, e, each(seen_pursuer, game.pursuers, after), conditions)
+        for _ in range(pace.control):
+            watched(seen, eye, sample, here, dt)
+            if sample % pace.control == pace.decides:
+                decided[0, 2] = sample
+                decide_all(start, evasion, crew, seen, before, decided)
+                for i in range(count):
+                    log[steps, i, 0] = here[i, 0]
+                    log[steps, i, 1] = here[i, 1]
+                    log[steps, i, 2] = here[i, 2]
+                    log[steps, i, 3] = players[i].plane.course
+                    log[steps, i, 4] = decided[i, 0]
+            for i in range(count):
+                before[i] = here[i]
+                players[i] = commanded_on(start, i, crew[i], players[i], sample)
+                note(here, i, players[i])
+            sample += 1
+        for i in range(count):
+            model = start.fleet.pursuer if i else start.fleet.evader
+            reach = widened(reach, players[i], model, start.policies[i].envelope.speed_max)
+        game = judged(
+            game,
+            in_air(known(here, 0), ZERO, game.evader.speed),
+            each(standing, game.pursuers, here),
+            start.conditions,
+        )
         steps += 1
-    return SpatialPlay(game, steps, sample, reach)
+    return SpatialPlay(game, steps, sample - pace.t0, reach)
+
+
+def standing(vehicle: Vehicle, index: int, states: Array) -> Vehicle:
+    """Pursuer `index` where it is (for `each`)."""
+    here = known(states, index + 1)
+    return Vehicle(here.position, here.velocity, vehicle.speed)

@@ -23,21 +23,23 @@ from onboard.game.scenario import WindSpec
 from onboard.runtime.progress import Tell, over, part, silent
 from sim_bridge.campaign.compiled import register
 from sim_bridge.campaign.plane_in_wind import (
-    GUST_EVERY,
     Climate,
     blown,
     climate_of,
     command_for,
+    drawn_wind,
     fly,
     gust_at,
+    gust_tick,
     launched,
     wind_at,
 )
+from sim_bridge.draws import Key, Purpose, key_of
 from sim_bridge.vehicle.flight import KERNELS as FLIGHT
 from sim_bridge.vehicle.flight.aircraft import named, within
 from sim_bridge.vehicle.flight.plane import PlaneModel, PlaneState, start_state, trimmed
 from sim_bridge.vehicle.wind import KERNELS as WIND
-from sim_bridge.vehicle.wind.dryden import GustNoise
+from sim_bridge.vehicle.wind.dryden import gust_noise
 
 CONTROL_EVERY = 5  # samples between two decisions: 20 Hz
 OVERTIME = 90.0  # [s] after the last waypoint's instant at which a flight ends at the latest
@@ -81,15 +83,16 @@ def fly_route(
     route: tuple[Waypoint, ...],
     setting: Setting,
     climate: Climate,
-    noise: Array,
+    gusts: Key,
     out: Array,
 ) -> Tracked:
-    """Fly a route; `noise` (ticks, 5), `out` (waypoints, 2): deviation [m] and time error [s].
+    """Fly a route; `gusts` is the key of what drives them, `out` (waypoints, 2): deviation [m] and time
+    error [s].
 
     Kernel style.
     """
     plane, model = craft
-    flown = launched(plane, GustNoise(noise[0, 0], noise[0, 1], noise[0, 2], noise[0, 3], noise[0, 4]))
+    flown = launched(plane, gust_noise(gusts, 0))
     memory = fresh()
     command = command_for(sub(plane.velocity, wind_at(climate, plane.position)), plane.course)
     last = len(route) - 1
@@ -102,10 +105,9 @@ def fly_route(
     steps = 0
     for k in range(count):
         time = k * model.dt
-        if k % GUST_EVERY == 0 and k > 0:
-            i = k // GUST_EVERY
-            tick = GustNoise(noise[i, 0], noise[i, 1], noise[i, 2], noise[i, 3], noise[i, 4])
-            flown = blown(flown, GUST_EVERY * model.dt, tick)
+        tick = gust_tick(k)
+        if tick >= 0:
+            flown = blown(flown, model, climate, gust_noise(gusts, tick))
         state = flown.plane
         far = distance(state.position, route[memory.leg].position)
         if far < best:
@@ -156,8 +158,7 @@ def fly_seed(
     route: Route, aircraft: str, way: Strategy, seed: int, wind: WindSpec, interpreted: bool = False
 ) -> Flight:
     """Fly a route once. The mean wind comes from a direction drawn from the seed, as do the gusts."""
-    rng = np.random.default_rng(seed)
-    climate = climate_of(msgspec.structs.replace(wind, from_deg=float(rng.uniform(0.0, 360.0))))
+    climate = climate_of(msgspec.structs.replace(wind, from_deg=drawn_wind(seed)))
     points = route.waypoints
     model = within(named(aircraft).model, route.limits)
     leg = sub(points[1].position, points[0].position)
@@ -165,11 +166,10 @@ def fly_seed(
         start_state(points[0].position, yaw_of(leg), route.nominal, wind_at(climate, points[0].position)),
         model,
     )
-    ticks = int((points[-1].time + OVERTIME) / model.dt) // GUST_EVERY + 2
     out = np.full((len(points) - 1, 2), np.nan)
     setting = Setting(route.limits, route.nominal, AHEAD[aircraft], way)
     play = fly_route if interpreted else compiled_route()
-    tracked = play(Craft(plane, model), points, setting, climate, rng.standard_normal((ticks, 5)), out)
+    tracked = play(Craft(plane, model), points, setting, climate, key_of(seed, 1, Purpose.GUST), out)
     return Flight(out[:, 0], out[:, 1], Tracked(*tracked))
 
 
@@ -187,9 +187,7 @@ class Row(NamedTuple):
     missed: int  # waypoints never passed
 
 
-def compare(
-    route: Route, aircraft: str, seeds: range, wind: WindSpec, tell: Tell = silent
-) -> list[Row]:
+def compare(route: Route, aircraft: str, seeds: range, wind: WindSpec, tell: Tell = silent) -> list[Row]:
     """All four ways over the same seeds."""
     rows = []
     for number, (way, ordered) in enumerate(WAYS.items()):

@@ -68,13 +68,17 @@ def draw_stage(axis: Any, played: Played, index: int) -> None:
     span = _extent(played)
     _paths(axis, played, index)
     for number, pursuer in enumerate(game.pursuers):
-        sphere = apollonius_sphere(
-            game.evader.position, game.evader.speed, pursuer.position, pursuer.speed
-        )
+        sphere = apollonius_sphere(game.evader.position, game.evader.speed, pursuer.position, pursuer.speed)
         if sphere.exists:
             axis.add_patch(_circle(sphere.centre, sphere.radius, CIRCLE))
-            axis.plot(sphere.centre.y, sphere.centre.x, "+", color=CIRCLE, ms=7,
-                      label="Apollonius circle and its centre" if number == 0 else None)
+            axis.plot(
+                sphere.centre.y,
+                sphere.centre.x,
+                "+",
+                color=CIRCLE,
+                ms=7,
+                label="Apollonius circle and its centre" if number == 0 else None,
+            )
         vehicle, colour = number + 2, _pursuer(number)  # ids as on the bus: the evader is 1
         axis.plot(pursuer.position.y, pursuer.position.x, "o", color=colour, ms=7, label=f"pursuer {vehicle}")
         start = played.frames[0].game.pursuers[number].position  # where no two are in one place
@@ -99,8 +103,15 @@ def draw_stage(axis: Any, played: Played, index: int) -> None:
         axis.plot(target.position.y, target.position.x, "*", color=TARGET, ms=14, label="target")
     rule = frame.decisions.evader.rule.name.lower().replace("_", " ")
     words = f"t = {game.time:.2f} s\nevader: {rule}"
-    axis.text(0.02, 0.98, words, transform=axis.transAxes, va="top", fontsize=9,
-              bbox={"fc": palette.PAPER.light, "ec": "none", "alpha": 0.8})
+    axis.text(
+        0.02,
+        0.98,
+        words,
+        transform=axis.transAxes,
+        va="top",
+        fontsize=9,
+        bbox={"fc": palette.PAPER.light, "ec": "none", "alpha": 0.8},
+    )
     _frame(axis, played)
 
 
@@ -178,13 +189,24 @@ def _circle(centre: Vec, radius: float, colour: str) -> Any:
 def _wedge(centre: Vec, radius: float, middle: float, half: float) -> Any:
     from matplotlib.patches import Wedge
 
-    return Wedge((centre.y, centre.x), radius, degrees(middle - half), degrees(middle + half),
-                 fc=CONE, alpha=0.16, ec="none")
+    return Wedge(
+        (centre.y, centre.x),
+        radius,
+        degrees(middle - half),
+        degrees(middle + half),
+        fc=CONE,
+        alpha=0.16,
+        ec="none",
+    )
 
 
 def _arrow(axis: Any, start: Vec, way: Vec, length: float, colour: str, label: str | None) -> None:
-    axis.annotate("", (start.y + way.y * length, start.x + way.x * length), (start.y, start.x),
-                  arrowprops={"arrowstyle": "-|>", "color": colour, "lw": 1.6})
+    axis.annotate(
+        "",
+        (start.y + way.y * length, start.x + way.x * length),
+        (start.y, start.x),
+        arrowprops={"arrowstyle": "-|>", "color": colour, "lw": 1.6},
+    )
     if label:
         axis.plot([], [], color=colour, lw=1.6, label=label)
 

@@ -12,7 +12,7 @@ from onboard.core.math.vectors import ZERO, distance
 from onboard.game.scenario import Scenario
 from sim_bridge.plane_game.setup import conditions_of, vehicles_of
 
-TEMPLATE = '''\
+TEMPLATE = """\
 # A scenario of Apollonius. Metres, metres a second, degrees where a key ends in _deg.
 # Positions: [north, east], or [north, east, height above the origin] in all places.
 name = "my game"
@@ -78,7 +78,7 @@ loss = 0.0
 speed = 0.0                    # mean wind at 6 m height
 from_deg = 270.0               # where it comes from
 gust_sigma = 0.0               # of Dryden gusts
-'''
+"""
 
 
 def new(path: Path) -> str:

@@ -173,12 +173,16 @@ def _introduce(
     bus: ZenohBus,
     say: Callable[[str], None],
 ) -> None:
-    say(f"{scenario.name}: {len(scenario.ids)} vehicles, game '{options.game}', seed "
-        f"{scenario.seed if options.seed is None else options.seed}")
+    say(
+        f"{scenario.name}: {len(scenario.ids)} vehicles, game '{options.game}', seed "
+        f"{scenario.seed if options.seed is None else options.seed}"
+    )
     for id, spec in zip(scenario.ids, scenario.vehicles, strict=True):
         role = "evader" if spec is scenario.evader else "pursuer"
-        say(f"  vehicle {id:3d}  {role:8s} {kind_of(scenario, spec).value:10s}  agent on udp {options.host}:"
-            f"{ports[id]}  autopilot at {radios[id].address[1]}")
+        say(
+            f"  vehicle {id:3d}  {role:8s} {kind_of(scenario, spec).value:10s}  agent on udp {options.host}:"
+            f"{ports[id]}  autopilot at {radios[id].address[1]}"
+        )
     if options.ground_stations:
         say(f"  ground stations on udp {options.host}:{GROUND_STATIONS}")
     if scenario.flight.impairment.bus:

@@ -69,11 +69,17 @@ def draw_comparison(drawn: Drawn, folder: Path) -> list[Path]:
     left.set_aspect("equal", adjustable="datalim")
     left.legend(fontsize=8)
     for row in drawn.comparison.rows:
-        right.plot(drawn.comparison.horizons, row.mean_error, "o-", color=COLOURS[row.predictor],
-                   label=row.predictor)
+        right.plot(
+            drawn.comparison.horizons, row.mean_error, "o-", color=COLOURS[row.predictor], label=row.predictor
+        )
         if any(row.stated):
-            right.plot(drawn.comparison.horizons, row.stated, ":", color=COLOURS[row.predictor],
-                       label=f"{row.predictor}, stated")
+            right.plot(
+                drawn.comparison.horizons,
+                row.stated,
+                ":",
+                color=COLOURS[row.predictor],
+                label=f"{row.predictor}, stated",
+            )
     right.set(xscale="log", yscale="log", xlabel="ahead [s]", ylabel="mean distance [m]", title="error")
     right.set_xticks(drawn.comparison.horizons, [f"{h:g}" for h in drawn.comparison.horizons])
     right.minorticks_off()

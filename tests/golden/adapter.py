@@ -64,7 +64,8 @@ def sent_beside(scenario_file: Path, frames: Sequence[tuple[int, bytes]], after_
 
 def spatial_rows(name: str, seeds: Sequence[int]) -> dict[tuple[int, str], SpatialRow]:
     """The compiled games of a shipped spatial scenario: by seed and way of the evader's flying."""
-    from sim_bridge.campaign.spatial_campaign import play_seed, spatial
+    from sim_bridge.campaign.spatial_campaign import play_seed
+    from sim_bridge.campaign.spatial_draw import spatial
     from sim_bridge.campaign.spatial_game import Evasion
 
     scenario = spatial(name)

@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from onboard.core.math.constants import NEVER
+from onboard.core.math.states import Mate
 from onboard.core.math.vectors import ZERO, Vec, add, along, clamp, is_finite, norm, sub
 from onboard.core.safety.envelope import believable, bounded, slewed
 from onboard.core.safety.fence import brake, keep_height, outside_by, turn
@@ -66,6 +67,22 @@ class Allowed(NamedTuple):
     cause: Cause
 
 
+class Flying(NamedTuple):
+    """A vehicle as it flies now."""
+
+    now: float  # monotonic [s]
+    id: int
+    position: Vec  # [m; NED]
+    velocity: Vec  # [m/s; ground]
+
+
+class Before(NamedTuple):
+    """The last setpoint."""
+
+    demand: Vec  # [m/s; relative to the air]
+    stamp: float  # when [s]; NEVER = none
+
+
 def supervise(wanted: Vec, seen: SupervisorInput, policy: Policy, state: SupervisorState) -> SupervisorOutput:
     """One step: the decision's velocity `wanted` [m/s; relative to the air] through all rules."""
     demand = health(seen, policy, _far_outside(seen, policy))
@@ -73,7 +90,10 @@ def supervise(wanted: Vec, seen: SupervisorInput, policy: Policy, state: Supervi
     wind = ZERO if policy.envelope.hovers or not believable(ZERO, seen.wind) else seen.wind
     if demand.action < Action.HOLD:
         if is_finite(wanted):
-            allowed = allow(wanted, wind, seen, policy, state)
+            age = clamp(seen.telemetry_age, 0.0, policy.telemetry_age)
+            flying = Flying(seen.now, seen.id, along(seen.position, seen.velocity, age), seen.velocity)
+            before = Before(state.demand, state.stamp)
+            allowed = allow(wanted, wind, flying, seen.mates, policy, before)
         if not is_finite(wanted) or not is_finite(allowed.air):
             demand = HealthAction(Action.HOLD, Cause.NOT_FINITE, False)
         elif allowed.cause != Cause.NONE:
@@ -102,7 +122,7 @@ def reachable(wanted: Vec, seen: SupervisorInput, policy: Policy, state: Supervi
     """
     e = policy.envelope
     wind = ZERO if e.hovers or not believable(ZERO, seen.wind) else seen.wind
-    running = _running(seen, state)
+    running = follows(seen.now, state.stamp)
     if not is_finite(wanted) or not (running or believable(seen.position, seen.velocity)):
         return wanted
     before = state.demand if running else bounded(sub(seen.velocity, wind), wanted, e).velocity
@@ -111,9 +131,9 @@ def reachable(wanted: Vec, seen: SupervisorInput, policy: Policy, state: Supervi
     return slewed(wanted, before, seen.now - state.stamp if running else FIRST_STEP, e).velocity
 
 
-def _running(seen: SupervisorInput, state: SupervisorState) -> bool:
-    """Whether there is a last setpoint from which velocities go on."""
-    return 0.0 <= seen.now - state.stamp <= 1.0
+def follows(now: float, stamp: float) -> bool:
+    """Whether there is a last setpoint, of `stamp` [s], from which velocities go on `now` [s]."""
+    return 0.0 <= now - stamp <= 1.0
 
 
 def commanded(action: Action, cause: Cause, order: Action, hovers: bool) -> Command:
@@ -187,14 +207,18 @@ def advance(state: SupervisorState, demand: HealthAction, now: float, settle: fl
     )
 
 
-def allow(wanted: Vec, wind: Vec, seen: SupervisorInput, policy: Policy, state: SupervisorState) -> Allowed:
-    """Clip by limits, then give way to team mates, then keep inside the fences: the later rule outranks."""
+def allow(
+    wanted: Vec, wind: Vec, flying: Flying, mates: tuple[Mate, ...], policy: Policy, last: Before
+) -> Allowed:
+    """Clip by limits, then give way to team mates, then keep inside the fences: the later rule outranks.
+
+    Kernel style: the compiled games fly by it.
+    """
     e = policy.envelope
-    age = clamp(seen.telemetry_age, 0.0, policy.telemetry_age)
-    position = along(seen.position, seen.velocity, age)
-    running = _running(seen, state)
-    before = state.demand if running else bounded(sub(seen.velocity, wind), wanted, e).velocity
-    dt = seen.now - state.stamp if running else FIRST_STEP
+    position = flying.position
+    running = follows(flying.now, last.stamp)
+    before = last.demand if running else bounded(sub(flying.velocity, wind), wanted, e).velocity
+    dt = flying.now - last.stamp if running else FIRST_STEP
     asked = wanted
     if policy.layered:
         wanted = keep_layer(wanted, position, policy)
@@ -208,7 +232,7 @@ def allow(wanted: Vec, wind: Vec, seen: SupervisorInput, policy: Policy, state: 
         cause = judged.cause
     ground = add(bounded(slow.velocity, before, e).velocity, wind)
     if policy.separation > 0.0:
-        apart = keep_apart(ground, position, seen.id, seen.mates, policy)
+        apart = keep_apart(ground, position, flying.id, mates, policy)
         ground = apart.velocity
         if apart.changed:
             cause = Cause.SEPARATION
@@ -221,7 +245,7 @@ def allow(wanted: Vec, wind: Vec, seen: SupervisorInput, policy: Policy, state: 
     if e.hovers:
         walls = brake(ground, position, policy)
     else:
-        walls = turn(ground, position, seen.velocity, norm(wind), policy)
+        walls = turn(ground, position, flying.velocity, norm(wind), policy)
     if walls.cause != Cause.NONE:
         cause = walls.cause
     return Allowed(bounded(sub(walls.velocity, wind), before, e).velocity, cause)

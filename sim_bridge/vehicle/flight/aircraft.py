@@ -126,8 +126,12 @@ class LimitSpec(StrictConfig, frozen=True):
     speed_max: PositiveSpeed = 60.0
 
     def __post_init__(self) -> None:
-        demand(self.pitch_min_deg < self.pitch_max_deg, "pitch_min_deg",
-               f"{self.pitch_min_deg:g} with pitch_max_deg {self.pitch_max_deg:g}", "−85 ≤ min < max ≤ 85")
+        demand(
+            self.pitch_min_deg < self.pitch_max_deg,
+            "pitch_min_deg",
+            f"{self.pitch_min_deg:g} with pitch_max_deg {self.pitch_max_deg:g}",
+            "−85 ≤ min < max ≤ 85",
+        )
         demand(self.speed_min < self.speed_max, "speed_min",
                f"{self.speed_min:g} with speed_max {self.speed_max:g}", "0 < min < max")  # fmt: skip
 

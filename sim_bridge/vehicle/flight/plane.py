@@ -132,6 +132,14 @@ def trimmed(state: PlaneState, model: PlaneModel) -> PlaneState:
     )  # fmt: skip
 
 
+def placed(state: PlaneState, position: Vec) -> PlaneState:
+    """The same aircraft elsewhere [m; NED]."""
+    return PlaneState(
+        position, state.velocity, state.speed, state.thrust, state.thrust_integral, state.pitch, state.yaw,
+        state.course, state.climb, state.bank, state.bank_rate, state.drift,
+    )  # fmt: skip
+
+
 def nose_yaw(state: PlaneState, model: PlaneModel) -> float:
     """ψ of the nose [rad], not wrapped."""
     return state.course + state.yaw.angle if model.path == PathModel.COORDINATED else state.yaw.angle

@@ -1,0 +1,198 @@
+"""What a seed fixes of a spatial game: places, wind, random numbers, and everything up to t₀.
+
+A seed draws where the pursuers start (about the scenario's places) and where the mean wind comes from. Gusts
+and the tracks' noise are those of `fly` with the seed of `drawn_scenario`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from math import radians
+from typing import Any, NamedTuple
+
+import msgspec
+
+from onboard.config.strict import ConfigError
+from onboard.core.math.vectors import sub, yaw_of
+from onboard.core.safety.policy import Fence
+from onboard.game.scenario import AirframeKind, Kind, Scenario, load
+from onboard.game.staging import places_of, start_headings
+from onboard.pilot.kalman import Learning
+from onboard.pilot.track_filter import FilterSettings
+from onboard.runtime.resources import configs
+from sim_bridge.campaign.aboard import Aboard, autopilot_of, boarded, policy_of
+from sim_bridge.campaign.compiled import KERNELS as CORE
+from sim_bridge.campaign.compiled import register
+from sim_bridge.campaign.plane_in_wind import Flown, climate_of, drawn_wind, launched, wind_at
+from sim_bridge.campaign.spatial_game import Fleet, Pace, Start, approach
+from sim_bridge.campaign.tracks import Eye, Tracks, no_tracks
+from sim_bridge.draws import Purpose, Stream, key_of
+from sim_bridge.plane_game.setup import conditions_of, game_of
+from sim_bridge.vehicle.flight import KERNELS as FLIGHT
+from sim_bridge.vehicle.flight.aircraft import named, within
+from sim_bridge.vehicle.flight.plane import Command, PlaneState, Steer, start_state, trimmed
+from sim_bridge.vehicle.wind import KERNELS as WIND
+from sim_bridge.vehicle.wind.dryden import gust_noise
+
+KERNELS = (
+    *CORE,
+    *FLIGHT,
+    *WIND,
+    "onboard.core.math.angles",
+    "onboard.core.guidance.plane",
+    "onboard.core.safety.envelope",
+    "onboard.core.safety.fence",
+    "onboard.core.safety.field_profile",
+    "onboard.core.safety.separation",
+    "onboard.core.safety.supervisor",
+    "onboard.pilot.kalman",
+    "sim_bridge.campaign.plane_in_wind",
+    "sim_bridge.campaign.aboard",
+    "sim_bridge.campaign.tracks",
+    "sim_bridge.campaign.spatial_game",
+)
+T0 = 6.5  # [s] from the beginning of the world to that of the game, as `fly --fast` has it
+DECIDES = 2  # samples after a multiple of 50 ms at which positions come and everybody decides
+PLACE_SIGMA = 300.0  # [m] by which a seed moves each pursuer's start, level
+HEIGHT_SIGMA = 60.0  # [m] and in height
+
+
+class Draw(NamedTuple):
+    """Everything a seed fixes, at t₀."""
+
+    start: Start
+    players: list[Flown]  # evader first
+    crew: list[Aboard]
+    tracks: Tracks
+    steps: int  # control steps at most
+
+
+def spatial(name: str) -> Scenario:
+    """`configs/scenarios/spatial/<name>.toml`."""
+    return load(configs() / "scenarios" / "spatial" / f"{name}.toml")
+
+
+def drawn_scenario(scenario: Scenario, seed: int) -> Scenario:
+    """The scenario of a seed: its places, its wind's direction and its world's seed drawn. Seed 0 is the
+    scenario itself."""
+    if seed == 0:
+        return scenario
+    replace = msgspec.structs.replace
+    world = scenario.seed + seed
+    pursuers = []
+    for spec, id in zip(scenario.pursuers, scenario.ids[1:], strict=True):
+        x, y, z, _spare = Stream(key_of(world, id, Purpose.PLACE), 4).at(0)
+        north, east, up = spec.position
+        place = (north + PLACE_SIGMA * x, east + PLACE_SIGMA * y, up + HEIGHT_SIGMA * z)
+        pursuers.append(replace(spec, position=place))
+    wind = replace(scenario.flight.wind, from_deg=drawn_wind(world))
+    return replace(scenario, seed=world, pursuers=tuple(pursuers), flight=replace(scenario.flight, wind=wind))
+
+
+def draw(scenario: Scenario, seed: int, t0: float = T0, compiled: bool = True) -> Draw:
+    """The game of a seed, at t₀ [s], counted from the beginning of the world.
+
+    Raises ConfigError for a scenario that is not the compiled game's: see `demand_spatial`.
+    """
+    demand_spatial(scenario)
+    scenario = drawn_scenario(scenario, seed)
+    conditions = conditions_of(scenario)
+    climate = climate_of(scenario.flight.wind)
+    places = places_of(scenario)
+    aircraft = named(scenario.flight.airframe.value).model
+    fleet = Fleet(*(within(aircraft, spec.limits()) for spec in scenario.vehicles[:2]))
+    dt = fleet.evader.dt
+    control = round(1.0 / (scenario.flight.control_rate_hz * dt))
+    specs = scenario.vehicles
+    fence = scenario.flight.fence
+    fences = () if fence is None else (Fence(fence.polygon, fence.height_min, fence.height_max),)
+    keys = tuple(key_of(scenario.seed, id, Purpose.GUST) for id in scenario.ids)
+    start = Start(
+        game_of(scenario),
+        conditions._replace(control=conditions.control._replace(dt=control * dt)),
+        fleet,
+        climate,
+        eye_of(scenario, dt),
+        Pace(round(t0 / dt), control, DECIDES % control),
+        tuple(policy_of(spec.limits(), fences, conditions.rules.separation) for spec in specs),
+        tuple(autopilot_of(spec.limits(), spec.speed, radians(spec.turn_rate_deg)) for spec in specs),
+        keys,
+    )
+    players: list[Flown] = []
+    level: list[Command] = []
+    headings = start_headings(scenario)
+    for index, (place, heading, spec) in enumerate(zip(places, headings, specs, strict=True)):
+        model = fleet.pursuer if index else fleet.evader
+        yaw = yaw_of(heading)
+        plane = trimmed(start_state(place, yaw, spec.speed, wind_at(climate, place)), model)
+        players.append(launched(plane, gust_noise(keys[index], 0)))
+        level.append(Command(Steer.COURSE, yaw, 0.0, spec.speed))
+    tracks = no_tracks(len(players), start.eye)
+    flown = typed(players, compiled)
+    (compiled_kernel(approach) if compiled else approach)(start, flown, tracks, typed(level, compiled))
+    crew = [aboard_of(flown[i].plane, start, specs[i].speed) for i in range(len(players))]
+    steps = int(conditions.rules.horizon / (control * dt)) + 8
+    return Draw(start, list(flown), crew, tracks, steps)
+
+
+def demand_spatial(scenario: Scenario) -> None:
+    """Raise ConfigError for what the compiled game does not play."""
+    wind = scenario.flight.wind
+    spec = scenario.flight
+    faults = (
+        (wind.correlation_m > 0.0, "wind.correlation_m", f"{wind.correlation_m:g}", "0"),
+        (wind.recorded != "", "wind.recorded", wind.recorded, "a mean wind with gusts"),
+        (spec.airframe is AirframeKind.KINEMATIC, "airframe", "kinematic", "nose, slip or coordinated"),
+        (spec.autopilot is not Kind.ARDUPLANE, "autopilot", spec.autopilot.value, "arduplane"),
+    )
+    for wrong, key, found, expected in faults:
+        if wrong:
+            raise ConfigError(f"{scenario.name}: flight.{key}: found {found}, expected {expected}")
+
+
+def eye_of(scenario: Scenario, dt: float) -> Eye:
+    """The scenario's sensor, and the filters of its agents; `dt` [s] is a sample of the aircraft."""
+    spec = scenario.flight.sensor
+    f = FilterSettings()
+    return Eye(
+        max(1, round(1.0 / (spec.rate_hz * dt))),
+        round(spec.delay_s / dt),
+        spec.sigma,
+        spec.sigma_velocity,
+        spec.dropout,
+        f.sigma_min * f.sigma_min,
+        f.density,
+        Learning(f.density_min, f.density_max, f.adaptation),
+        tuple(key_of(scenario.seed, id, Purpose.SENSOR) for id in scenario.ids),
+    )
+
+
+def aboard_of(plane: PlaneState, start: Start, speed: float) -> Aboard:
+    """An agent and its autopilot at t₀, the last order given a control step before the first of the game."""
+    wind = wind_at(start.climate, plane.position)
+    pace, dt = start.pace, start.fleet.evader.dt
+    last = (pace.t0 - (pace.t0 - pace.decides) % pace.control) * dt
+    return boarded(sub(plane.velocity, wind), last, -plane.position.z, speed)
+
+
+@cache
+def compiled_kernel(kernel: Callable[..., Any]) -> Callable[..., Any]:
+    """A kernel of the game compiled; once for each number of pursuers."""
+    import numba
+
+    register(KERNELS)
+    found: Callable[..., Any] = numba.njit(nogil=True)(kernel)
+    return found
+
+
+def typed(items: list[Any], compiled: bool) -> Any:
+    """A list as a kernel takes it."""
+    if not compiled:
+        return list(items)
+    from numba.typed import List
+
+    typed = List()
+    for item in items:
+        typed.append(item)
+    return typed
