@@ -1,8 +1,8 @@
 """The kinematic airframes: (7)–(8) with limited turn rate, climb angle and acceleration.
 
-Multicopters follow a ground velocity under an acceleration limit. Planes fly relative to the air: a
-roll, heading or course, a climb rate and an airspeed in; the mean wind carries them. Gusts are for
-the airframes that have dynamics: a mass point with none has nothing they could disturb.
+Multicopters follow a ground velocity under an acceleration limit; wind and gusts push them off it. Planes fly
+relative to the air: a roll, heading or course, a climb rate and an airspeed in; the mean wind carries them,
+and gusts are for the aircraft of transfer functions.
 
 Deterministic: the same demands give the same motion to the last bit.
 """
@@ -14,8 +14,17 @@ from typing import NamedTuple
 
 from onboard.core.math.angles import wrap
 from onboard.core.math.constants import STANDARD_GRAVITY
-from onboard.core.math.vectors import ZERO, Vec, clamp, norm, scale, sub, yaw_of
+from onboard.core.math.vectors import ZERO, Vec, add, clamp, norm, scale, sub, yaw_of
 from onboard.game.scenario import WINGED, Kind, VehicleSpec
+from sim_bridge.vehicle.flight.multicopter_wind import (
+    DRAG,
+    LOOPS,
+    STILL,
+    WindLoop,
+    deviated,
+    settled,
+    wind_estimate,
+)
 from sim_bridge.vehicle.motion import CALM, Air, Airframe, Demand, Lateral, Motion
 
 ROLL_RATE = radians(180.0)  # [rad/s] how fast a plane banks
@@ -44,12 +53,17 @@ def toward(value: float, target: float, most: float) -> float:
 class KinematicMulticopter:
     """Follows a ground velocity under an acceleration limit; its nose turns along the course, or as demanded.
 
-    The wind tilts no path: it only enters the airspeed. Any demand but `Lateral.VELOCITY` means: stop.
+    Moving air pushes it off that by `multicopter_wind`. Any demand but `Lateral.VELOCITY` means: stop.
     """
 
-    def __init__(self, ability: Ability, motion: Motion) -> None:
+    def __init__(self, ability: Ability, motion: Motion, loop: WindLoop, air: Air = CALM) -> None:
+        """One that flies at the start has long flown in the wind of `air`."""
         self._ability = ability
         self._motion = motion
+        self._loop = loop
+        self._still = motion.velocity  # over ground, as it would be in still air
+        flying = motion.airspeed > 0.0 and air.wind != ZERO
+        self._deviation = settled(air.wind) if flying else STILL
 
     @property
     def motion(self) -> Motion:
@@ -62,37 +76,50 @@ class KinematicMulticopter:
         speed = norm(wanted)
         if speed > a.speed_max:
             wanted = scale(wanted, a.speed_max / speed)
-        change = sub(wanted, old.velocity)
+        still = self._still
+        change = sub(wanted, still)
         size = norm(change)
         most = a.acceleration * dt
-        velocity = (
+        self._still = velocity = (
             wanted
             if size <= most
             else Vec(
-                old.velocity.x + change.x * most / size,
-                old.velocity.y + change.y * most / size,
-                old.velocity.z + change.z * most / size,
+                still.x + change.x * most / size,
+                still.y + change.y * most / size,
+                still.z + change.z * most / size,
             )
         )
+        ax, ay = (velocity.x - still.x) / dt, (velocity.y - still.y) / dt
+        moving = Vec(air.wind.x + air.gust.x, air.wind.y + air.gust.y, air.wind.z + air.gust.z)
+        if moving != ZERO or self._deviation != STILL:
+            thrust = Vec(ax + DRAG * velocity.x, ay + DRAG * velocity.y, 0.0)
+            self._deviation = deviated(self._deviation, self._loop, moving, thrust, dt)
+            ax, ay = thrust.x + self._deviation.lean.x, thrust.y + self._deviation.lean.y
+            velocity = add(velocity, self._deviation.velocity)
         position = Vec(
             old.position.x + 0.5 * (old.velocity.x + velocity.x) * dt,
             old.position.y + 0.5 * (old.velocity.y + velocity.y) * dt,
             old.position.z + 0.5 * (old.velocity.z + velocity.z) * dt,
         )
         yaw, facing = old.yaw, demand.facing
-        if facing is None and velocity.x * velocity.x + velocity.y * velocity.y > MOVING * MOVING:
-            facing = yaw_of(velocity)
+        led = self._still  # gusts turn no nose
+        if facing is None and led.x * led.x + led.y * led.y > MOVING * MOVING:
+            facing = yaw_of(led)
         if facing is not None:
             error = wrap(facing - old.yaw)
             yaw = wrap(old.yaw + clamp(error, -a.turn_rate * dt, a.turn_rate * dt))
         c, s = cos(yaw), sin(yaw)
-        ax, ay = (velocity.x - old.velocity.x) / dt, (velocity.y - old.velocity.y) / dt
         roll = atan((c * ay - s * ax) / STANDARD_GRAVITY)  # thrust leans into the acceleration
         pitch = -atan((c * ax + s * ay) / STANDARD_GRAVITY)
         rates = Vec((roll - old.roll) / dt, (pitch - old.pitch) / dt, wrap(yaw - old.yaw) / dt)
-        airspeed = norm(sub(velocity, air.wind))
+        airspeed = norm(sub(velocity, moving))
         self._motion = Motion(position, velocity, airspeed, roll, pitch, yaw, rates)
         return self._motion
+
+    @property
+    def wind_estimate(self) -> Vec:
+        """The wind that the autopilot leans against [m/s; NED]."""
+        return wind_estimate(self._deviation)
 
 
 class KinematicPlane:
@@ -202,4 +229,4 @@ def kinematic(spec: VehicleSpec, kind: Kind, start: Motion, air: Air = CALM) -> 
     ability = ability_of(spec, kind)
     if kind in WINGED:
         return KinematicPlane(ability, start, air)
-    return KinematicMulticopter(ability, start)
+    return KinematicMulticopter(ability, start, LOOPS[kind], air)

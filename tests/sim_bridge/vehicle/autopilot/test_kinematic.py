@@ -129,7 +129,7 @@ def test_in_a_crosswind_a_heading_drifts_and_a_course_does_not(lateral: Lateral)
         )
 
 
-def test_the_wind_carries_a_plane_but_not_a_multicopter() -> None:
+def test_the_wind_carries_a_plane_and_a_multicopter_leans_against_it() -> None:
     air = Air(Vec(3.0, 4.0, 0.0), ZERO)
     airframe, multicopter = plane(air), copter()
     for _ in range(500):
@@ -137,8 +137,9 @@ def test_the_wind_carries_a_plane_but_not_a_multicopter() -> None:
         multicopter.step(velocity(ZERO), air, DT)
     assert airframe.motion.position.x == pytest.approx(250.0)
     assert airframe.motion.position.y == pytest.approx(40.0)
-    assert multicopter.motion.position == COPTER.start()
-    assert multicopter.motion.airspeed == pytest.approx(5.0)
+    assert norm(sub(multicopter.motion.position, COPTER.start())) < 3.0  # pushed, then stopped: 10 s
+    assert norm(multicopter.motion.velocity) < 0.1
+    assert multicopter.motion.airspeed == pytest.approx(5.0, abs=0.1)
 
 
 def test_a_parked_plane_stands_in_the_wind_and_speeds_up_before_it_climbs() -> None:
