@@ -6,6 +6,7 @@ that nobody keeps. (That a value makes a difference is shown by the tests of wha
 
 from __future__ import annotations
 
+import ast
 import asyncio
 import sys
 from collections import defaultdict
@@ -192,3 +193,17 @@ def test_every_key_of_a_route_and_of_a_roster_is_read(watch: Watch, tmp_path: Pa
     program.sheet(tmp_path / "keys")
     checked = {"RouteSpec.ground"}  # by the struct itself: waypoints lie above it
     assert watch.unread(structs(route_file, field_roster)) == checked
+
+
+def test_every_key_of_a_station_is_read() -> None:
+    """A station is never run whole without a bus: here its sources are read for the keys instead."""
+    kinds = structs(gcs_settings) | {Thresholds}
+    read: set[str] = set()
+    for path in (Path(gcs_settings.__file__).parent).rglob("*.py"):
+        for node in ast.parse(path.read_text(encoding="utf-8")).body:
+            if isinstance(node, ast.ClassDef) and node.name in {kind.__name__ for kind in kinds}:
+                continue
+            read |= {inner.attr for inner in ast.walk(node) if isinstance(inner, ast.Attribute)}
+    keys = {key for kind in kinds for key in kind.__struct_fields__}
+    assert len(keys) > 20
+    assert keys <= read

@@ -127,7 +127,7 @@ def commands(folder: Path) -> list[Command]:
         (("gcs.cli", "keys", "init", "ARGUMENT"), "ARGUMENT", False),
         (("gcs.cli", "keys", "show", "ARGUMENT"), "ARGUMENT", False),
         (("onboard.cli", "--id", agent, *bus), "", True),
-        (("onboard.cli", "--config", "ARGUMENT"), "ARGUMENT", False),
+        (("onboard.cli", "check", "--seconds", "0.5", "--config", "ARGUMENT"), "ARGUMENT", False),
         (("onboard.cli", "check", "--id", agent, "--seconds", "1", *bus), "", False),
     ]
     return [Command(*one) for one in lists]
