@@ -166,6 +166,24 @@ def test_a_clock_that_was_an_hour_ahead_leaves_nobody_deaf() -> None:
     assert heard(Signing(KEY, store), autopilot, EPOCH_NS + 50 * 60 * 10**9) == {}
 
 
+def test_after_a_restart_with_a_clock_set_right_who_followed_it_ahead_is_heard_and_nothing_older() -> None:
+    store = MemoryStore()
+    autopilot = Sender(2, 1, signing=Signing(KEY, MemoryStore()))
+    ahead, agent = EPOCH_NS + HOUR_NS, Signing(KEY, store)
+    long_ago = autopilot.pack(OwnHeartbeat(), ahead - 60 * 10**9)
+    earlier = autopilot.pack(OwnHeartbeat(), ahead - 3 * 10**9)
+    for frame in (long_ago, earlier):
+        assert Framer(signing=agent).feed(frame, ahead)
+    assert heard(agent, autopilot, ahead) == {}
+    later = Signing(KEY, store)  # started again, its clock right: the autopilot's stamps do not run back
+    for frame in (long_ago, earlier):
+        again = Framer(signing=later)
+        assert not again.feed(frame, EPOCH_NS)
+        assert again.causes["signature_replayed"] == 1
+    assert heard(later, autopilot, EPOCH_NS) == {}
+    assert heard(Signing(KEY, store), autopilot, EPOCH_NS + 5 * 10**9) == {}  # and again
+
+
 def test_an_autopilot_that_followed_our_clock_ahead_is_heard_when_it_is_set_right() -> None:
     agent = Signing(KEY, MemoryStore())
     autopilot = Sender(2, 1, signing=Signing(KEY, MemoryStore()))

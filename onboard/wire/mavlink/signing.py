@@ -8,7 +8,9 @@ state. So a forged stamp from the far future cannot lock the true sender out.
 Stamps are kept per stream (link id, system, component) and persisted with a reserve: what is stored lies
 `RESERVE` ahead and is stored again when `SAVE_EVERY` of it is used, so that after a crash nothing that was
 once accepted, or sent, comes again, also where the disk takes a second to store it. The price is that a
-sender may go unheard for those two seconds after a restart.
+sender may go unheard for those two seconds after a restart. Where our clock is by then more than a minute
+behind what was stored, it was ahead before, and so are the senders that followed it: their stamps creep on by
+a tick a frame, and two seconds would be an hour. Then what lies within the reserve counts.
 """
 
 from __future__ import annotations
@@ -96,6 +98,7 @@ class Signing:
         self._own_reserved = saved.own
         self._streams = dict(saved.streams)
         self._reserved = dict(saved.streams)
+        self._stored = set(saved.streams)  # of them nothing was accepted since
 
     def next_stamp(self, wall_ns: int) -> int:
         """Return the stamp of the next signature: max(last + 1, `wall_ns` [ns since the epoch])."""
@@ -117,6 +120,8 @@ class Signing:
         stamp = int.from_bytes(frame[-12:-6], "little")
         now = ticks(wall_ns)  # own stamps may lead it: they never run back, a clock that is set right does
         last = self._streams.get(stream)
+        if last is not None and stream in self._stored and last > now + WINDOW:
+            last -= RESERVE
         if last is not None and stamp <= last:
             return SignatureCheck.REPLAYED
         if stamp > max(now, self._own, last or 0) + WINDOW:
@@ -127,6 +132,7 @@ class Signing:
             if len(self._streams) >= STREAMS:
                 return SignatureCheck.CROWDED
         self._streams[stream] = stamp
+        self._stored.discard(stream)
         if stamp >= self._reserved.get(stream, 0):
             self._save()
         return SignatureCheck.GOOD
