@@ -10,8 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from onboard.core.math.states import Mate
-from onboard.core.math.vectors import ZERO, Vec
-from onboard.core.safety.fence import keep_height
+from onboard.core.math.vectors import ZERO, Vec, norm
+from onboard.core.safety.envelope import bounded
+from onboard.core.safety.fence import keep_height, turn
+from onboard.core.safety.field_profile import layers
 from onboard.core.safety.policy import Action, Cause, Envelope, Fence, Policy, SupervisorInput
 from onboard.core.safety.separation import keep_apart
 from onboard.core.safety.supervisor import SupervisorState, supervise
@@ -134,3 +136,64 @@ def test_a_silence_of_the_master_that_is_no_number_counts_as_the_longest(age: fl
 def test_what_is_just_within_its_bound_passes(what: dict[str, object]) -> None:
     found = supervise(Vec(1.0, 0.0, 0.0), seen(**what), POLICY, SupervisorState())
     assert (found.action, found.cause) == (Action.PASS, Cause.NONE)
+
+
+PLANE = Envelope(
+    hovers=False, speed_min=12.0, speed_max=20.0, climb_max=3.0, sink_max=2.0, turn_rate=0.6, turn_radius=60.0
+)
+
+
+def test_every_cause_has_a_number_of_its_own() -> None:
+    assert [int(cause) for cause in Cause] == list(range(len(Cause.__members__)))
+    assert [int(action) for action in Action] == list(range(len(Action.__members__)))
+
+
+def test_a_plane_too_slow_is_made_faster_in_its_own_direction() -> None:
+    found = bounded(Vec(3.0, -4.0, 1.0), Vec(1.0, 0.0, 0.0), PLANE)
+    assert found.cause is Cause.SPEED
+    k = 12.0 / sqrt(26.0)
+    assert found.velocity == pytest.approx((3.0 * k, -4.0 * k, min(1.0 * k, 2.0)), rel=1e-2)
+    assert norm(found.velocity) == pytest.approx(12.0)
+
+
+def test_a_plane_told_to_stand_still_flies_level_on_its_course() -> None:
+    assert bounded(ZERO, Vec(0.0, 5.0, 2.0), PLANE).velocity == Vec(0.0, 12.0, 0.0)
+    assert bounded(ZERO, ZERO, PLANE).velocity == Vec(12.0, 0.0, 0.0)
+
+
+def test_a_demand_too_large_to_square_keeps_its_direction() -> None:
+    found = bounded(Vec(3e200, -4e200, 0.0), ZERO, POLICY.envelope)
+    assert found.cause is Cause.SPEED
+    assert found.velocity == pytest.approx((6.0, -8.0, 0.0))
+
+
+@pytest.mark.parametrize(("east", "free"), [(60.0, True), (-60.0, True), (0.0, False), (24.0, False), (-26.0, True)])
+def test_a_plane_is_free_while_a_whole_circle_to_one_side_fits(east: float, free: bool) -> None:
+    """A corridor 200 m wide, circles of 60 m and a margin of 5 m: one fits from 35 m beside its middle on."""
+    corridor = Fence(((-9000.0, -100.0), (9000.0, -100.0), (9000.0, 100.0), (-9000.0, 100.0)), 20.0, 120.0)
+    policy = Policy(envelope=PLANE, fences=(corridor,), fence_margin=5.0, reaction=0.5)
+    v = Vec(20.0, 0.0, 0.0)
+    found = turn(v, Vec(0.0, east, -50.0), v, 0.0, policy)
+    assert (found.cause is Cause.NONE) == free
+    assert (found.velocity == v) == free
+
+
+def test_a_clip_whose_reason_changes_each_step_is_one_event() -> None:
+    state, changes = SupervisorState(), 0
+    fast, steep = Vec(25.0, 0.0, 0.0), Vec(2.0, 0.0, -5.0)
+    policy = POLICY._replace(envelope=POLICY.envelope._replace(acceleration=0.0))
+    for step in range(81):
+        found = supervise(fast if step % 2 else steep, seen(now=10.0 + 0.05 * step), policy, state)
+        assert found.action is Action.CLIP
+        state, changes = found.state, changes + found.changed
+    assert changes == 1
+    for step in range(81, 121):  # the other reason alone, for two seconds: it is told, once
+        found = supervise(fast, seen(now=10.0 + 0.05 * step), policy, state)
+        state, changes = found.state, changes + found.changed
+    assert (changes, state.cause) == (2, Cause.SPEED)
+
+
+def test_layers_are_the_starting_heights_or_evenly_apart() -> None:
+    assert layers((70.0, 10.0, 40.0), 20.0) == (70.0, 10.0, 40.0)
+    assert layers((50.0, 30.0), 20.0) == (50.0, 30.0)
+    assert layers((70.0, 30.0, 45.0), 20.0) == (30.0, 50.0, 70.0)
