@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable
 
 import numpy as np
 
 from onboard.game.scenario import Kind
 from onboard.runtime.impairment import CLEAR, CUT, Impairment
+from onboard.wire.bus.topics import EVENTS, HEALTH, STATE, TRACK, Delivery
+from onboard.wire.mavlink.commands import OwnHeartbeat
+from onboard.wire.mavlink.frames import Sender
 from sim_bridge.rehearsal import Rehearsal
 from sim_bridge.vehicle.autopilot.health import Fault
 
 Rng = np.random.Generator
 Undo = Callable[[], None]
 Strike = Callable[[Rehearsal, int, Rng], Undo]
+STORM, STORM_S = 100, 0.1  # messages and datagrams at a time, as often [s]
 PILOTS = {Kind.PX4: "POSCTL", Kind.ARDUCOPTER: "LOITER", Kind.ARDUPLANE: "LOITER"}
 
 
@@ -108,6 +113,32 @@ def blind(game: Rehearsal, id: int, rng: Rng) -> Undo:
     return undo
 
 
+def storm(game: Rehearsal, id: int, rng: Rng) -> Undo:
+    """Somebody floods the bus in the vehicle's and the sensor's name, and its link from another port."""
+    agent, stranger = game.agents[id], game.broker.connect("storm")
+    keys = [topic.key(game.game, id) for topic in (STATE, HEALTH, EVENTS, TRACK)]
+    noise = [rng.bytes(int(rng.integers(1, 300))) for _ in range(20)]
+    words = Sender(id, 1).pack(OwnHeartbeat())  # of another autopilot with the vehicle's id
+
+    async def blow() -> None:
+        while True:
+            for n in range(STORM):
+                key = keys[n % len(keys)]
+                stranger.publish(key, noise[n % len(noise)], Delivery.LATEST)
+                agent._arrived(0, noise[-1 - n % len(noise)] if n % 2 else words, ("storm", n))
+            await asyncio.sleep(STORM_S)
+
+    task = asyncio.get_running_loop().create_task(blow())
+
+    def undo() -> None:
+        task.cancel()
+        game.broker.buses.remove(stranger)
+        if game.agents[id] is agent:
+            assert agent._link_limit.limited["link"] > 0, "a flood was not bounded"
+
+    return undo
+
+
 def _failing(game: Rehearsal, id: int, fault: Fault) -> Undo:
     autopilot = game.bridge.world.vehicles[id].autopilot
     autopilot.fail(fault)
@@ -116,7 +147,7 @@ def _failing(game: Rehearsal, id: int, fault: Fault) -> Undo:
 
 OF_ONE: dict[str, Strike] = {
     "radio": radio, "air": air, "reboot": reboot, "gps": gps, "ekf": ekf, "battery": battery, "pilot": pilot,
-    "killed": killed,
+    "killed": killed, "storm": storm,
 }  # fmt: skip
 OF_ALL: dict[str, Strike] = {"bus": bus, "blind": blind}
 NAMES = (*OF_ONE, *OF_ALL)

@@ -36,4 +36,4 @@ def test_a_soak_continues_where_it_stopped_and_repeats_to_the_last_fault(tmp_pat
 
 def test_a_stop_without_a_word_or_a_vehicle_that_stays_down_ends_the_soak() -> None:
     with pytest.raises(AssertionError, match="stopped without a word at"):
-        run.play(2, 1, Counter(), 30.0, explains=())
+        run.play(2, 1, Counter(), 60.0, explains=())

@@ -167,7 +167,9 @@ def test_a_demand_too_large_to_square_keeps_its_direction() -> None:
     assert found.velocity == pytest.approx((6.0, -8.0, 0.0))
 
 
-@pytest.mark.parametrize(("east", "free"), [(60.0, True), (-60.0, True), (0.0, False), (24.0, False), (-26.0, True)])
+@pytest.mark.parametrize(
+    ("east", "free"), [(60.0, True), (-60.0, True), (0.0, False), (24.0, False), (-26.0, True)]
+)
 def test_a_plane_is_free_while_a_whole_circle_to_one_side_fits(east: float, free: bool) -> None:
     """A corridor 200 m wide, circles of 60 m and a margin of 5 m: one fits from 35 m beside its middle on."""
     corridor = Fence(((-9000.0, -100.0), (9000.0, -100.0), (9000.0, 100.0), (-9000.0, 100.0)), 20.0, 120.0)
