@@ -251,7 +251,7 @@ def _unended(name: str, text: str, remedy: str, battery_ends: bool, *, always: b
         "error",
         name,
         f"{text}: a hover that nothing ends",
-        remedy + ", or let the battery's failsafe land it",
+        remedy if always else f"{remedy}, or let the battery's failsafe land it",
     )
 
 

@@ -179,8 +179,8 @@ async def test_on_a_noisy_field_everything_bad_is_counted_by_cause_and_shown_in_
         wrong_schema = b"\x92\x09" + TRACK.encode(_track(game))[2:]
         for n in range(60):
             vehicle.links[0].send(bytes([n, 0, 255 - n, 7] * 5))
-            vehicle.links[0].send(foreign.pack(heartbeat))
             vehicle.links[0].send(foreign.pack(heartbeat)[:9])
+            vehicle.links[0].send(foreign.pack(heartbeat))
             game.bus.publish(f"apollonius/{game.game}/tracks/1", wrong_schema, Delivery.LATEST)
             game.bus.publish(STATE.key(game.game, MATE), b"\xc1nonsense", Delivery.LATEST)
             game.bus.publish(PHASE.key(game.game), b"\x92\x09\x90", Delivery.LATEST)

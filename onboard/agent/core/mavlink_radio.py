@@ -159,7 +159,7 @@ class Radio:
         if len(line.framers) >= PEERS_MAX:
             old = next((p for p in line.framers if p != line.peer), None)
             if old is not None:
-                del line.framers[old]
+                line.framers.pop(old).end()
             self.causes["peers_forgotten"] += 1
         framer = Framer(signing=self._signing, causes=self.causes)
         line.framers[peer] = framer

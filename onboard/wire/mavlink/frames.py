@@ -121,6 +121,12 @@ class Framer:
         size = self.size_at(data, 0)
         return 0 < size <= len(data) and _summed(data[:size])
 
+    def end(self) -> None:
+        """No more comes: an unfinished frame stays so."""
+        if self._rest and not self._blamed:
+            self.causes["truncated"] += 1
+        self._rest, self._blamed = b"", 0
+
     def whole(self, raw: bytes, wall_ns: int = 0) -> Packet | None:
         """Return the packet of exactly one frame, or None for anything else; a refused frame is counted."""
         if self.size_at(raw, 0) != len(raw):
@@ -229,7 +235,7 @@ class PeerFramers:
         framer = self._framers.get(peer)
         if framer is None:
             while len(self._framers) >= self._most:
-                self._framers.popitem(last=False)
+                self._framers.popitem(last=False)[1].end()
                 self.causes["peers_forgotten"] += 1
             framer = self._framers[peer] = Framer(
                 signing=self._signing, causes=self.causes, takes_keys=self._takes_keys

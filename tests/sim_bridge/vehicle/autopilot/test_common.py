@@ -360,6 +360,8 @@ def test_its_own_frames_coming_back_are_not_obeyed(kind: Kind) -> None:
 def test_garbage_is_counted_and_never_raises(kind: Kind, data: bytes) -> None:
     flown = FlownAutopilot(kind)
     flown.autopilot.receive(0, data, "stranger")
+    heartbeat = flown.client.pack(dialect.MAVLink_heartbeat_message(18, 8, 0, 0, 4, 3))
+    flown.autopilot.receive(0, heartbeat, "stranger")  # until then a beginning of a frame may go on
     assert not data or sum(flown.autopilot.counters.values()) > 0
     assert flown.command(512, 148) == 0
 
@@ -460,7 +462,8 @@ def test_peers_are_bounded_and_one_peers_torn_frame_does_not_harm_another() -> N
         flown.autopilot.receive(0, frame, "peer")
     flown.forward(0.1)
     assert len(flown.got("COMMAND_ACK")) == 50
-    assert flown.autopilot.counters["truncated"] == 50
+    counters = flown.autopilot.counters
+    assert counters["truncated"] == counters["peers_forgotten"] > 30
 
 
 def test_a_landed_vehicle_reports_rest() -> None:
