@@ -185,6 +185,10 @@ class Adapter(Protocol):
         """Ask for arming until the heartbeat reports it; return False, and send nothing, unless `may_arm`."""
         ...
 
+    def answers_in(self, took: float) -> None:
+        """Hear how long the autopilot took to answer another command [s]."""
+        ...
+
     def acknowledge(self, now: float, ack: CommandAck) -> None:
         """Hear the autopilot's answer to a command."""
         ...

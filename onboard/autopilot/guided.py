@@ -143,6 +143,10 @@ class GuidedAdapter:
     def close(self) -> None:
         """Nothing to release."""
 
+    def answers_in(self, took: float) -> None:
+        """Hear how long the autopilot took to answer another command [s]."""
+        self._machine.answers_in(took)
+
     def acknowledge(self, now: float, ack: CommandAck) -> None:
         """Hear the answer to a command."""
         self._machine.acknowledge(now, ack)

@@ -111,6 +111,11 @@ class ModeMachine:
             self._arm = CommandRetry(ARM_RETRY)
         return self._may_arm
 
+    def answers_in(self, took: float) -> None:
+        """Hear how long this autopilot took to answer another command [s]; lost answers tell nothing."""
+        if self._quality >= SOUND:
+            self._requests.learn(took)
+
     def acknowledge(self, now: float, ack: CommandAck) -> None:
         """Hear the answer to a command, if it is to this agent's."""
         if ack.target_system not in (0, self.system) or ack.target_component not in (0, COMPANION):

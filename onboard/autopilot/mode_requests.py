@@ -11,6 +11,25 @@ MOST = 64  # requests remembered
 SMOOTH = 0.5  # weight of a new round trip that is shorter than known
 
 
+class AnswerTimes:
+    """How long an autopilot takes to answer commands of any kind. Instants are local monotonic seconds."""
+
+    def __init__(self) -> None:
+        self._open: dict[int, list[float]] = {}  # command → when it was sent, the oldest first
+
+    def sent(self, now: float, command: int) -> None:
+        """Hear that a command goes out."""
+        times = self._open.setdefault(command, [])
+        times.append(now)
+        del times[:-MOST]
+
+    def answered(self, now: float, command: int) -> float:
+        """Hear an answer; return how long it took [s], 0.0 where no command is known that it answers."""
+        times = [at for at in self._open.get(command, ()) if now - at <= LATE]
+        self._open[command] = times[1:]
+        return now - times[0] if times else 0.0
+
+
 class _Request:
     def __init__(self, at: float, mode: str) -> None:
         self.at, self.mode = at, mode
@@ -24,6 +43,10 @@ class ModeRequests:
         self.round_trip = 0.0  # [s] from a request to its answer, as lately measured; 0: not measured
         self._requests: list[_Request] = []
         self._shown = ""  # the mode last reported
+
+    def learn(self, took: float) -> None:
+        """Hear how long the answer to another command took [s]: modes are not asked for faster than that."""
+        self.round_trip = max(self.round_trip, min(took, LATE))
 
     def sent(self, now: float, mode: str) -> None:
         """Hear that a mode is asked for."""

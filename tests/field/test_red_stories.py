@@ -5,6 +5,9 @@ Those that today's agent does not yet live through are marked with the reason.
 
 from __future__ import annotations
 
+from collections.abc import Hashable
+from itertools import pairwise
+
 import pytest
 
 from onboard.core.math.vectors import ZERO
@@ -61,6 +64,30 @@ async def test_an_answer_that_comes_late_is_not_a_pilot() -> None:
             await order(game, PURSUER, command(CommandKind.RESUME, f"r-{number}"))
             await game.forward(4.0)
         assert not [e.text for e in game.events if e.kind in ("take_over", "handed_back")]
+
+
+@virtual
+async def test_one_request_for_a_mode_is_on_its_way_to_an_autopilot_that_answers_late() -> None:
+    """A second one, obeyed after the first, would undo what a pilot has chosen meanwhile."""
+    around = SimulatedSpec(answer_delay_s=1.0, answer_delay_max_s=1.0)
+    async with game_of(chase(Kind.ARDUCOPTER, simulated=around), any_error=True) as game:
+        await game.forward(0.5)
+        vehicle = autopilot(game, PURSUER)
+        asked: list[float] = []
+        receive = vehicle.receive
+
+        def listening(now_ns: int, data: bytes, peer: Hashable) -> None:
+            long = int.from_bytes(data[7:10], "little") == dialect.MAVLINK_MSG_ID_COMMAND_LONG
+            if long and int.from_bytes(data[38:40], "little") == dialect.MAV_CMD_DO_SET_MODE:
+                asked.append(now_ns / 1e9)
+            receive(now_ns, data, peer)
+
+        vehicle.receive = listening  # type: ignore[method-assign]
+        await under_way(game, 3.0)
+        await order(game, PURSUER, command(CommandKind.HOLD))
+        await game.forward(3.0)
+        assert len(asked) >= 2  # GUIDED and the mode to hold
+        assert min(b - a for a, b in pairwise(asked)) > 1.0
 
 
 @virtual

@@ -16,6 +16,7 @@ from onboard.agent.core.telemetry_requests import Requests
 from onboard.autopilot.base import Adapter, Refusal, Setpoint, Stage, Telemetry
 from onboard.autopilot.choose import AdapterOptions, adapter_for
 from onboard.autopilot.flight_limits import FlightLimits, read_limits, unread
+from onboard.autopilot.mode_requests import AnswerTimes
 from onboard.autopilot.stream_rates import REMEDIES, Shortfall
 from onboard.autopilot.telemetry_state import Observer
 from onboard.core.math.constants import NEVER, NS_PER_S
@@ -23,7 +24,7 @@ from onboard.core.math.vectors import ZERO
 from onboard.core.safety.policy import Command
 from onboard.core.safety.supervisor import SupervisorOutput
 from onboard.wire.bus.messages import Severity
-from onboard.wire.mavlink.commands import OwnHeartbeat, Target
+from onboard.wire.mavlink.commands import CommandLong, OwnHeartbeat, Target
 from onboard.wire.mavlink.frames import Packet
 from onboard.wire.mavlink.ids import AUTOPILOT, COMPANION
 from onboard.wire.mavlink.modes import Kind
@@ -120,6 +121,7 @@ class VehicleLink:
         self._journal = journal
         self._child = ChildCourier(out)
         self._heartbeat: Heartbeat | None = None
+        self._answers = AnswerTimes()
         self._asking: Requests | None = None
         self._reboots = 0
         self.components: list[int] = []  # others that beat under the vehicle's own system id
@@ -200,6 +202,8 @@ class VehicleLink:
         if isinstance(value, Heartbeat):
             self._discover(value)
         elif isinstance(value, CommandAck) and self.adapter is not None:
+            if value.target_component in (0, COMPANION):
+                self.adapter.answers_in(self._answers.answered(now, value.command))
             self.adapter.acknowledge(now, value)
         elif isinstance(value, ParamValue) and self._asking is not None:
             self._asking.parameter(value)
@@ -291,6 +295,8 @@ class VehicleLink:
         if self._asking is not None:
             for message in self._asking.due(now, self.telemetry.link_quality):
                 self.radio.send(message)
+                if isinstance(message, CommandLong):
+                    self._answers.sent(now, message.command)
             self._tell_shortfall(now, self._asking.shortfall)
         self.position_rate.review(now)
         self.setpoint_rate.review(now)
