@@ -53,8 +53,8 @@ def _common() -> Parser:
         "tcpin:HOST:PORT (listen) or serial:/dev/NAME:BAUD; given twice, the second "
         "stands by [udpin://127.0.0.1:14539+id]")  # fmt: skip
     add("--autopilot", type=_typed("AdapterChoice", "--autopilot"), metavar="ADAPTER",
-        help="which adapter flies it: auto, velocity, arduplane, arduplane-plain, mavsdk [auto: the one that "
-        "fits its heartbeat]")  # fmt: skip
+        help="which adapter flies it: auto, velocity, arduplane, arduplane-plain, px4-plane, "
+        "px4-plane-course, mavsdk [auto: the one that fits its heartbeat]")  # fmt: skip
     add("--game", metavar="NAME", help="the game to join on the bus [game]")
     add("--bus", metavar="ENDPOINT", help="Zenoh endpoint [tcp/127.0.0.1:7447]")
     add("--zenoh", metavar="FILE", help="Zenoh configuration (JSON5): TLS, access control, routers")

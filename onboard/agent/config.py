@@ -56,6 +56,8 @@ class AdapterChoice(Enum):
     VELOCITY = "velocity"
     ARDUPLANE = "arduplane"
     ARDUPLANE_PLAIN = "arduplane-plain"
+    PX4_PLANE = "px4-plane"
+    PX4_PLANE_COURSE = "px4-plane-course"
     MAVSDK = "mavsdk"
 
 

@@ -132,7 +132,7 @@ class Adapter(Protocol):
 
     @property
     def name(self) -> str:
-        """Its name in configuration: velocity | arduplane | arduplane-plain | mavsdk."""
+        """Its name in configuration: a key of `choose.SCHEMES`."""
         ...
 
     @property

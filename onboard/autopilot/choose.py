@@ -12,6 +12,7 @@ from onboard.autopilot.base import Adapter, Refusal
 from onboard.autopilot.guided import GuidedAdapter
 from onboard.autopilot.mavsdk import Child, Courier, MavsdkAdapter, MavsdkEncoder
 from onboard.autopilot.parameters import gcs_failsafe
+from onboard.autopilot.px4_plane import Px4PlaneEncoder
 from onboard.autopilot.velocity import GUIDED, VelocityEncoder
 from onboard.wire.mavlink.commands import Target
 from onboard.wire.mavlink.modes import MODES, Kind
@@ -23,11 +24,11 @@ SCHEMES = {
     "mavsdk": (Kind.PX4_MULTICOPTER, Kind.ARDUCOPTER),
     "arduplane": (Kind.ARDUPLANE,),
     "arduplane-plain": (Kind.ARDUPLANE,),
+    "px4-plane": (Kind.PX4_PLANE,),
+    "px4-plane-course": (Kind.PX4_PLANE,),
 }
 
 _WHY_NOT = {
-    Kind.PX4_PLANE: "PX4 fixed wing ignores velocity targets, and takes attitude targets without keeping "
-    "altitude and airspeed: use an ArduPlane or a multicopter",
     Kind.PX4_VTOL: "PX4 VTOL: what a velocity target means changes with its transition",
     Kind.ARDUPLANE_VTOL: "ArduPlane VTOL: its modes and its idea of holding change with its transition",
 }
@@ -65,6 +66,9 @@ def adapter_for(
             to, encoder, options.mavsdk_url, may_arm=options.may_arm, launch=options.launch,
             parameters=parameters,
         )  # fmt: skip
+    if kind is Kind.PX4_PLANE:
+        ahead = Px4PlaneEncoder(to, course=options.scheme == "px4-plane-course")
+        return GuidedAdapter(to, ahead, may_arm=options.may_arm, parameters=parameters)
     if kind is not Kind.ARDUPLANE:
         velocity = VelocityEncoder(kind, to, options.hold_mode)
         return GuidedAdapter(to, velocity, may_arm=options.may_arm, parameters=parameters)
@@ -86,7 +90,7 @@ def _refusal(heartbeat: Heartbeat, options: AdapterOptions) -> str:
     if kind is Kind.UNKNOWN:
         return (
             f"unknown autopilot (autopilot {heartbeat.autopilot}, vehicle type {heartbeat.vehicle_type}): "
-            "expected a PX4 multicopter, an ArduCopter or an ArduPlane"
+            "expected a PX4 multicopter or fixed wing, an ArduCopter or an ArduPlane"
         )
     if kind not in SCHEMES.get(scheme, ()):
         fitting = [name for name, kinds in SCHEMES.items() if kind in kinds]

@@ -21,6 +21,7 @@ class FlightLimits(NamedTuple):
     climb_max: float | None = None  # [m/s; up]
     sink_max: float | None = None  # [m/s; down]
     bank_max: float | None = None  # [rad] of planes
+    cruise: float | None = None  # [m/s] of planes that fly no other speed under this agent
 
 
 _CM, _DEG, _CDEG = 0.01, radians(1.0), radians(0.01)
@@ -30,6 +31,12 @@ NAMES: dict[Kind, dict[str, Names]] = {
         "speed_max": (("MPC_XY_VEL_MAX", 1.0),),
         "climb_max": (("MPC_Z_VEL_MAX_UP", 1.0),),
         "sink_max": (("MPC_Z_VEL_MAX_DN", 1.0),),
+    },
+    Kind.PX4_PLANE: {
+        "cruise": (("FW_AIRSPD_TRIM", 1.0),),
+        "climb_max": (("FW_T_CLMB_MAX", 1.0),),
+        "sink_max": (("FW_T_SINK_MAX", 1.0),),
+        "bank_max": (("FW_R_LIM", _DEG),),
     },
     Kind.ARDUCOPTER: {
         "speed_max": (("WP_SPD", 1.0), ("WPNAV_SPEED", _CM)),
@@ -50,6 +57,7 @@ NEEDED = {
     Kind.PX4_MULTICOPTER: ("speed_max", "climb_max", "sink_max"),
     Kind.ARDUCOPTER: ("speed_max", "climb_max", "sink_max"),
     Kind.ARDUPLANE: ("speed_min", "speed_max"),
+    Kind.PX4_PLANE: ("cruise",),
 }
 """Limits without which no setpoint leaves, unless the configuration says them."""
 

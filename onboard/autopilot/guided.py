@@ -26,7 +26,7 @@ FAULTS = {
 class Traits(NamedTuple):
     """What an encoder says of itself."""
 
-    name: str  # in configuration: velocity | arduplane | arduplane-plain | mavsdk
+    name: str  # in configuration: a key of `choose.SCHEMES`
     kind: Kind  # the autopilot it is made for
     guided_mode: str  # the mode in which setpoints count, in the autopilot's words
     hold_mode: str = ""  # the mode to hold in that is configured; "": as `release_modes` says
@@ -177,7 +177,7 @@ class GuidedAdapter:
     def _mode_messages(self, asked: ModeStep) -> list[Outgoing]:
         messages: list[Outgoing] = []
         if asked.mode:
-            number, px4 = MODES[self.kind][asked.mode], self.kind is Kind.PX4_MULTICOPTER
+            number, px4 = MODES[self.kind][asked.mode], self.kind in (Kind.PX4_MULTICOPTER, Kind.PX4_PLANE)
             command = commands.set_mode(self._to, number, px4=px4)
             messages.append(command._replace(confirmation=asked.mode_tries - 1))
         if asked.prove:

@@ -43,6 +43,17 @@ WANTED: dict[Kind, tuple[str, ...]] = {
         "MPC_Z_VEL_MAX_UP",
         "MPC_Z_VEL_MAX_DN",
     ),
+    Kind.PX4_PLANE: (
+        "COM_OF_LOSS_T",
+        "COM_OBL_RC_ACT",
+        "NAV_DLL_ACT",
+        "COM_RC_OVERRIDE",
+        "GF_ACTION",
+        "FW_AIRSPD_TRIM",
+        "FW_T_CLMB_MAX",
+        "FW_T_SINK_MAX",
+        "FW_R_LIM",
+    ),
     Kind.ARDUCOPTER: (
         "FS_GCS_ENABLE",
         "MAV_GCS_SYSID",
@@ -106,7 +117,7 @@ _PX4 = (
 )
 CHECKED: dict[Kind, tuple[str, ...]] = {
     Kind.PX4_MULTICOPTER: _PX4,
-    Kind.PX4_PLANE: ("COM_OF_LOSS_T", "COM_OBL_RC_ACT", "NAV_DLL_ACT", "COM_RC_OVERRIDE", "GF_ACTION", *_PX4),
+    Kind.PX4_PLANE: _PX4,
     Kind.ARDUCOPTER: (*_ARDUPILOT, "FS_GCS_TIMEOUT", "RTL_ALT_FINAL_M", "RTL_ALT_FINAL", "FS_THR_ENABLE",
                       "FS_EKF_ACTION"),
     Kind.ARDUPLANE: (

@@ -52,6 +52,7 @@ WITHOUT_POSITION: dict[Kind, Chain] = {
     Kind.ARDUCOPTER: ("LAND",),  # as its own FS_EKF_ACTION 1
     Kind.ARDUPLANE: ("CIRCLE",),  # by bank alone, as its own short failsafe
     Kind.PX4_MULTICOPTER: ("LAND",),  # which it turns into its own descent
+    Kind.PX4_PLANE: ("LAND",),
 }
 """Whatever the purpose, where the vehicle does not know its place: modes that need none."""
 

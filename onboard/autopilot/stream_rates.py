@@ -86,6 +86,9 @@ _EKF = (Need("EKF_STATUS_REPORT", 5.0, 0.5),)
 _STICKS = (Need("RC_CHANNELS", 2.0, 1.0),)  # whether LOITER would hold, and whose hands fly: `pilot_hands`
 NEEDS: dict[Kind, tuple[Need, ...]] = {
     Kind.PX4_MULTICOPTER: (*_COMMON, Need("ESTIMATOR_STATUS", 5.0, 0.5), *_STICKS, _HUD, *_EXTENDED),
+    Kind.PX4_PLANE: (
+        *_COMMON, Need("ESTIMATOR_STATUS", 5.0, 0.5), Need("WIND_COV", 5.0, 1.0), *_STICKS, _HUD, *_EXTENDED,
+    ),
     Kind.ARDUCOPTER: (*_COMMON, *_EKF, *_STICKS, _HUD, *_EXTENDED),
     Kind.ARDUPLANE: (
         *_COMMON, Need("VFR_HUD", 20.0, 5.0), Need("WIND", 5.0, 1.0), *_EKF, *_STICKS, *_EXTENDED,

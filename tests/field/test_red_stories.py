@@ -12,7 +12,7 @@ import pytest
 
 from onboard.core.math.vectors import ZERO
 from onboard.game.scenario import Kind, SimulatedSpec, Transmitter
-from onboard.wire.bus.messages import CommandKind
+from onboard.wire.bus.messages import CommandKind, OutcomeResult
 from onboard.wire.mavlink.dialect import DialectSender, dialect
 from tests.support.small_scenarios import EVADER, PURSUER, chase, duel
 from tests.support.virtual_time import virtual
@@ -98,10 +98,13 @@ async def test_px4_takes_off_from_the_ground() -> None:
         assert -place(game, PURSUER).z > 20.0
 
 
-@pytest.mark.xfail(strict=True, reason="there is no adapter for PX4's fixed wing")
 @virtual
 async def test_px4_planes_play_a_game() -> None:
     """For the adapter: a position target 300 m ahead along the wanted course at 20 Hz."""
     async with game_of(duel(Kind.PX4_PLANE), any_error=True) as game:
         await under_way(game, 2.0)
         assert mode(game, PURSUER) == "OFFBOARD"
+        outcome = await game.until_ended()
+        assert outcome.verdict is OutcomeResult.CAPTURED
+        await game.forward(1.0)
+        assert mode(game, PURSUER) == "HOLD"

@@ -7,6 +7,7 @@ from math import hypot, pi
 from typing import NamedTuple
 
 import pytest
+from msgspec.structs import replace
 
 from onboard.core.math.angles import wrap
 from onboard.core.math.constants import NS_PER_S
@@ -105,6 +106,17 @@ async def test_planes_pass_their_places_at_the_start(airframe: AirframeKind, win
             assert residual.height < 5.0
             assert residual.heading < pi / 36
             assert abs(residual.airspeed) < 1.0 + 2.0 * wind.gust_sigma
+
+
+@virtual
+async def test_px4_planes_pass_their_places_a_little_late() -> None:
+    """PX4 takes no airspeed: what is lost on the way is not made up for."""
+    scenario = planes(AirframeKind.KINEMATIC, WINDS[2])
+    scenario = replace(scenario, flight=replace(scenario.flight, autopilot=Kind.PX4_PLANE))
+    async with game_of(scenario) as game:
+        for id, residual in (await at_start(game)).items():
+            assert residual.away < 0.75 * game.bridge.world.motions[id].airspeed
+            assert (residual.height, residual.heading) < (3.0, pi / 36)
 
 
 @pytest.mark.parametrize("kind", [Kind.ARDUCOPTER, Kind.PX4], ids=lambda kind: kind.value)

@@ -16,7 +16,7 @@ from onboard.agent.core.hold_alert import HoldAlert
 from onboard.agent.core.journal import Journal
 from onboard.agent.core.part import Part, PartState
 from onboard.agent.core.takeoff import TakeOff
-from onboard.agent.core.to_place import own_state
+from onboard.agent.core.to_place import circling, own_state
 from onboard.agent.core.vehicle_link import Control, VehicleLink
 from onboard.autopilot.base import Adapter, ReleaseMode, Stage, Telemetry
 from onboard.config.printable import named
@@ -36,6 +36,7 @@ from onboard.core.safety.words import ACTIONS, CAUSES
 from onboard.pilot.pilot import PilotDecision, Question
 from onboard.wire.bus import messages
 from onboard.wire.bus.messages import Severity
+from onboard.wire.mavlink.modes import Kind
 
 SILENT_S = 1.0  # a link silent for longer explains that the autopilot changed to hold by itself
 REGAIN_S = 6.0  # … for so long afterwards
@@ -311,15 +312,19 @@ class Flight:
         seen = self._input(now, t)._replace(over=state.over, wind=own.wind)
         still = ZERO if hovers else sub(t.velocity, own.wind)
         free = not (climbs or unasked or held)
-        way = self.part.approach(instant, own) if free and adapter.stage is Stage.ACTIVE else None
+        lives = adapter.kind is Kind.PX4_PLANE  # in OFFBOARD by its targets alone
+        near = adapter.stage is Stage.ACTIVE or (lives and adapter.stage is Stage.ENTERING)
+        way = self.part.approach(instant, own) if free and near else None
         if way is not None:
             still, self.vehicle.facing = way.velocity, way.heading
+        elif lives:
+            still = circling(own, self.part.policy.envelope.turn_radius)
         if climbs and not (held or ours or wanted):  # what keeps it on the ground is no end of a flight
             if supervise(still, seen, self._thresholds(), before).command is Command.STREAM:
                 self.take_off.step(now, self.vehicle)
             self.drive(now)
             return
-        streams = (hovers or way is not None) and not (climbs or unasked)
+        streams = (hovers or lives or way is not None) and not (climbs or unasked)
         output = self._judge(still, seen, streams=streams, enters=wanted)
         if not (held or ours):  # what was not ours has latched nothing
             self._state = self._state._replace(floor=before.floor, floor_cause=before.floor_cause)

@@ -18,6 +18,7 @@ from onboard.pilot.setup import GameSetup, Player, Side
 from onboard.wire.bus.messages import Member, Role, Setup
 
 _DEFAULT = Policy()
+SAME = 0.02  # of a speed by which two count as alike
 UNKNOWN_LIMITS = FlightLimits()  # of an autopilot that has not said any
 
 
@@ -35,6 +36,8 @@ def envelope_of(
     speed_min = e.speed_min if e.speed_min is not None else limits.speed_min
     speed_max = _least(speed_max, own.speed_max)
     speed_min = speed_min if own.speed_min is None else max(speed_min, own.speed_min)
+    if own.cruise is not None and not hovers:
+        speed_min = speed_max = own.cruise
     up, down = limits.pitch_max, -limits.pitch_min
     climb = e.climb_max if e.climb_max is not None else max(0.5, speed_max * sin(max(0.0, up)))
     sink = e.sink_max if e.sink_max is not None else max(0.5, speed_max * sin(max(0.0, down)))
@@ -129,6 +132,11 @@ def contradiction(
         return f"the setup wants {member.speed:g} m/s, the autopilot flies at least {own.speed_min:g} m/s"
     if hovers is False and own.speed_max is not None and member.speed > own.speed_max:
         return f"the setup wants {member.speed:g} m/s, the autopilot flies at most {own.speed_max:g} m/s"
+    if hovers is False and own.cruise is not None and abs(member.speed - own.cruise) > SAME * own.cruise:
+        return (
+            f"the setup wants {member.speed:g} m/s, and the autopilot flies {own.cruise:g} m/s whatever is "
+            "asked (FW_AIRSPD_TRIM): make the two alike"
+        )
     if config.field and not setup.flat and capture_in_space_refused(rules.R, setup.track_sigma):
         return (
             f"capture in space with R = {rules.R:g} m and a stated position error of "

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from math import cos, sin
+
 from onboard.autopilot.base import Telemetry
 from onboard.core.math.vectors import ZERO, Vec, along
 from onboard.core.safety.policy import Policy
-from onboard.pilot.approach import Approach, Place
+from onboard.pilot.approach import LEAD, WIDER, Approach, Place
 from onboard.pilot.setup import GameSetup, Own
 from onboard.wire.bus.messages import Member
 
@@ -19,6 +21,15 @@ def own_state(now: float, t: Telemetry, *, hovers: bool) -> Own:
     wind = ZERO if hovers or now - t.wind_at >= WIND_FRESH_S else t.wind
     position = along(t.position, t.velocity, min(max(0.0, now - t.position_at), CARRIED_S))
     return Own(position, t.velocity, wind)
+
+
+def circling(own: Own, radius: float) -> Vec:
+    """Velocity through the air [m/s] that keeps a plane turning to the right with a radius [m]."""
+    air = Vec(own.velocity.x - own.wind.x, own.velocity.y - own.wind.y, 0.0)
+    speed = (air.x * air.x + air.y * air.y) ** 0.5
+    lead = min(1.0, LEAD * speed / max(1.0, WIDER * radius))
+    c, s = cos(lead), sin(lead)
+    return Vec(c * air.x - s * air.y, s * air.x + c * air.y, 0.0)
 
 
 def approach_of(member: Member, game: GameSetup, policy: Policy) -> Approach | None:

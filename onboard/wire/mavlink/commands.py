@@ -59,6 +59,19 @@ class VelocityTarget(NamedTuple):
     yaw: float | None = None  # [rad, north to east] where the vehicle looks; None: not commanded
 
 
+class PlaceTarget(NamedTuple):
+    """SET_POSITION_TARGET_GLOBAL_INT with a place alone, for a PX4 plane in OFFBOARD.
+
+    Never for an ArduPlane: of such a message it takes the altitude alone.
+    """
+
+    to: Target
+    time_boot_s: float  # the autopilot's clock [s]
+    latitude_deg: float
+    longitude_deg: float
+    altitude_m: float  # above mean sea level
+
+
 class RollTarget(NamedTuple):
     """SET_ATTITUDE_TARGET with a roll angle alone, for an ArduPlane in GUIDED.
 
@@ -77,7 +90,7 @@ class ParamRead(NamedTuple):
     name: str
 
 
-SetpointMessage = VelocityTarget | RollTarget
+SetpointMessage = VelocityTarget | RollTarget | PlaceTarget
 """A message of the stream of setpoints: only the newest one counts."""
 class SetupSigning(NamedTuple):
     """SETUP_SIGNING: the key in clear, so over a wire alone."""

@@ -17,6 +17,7 @@ from onboard.wire.mavlink.commands import (
     Outgoing,
     OwnHeartbeat,
     ParamRead,
+    PlaceTarget,
     RollTarget,
     SetupSigning,
     VelocityTarget,
@@ -26,6 +27,7 @@ from onboard.wire.mavlink.values import Timesync
 
 VELOCITY_ONLY = 0x0DC7  # ArduPilot: ignore position, acceleration, yaw and yaw rate
 VELOCITY_AND_YAW = 0x09C7  # PX4, as MAVSDK sends it: ignore position, acceleration and yaw rate
+PLACE_ONLY = 0x0DF8  # PX4: ignore velocity, acceleration, yaw and yaw rate
 ROLL_ONLY = 198  # ArduPlane reads: roll alone, keep altitude and speed (ignore the rest and throttle)
 
 
@@ -105,6 +107,29 @@ def _roll_target(m: RollTarget) -> MavMessage:
     )
 
 
+def _place_target(m: PlaceTarget) -> MavMessage:
+    assert all(map(isfinite, (m.latitude_deg, m.longitude_deg, m.altitude_m))), m
+    return _new(
+        dialect.MAVLink_set_position_target_global_int_message,
+        time_boot_ms=_boot_ms(m.time_boot_s),
+        target_system=m.to.system,
+        target_component=m.to.component,
+        coordinate_frame=dialect.MAV_FRAME_GLOBAL_INT,
+        type_mask=PLACE_ONLY,
+        lat_int=round(m.latitude_deg * 1e7),
+        lon_int=round(m.longitude_deg * 1e7),
+        alt=m.altitude_m,
+        vx=0.0,
+        vy=0.0,
+        vz=0.0,
+        afx=0.0,
+        afy=0.0,
+        afz=0.0,
+        yaw=0.0,
+        yaw_rate=0.0,
+    )
+
+
 def _param_read(m: ParamRead) -> MavMessage:
     kind = dialect.MAVLink_param_request_read_message
     return _new(kind, m.to.system, m.to.component, m.name.encode("ascii")[:16], -1)
@@ -125,6 +150,7 @@ _WRITERS: dict[type, Callable[[Any], MavMessage]] = {
     CommandInt: _command_int,
     VelocityTarget: _velocity_target,
     RollTarget: _roll_target,
+    PlaceTarget: _place_target,
     ParamRead: _param_read,
     Timesync: _timesync,
     SetupSigning: _setup_signing,

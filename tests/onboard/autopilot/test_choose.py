@@ -41,7 +41,7 @@ def test_each_autopilot_gets_its_own(
 @pytest.mark.parametrize(
     ("autopilot", "vehicle", "scheme", "reason"),
     [
-        (12, 1, "auto", "PX4 fixed wing ignores velocity targets"),
+        (12, 1, "velocity", "PX4 fixed wing cannot be flown by velocity: expected auto, px4-plane"),
         (12, 22, "auto", "PX4 VTOL"),
         (3, 22, "auto", "ArduPlane VTOL"),
         (3, 10, "auto", "unknown autopilot (autopilot 3, vehicle type 10)"),
