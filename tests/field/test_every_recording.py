@@ -17,7 +17,7 @@ import pytest
 from pymavlink import mavutil
 
 from onboard.agent.config import AgentConfig
-from onboard.agent.core.events import Instant, LinkBytes, LinkFacts, Send, Started
+from onboard.agent.core.events import AnyEffect, Instant, LinkBytes, LinkFacts, Send, Started, Tick
 from onboard.agent.core.machine import AgentCore, Facts
 from onboard.core.math.constants import NS_PER_S
 from onboard.wire.mavlink.dialect import dialect, dialect_packet
@@ -57,16 +57,23 @@ def beside(path: Path) -> Beside:
     core = AgentCore(AgentConfig(id=system), Facts(1, (LinkFacts("recording", stream=False),)))
     core.handle(Started(), Instant(0.0, found[0].stamp_ns))
     sent, modes, heard = Counter[str](), list[str](), 0
+
+    def did(effects: list[AnyEffect]) -> None:
+        for effect in effects:
+            if isinstance(effect, Send):
+                message = dialect_packet(effect.frame).message
+                asks = message.get_type() == "COMMAND_LONG" and message.command in ASKS
+                sent[message.get_type()] += not asks
+
     for entry in found:
         if entry.packet.component != 1:
             continue
         heard += 1
         now = Instant((entry.stamp_ns - found[0].stamp_ns) / NS_PER_S, entry.stamp_ns)
-        for effect in core.handle(LinkBytes(0, 0, entry.packet.raw), now):
-            if isinstance(effect, Send):
-                message = dialect_packet(effect.frame).message
-                asks = message.get_type() == "COMMAND_LONG" and message.command in ASKS
-                sent[message.get_type()] += not asks
+        while core.next_deadline() <= now.s:
+            at = max(core.next_deadline(), 0.0)
+            did(core.handle(Tick(), Instant(at, found[0].stamp_ns + round(at * NS_PER_S))))
+        did(core.handle(LinkBytes(0, 0, entry.packet.raw), now))
         mode = core.vehicle.look(now.s).mode
         if mode and (not modes or modes[-1] != mode):
             modes.append(mode)
