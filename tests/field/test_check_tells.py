@@ -45,6 +45,13 @@ def test_the_newer_names_are_read(kind: Kind) -> None:
     assert failing(rows) == set()
 
 
+@pytest.mark.parametrize("kind", BROUGHT_HOME)
+def test_over_a_lossy_link_the_check_knows_in_its_usual_time(kind: Kind) -> None:
+    rows, _ = checked(kind, parameters=BROUGHT_HOME[kind], loss=0.3)
+    assert rows["agent dies"].mark is not Mark.FAIL
+    assert not any("not known" in row.found for row in rows.values() if row.name != "arming")
+
+
 @pytest.mark.parametrize(
     ("kind", "failed"),
     [

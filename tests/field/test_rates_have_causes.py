@@ -20,6 +20,7 @@ from onboard.wire.mavlink.dialect import DialectSender, dialect, dialect_packet
 from onboard.wire.mavlink.tlog import Entry, read_tlog
 from tests.support.flown_autopilot import EPOCH_NS, FlownAutopilot
 from tests.support.paths import RECORDINGS
+from tests.support.recorded import recorded
 
 SYSTEM, STEP_S = 2, 0.02
 COPTER = modes.Kind.ARDUCOPTER
@@ -129,6 +130,19 @@ def test_what_another_station_takes_is_asked_for_again(kind: Kind) -> None:
     assert flight.core.vehicle.shortfall in (Shortfall.STATION, Shortfall.NONE)
     assert any("rates:" in line and "--streamrate" in line for line in flight.told)
     assert not any(Shortfall.LINK.value in line for line in flight.told)
+
+
+def test_the_recorded_station_makes_nobody_ask_for_less() -> None:
+    """Flown behind MAVProxy on ArduCopter 4.5.6: 0.1.0 asked for 20, 13, 9, 6 and at last 5 Hz."""
+    said = [one for one in recorded("copter-behind-mavproxy-rates").said if one.component == 1]
+    asking = StreamRates(COPTER, Target(2))
+    asked = []
+    for second in range(int(said[-1].t)):
+        came = Counter(one.message.get_type() for one in said if second <= one.t < second + 1)
+        asking.step(float(second), {name: float(n) for name, n in came.items()})
+        asked.append(asking.rates["GLOBAL_POSITION_INT"])
+    assert min(asked) >= 15.0
+    assert asked[-1] == 20.0
 
 
 class Station:

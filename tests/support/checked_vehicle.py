@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from random import Random
 from typing import Any, cast
 
 from onboard.agent.config import AgentConfig
@@ -27,27 +28,29 @@ def checked(
     signing: Signing | None = None,
     theirs: Signing | None = None,
     twin: bool = False,
+    loss: float = 0.0,
     **options: Any,
 ) -> tuple[dict[str, Row], list[FlownAutopilot]]:
     """The rows of a check by name, and the vehicles: one, or with `twin` two of one system id.
 
-    `signing` is the check's, `theirs` the autopilot's."""
+    `signing` is the check's, `theirs` the autopilot's; `loss` the share of frames lost either way."""
     options["signing"] = theirs
-    return run_virtual(_checked(kind, seconds, signing, twin, options), epoch_ns=EPOCH_NS)
+    return run_virtual(_checked(kind, seconds, signing, (twin, loss), options), epoch_ns=EPOCH_NS)
 
 
 async def _checked(
-    kind: Kind, seconds: float, signing: Signing | None, twin: bool, options: dict[str, Any]
+    kind: Kind, seconds: float, signing: Signing | None, link: tuple[bool, float], options: dict[str, Any]
 ) -> tuple[dict[str, Row], list[FlownAutopilot]]:
     clock = cast(VirtualLoop, asyncio.get_running_loop()).clock
     near, far = memory_pair("wire")
+    (twin, loss), rng = link, Random(7)
     flown = [FlownAutopilot(kind, system=SYSTEM, tick_s=TICK_S, **options) for _ in range(2 if twin else 1)]
     for number, one in enumerate(flown):  # a twin was switched on earlier
         one.forward(SETTLED_S + 30.0 * number)
         one.frames.clear()
 
     def arrived(data: bytes, peer: object) -> None:
-        for one in flown:
+        for one in flown if rng.random() >= loss else ():
             one.autopilot.receive(one.now_ns, data, "check")
 
     async def fly() -> None:
@@ -55,7 +58,8 @@ async def _checked(
             for one in flown:
                 one.forward(TICK_S)
                 for frame in one.frames:
-                    far.send(frame)
+                    if rng.random() >= loss:
+                        far.send(frame)
                 one.frames.clear()
             await asyncio.sleep(TICK_S)
 

@@ -30,7 +30,7 @@ class LinkFacts(NamedTuple):
     """What the machine is told of one MAVLink link."""
 
     name: str  # for people: the URL that it was opened with
-    stream: bool  # True for a serial line: frames may be torn anywhere
+    stream: bool  # a serial line, for people; frames may be cut anywhere on every link
 
 
 # ---------------------------------------------------------------------- events

@@ -24,6 +24,7 @@ PARAM_RETRY = RetryPolicy(
 )  # [s] without end: the limits must come
 VERSION_RETRY = RetryPolicy(1.0, patience=4, slow=30.0)  # [s] without end: a second autopilot answers, too
 CLOCK_EVERY_S = 2.0
+MORE_PATIENCE = 40  # tries at that pace where more is read than flying needs
 PARAMS_AT_ONCE = 16  # asked for together: a narrow link has more to carry
 FAST = ("GLOBAL_POSITION_INT", "ATTITUDE")  # follow the control rate above 20 Hz
 
@@ -97,8 +98,10 @@ class Requests:
     def read_also(self, names: tuple[str, ...]) -> None:
         """Ask for more parameters than an agent needs; those that are asked for already are not again."""
         more = [name for name in names if name not in self._wanted]
-        self._wanted |= frozenset(more)
-        self._missing += more
+        if more:
+            self._wanted |= frozenset(more)
+            self._missing += more
+            self._params = CommandRetry(PARAM_RETRY._replace(patience=MORE_PATIENCE))
 
     def again(self) -> None:
         """Ask for everything anew: the autopilot has started again, or another link is used."""
