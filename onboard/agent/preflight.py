@@ -30,6 +30,8 @@ from onboard.runtime.bus_zenoh import ZenohBus
 from onboard.runtime.clock import RealClock
 from onboard.runtime.protocols import Bus, Clock, Link, Sample
 from onboard.runtime.zenoh_config import DEFAULT_ENDPOINT
+from onboard.wire.mavlink import commands
+from onboard.wire.mavlink.ids import MessageId
 from onboard.wire.mavlink.signing import Signing
 
 HARMLESS = ("no_peer", "muted", "twin", "signed_without_key", "unknown_id")
@@ -127,9 +129,13 @@ class Ears:
         begun = self._instant().s
         least = UNSERVED_S if isinstance(self._bus, FieldBus) else 0.0
         patience = max(least, seconds if self._links else min(seconds, 2.0))
-        while self._instant().s - begun < patience:
+        called = 0  # seconds in which it was asked who is there
+        while (past := self._instant().s - begun) < patience:
             if self._links:
                 now = self._instant()
+                if past >= called and self._radio.received == 0:  # some answer only whom they have heard
+                    called += 1
+                    self._radio.send(commands.request_message(self._vehicle.to, MessageId.AUTOPILOT_VERSION))
                 self._vehicle.read_also(CHECKED)
                 self._vehicle.chores(now.s)
                 self._do(now)

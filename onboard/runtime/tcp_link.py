@@ -153,12 +153,16 @@ class TcpServerLink(Receiving):
         return str(host), int(port)
 
     def send(self, data: bytes, peer: Hashable | None = None) -> None:
-        """To `peer`, else to whom we last heard; counts `no_peer`, `overflow` and `closed`."""
+        """To `peer`, else to whom we last heard, or to all while nobody has spoken.
+
+        Counts `no_peer`, `overflow` and `closed`."""
         if self._closed:
             self._counts["closed"] += 1
             return
-        client = self._clients.get(self._last if peer is None else peer)
-        self._counts["no_peer" if client is None else client.write(data)] += 1
+        to = self._last if peer is None else peer
+        clients = list(self._clients.values()) if to is None else [self._clients.get(to)]
+        for client in clients or [None]:
+            self._counts["no_peer" if client is None else client.write(data)] += 1
 
     def close(self) -> None:
         """End the socket and its connections."""

@@ -119,7 +119,7 @@ def row_of(link: Link, seen: Sight, name: str) -> tuple[Mark, str]:
 
 
 @pytest.mark.real
-@pytest.mark.parametrize("way", ["tcp", "serial", "bridge"])
+@pytest.mark.parametrize("way", ["tcp", "serial", "bridge", "called"])
 async def test_the_check_finds_an_autopilot_over(way: str) -> None:
     """A real link each, with a simulated autopilot at its other end."""
     flown = FlownAutopilot(Kind.ARDUCOPTER, system=SYSTEM, tick_s=0.05)
@@ -130,6 +130,10 @@ async def test_the_check_finds_an_autopilot_over(way: str) -> None:
             far = await open_link("tcpin:127.0.0.1:0")
             assert isinstance(far, TcpServerLink)
             mine = await open_link(f"tcp:127.0.0.1:{far.address[1]}")
+        elif way == "called":  # a port that answers only whom it has heard
+            far = await open_link("udpin:127.0.0.1:0")
+            assert isinstance(far, UdpLink)
+            mine = await open_link(f"udpout:127.0.0.1:{far.address[1]}")
         else:
             mine = await open_link("udpin:127.0.0.1:0")
             assert isinstance(mine, UdpLink)
@@ -156,8 +160,6 @@ async def test_the_check_finds_an_autopilot_over(way: str) -> None:
                         arrived(os.read(master, 65536), None)
                 await asyncio.sleep(0.02)
 
-        if way == "tcp":
-            mine.send(b"\0")  # a server answers whom it has heard
         if way != "serial":
             far.receive(arrived)
         task = asyncio.create_task(fly())
