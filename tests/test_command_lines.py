@@ -164,7 +164,6 @@ def test_a_shipped_file_is_found_by_each_of_its_names_and_never_by_a_folder(
         ("sim-bridge planar one-on-one --horizon 1", "one on one"),
         ("sim-bridge scenario check table1/row03", "table 1, row 3"),
         ("sim-bridge list autopilots", "px4-plane"),
-        ("sim-bridge list strategies", "proportional-navigation"),
     ],
 )
 def test_commands_take_the_names_of_what_is_shipped(command: str, said: str) -> None:
@@ -192,12 +191,9 @@ def test_an_option_that_would_do_nothing_is_refused(command: str, said: str) -> 
 @pytest.mark.parametrize(
     ("line", "words"),
     [
-        ("gcs com", ["command"]),
         ("gcs command ho", ["hold"]),
         ("sim-bridge fly one", ["one-on-one"]),
-        ("sim-bridge design coo", ["coordinated"]),
         ("onboard-agent --role pu", ["pursuer"]),
-        ("onboard-agent check --sec", ["--seconds"]),
     ],
 )
 def test_a_shell_completes_commands_options_and_names(line: str, words: list[str]) -> None:

@@ -45,7 +45,7 @@ DIRT = ("Traceback", "Task was destroyed", "Exception ignored", "never retrieved
         "coredump", "Aborted", "panicked")  # fmt: skip
 
 
-STARTED = ("one_line_interrupts", "import typer", "import argparse", "program.py")
+STARTED = ("one_line_interrupts(", "import typer", "import argparse", "program.py")
 
 
 class Command(NamedTuple):

@@ -12,7 +12,6 @@ from tests.field.manners import Command, Ended, commands, ctrl_c_faults, faults,
 pytestmark = pytest.mark.real
 SHARE = [
     Command(("sim_bridge.cli", "list", "autopilots")),
-    Command(("gcs.cli", "status", "--wait", "0.1", "--bus", free_endpoint())),
     Command(("onboard.cli", "--help")),
 ]
 
