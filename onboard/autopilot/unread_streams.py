@@ -36,7 +36,7 @@ class UnreadStreams:
     def __init__(
         self, to: Target, needed: Iterable[str], capacity: float | None, signed: bool = False
     ) -> None:
-        """`capacity` [bytes/s] of the link; None: not known, and nothing is switched off."""
+        """`capacity` [bytes/s] of the link; None: not known, as of UDP, which may lead through a radio."""
         self._to = to
         self._needed = frozenset(needed)
         self._capacity = capacity
@@ -50,13 +50,18 @@ class UnreadStreams:
         self._seen.clear()
         self._tries.clear()
 
-    def step(self, now: float, counts: Mapping[str, int], span: float) -> list[CommandLong]:
-        """Return the requests due at `now` [s, monotonic]; `counts` of what came in the last `span` [s]."""
-        if self._capacity is None or span <= 0.0:
+    def step(
+        self, now: float, counts: Mapping[str, int], span: float, starving: bool = False
+    ) -> list[CommandLong]:
+        """Return the requests due at `now` [s, monotonic]; `counts` of what came in the last `span` [s].
+
+        `starving`: what is needed stays out because the link carries too little, whatever its capacity."""
+        if span <= 0.0:
             return []
         self._seen.update(counts)
         load = sum(count * frame_size(name, self._signed) for name, count in counts.items()) / span
-        if load < CROWDED * self._capacity:
+        crowded = self._capacity is not None and load >= CROWDED * self._capacity
+        if not crowded and not starving:
             return []
         requests = []
         for name, count in counts.items():

@@ -6,6 +6,7 @@ keep out of, holes) is refused, never left out in silence. Latitudes and longitu
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from math import cos, pi, sin
 from pathlib import Path
@@ -236,7 +237,7 @@ def _named(element: Any, name: str) -> list[Any]:
 def _ring(text: str) -> Corners:
     """KML's coordinates: longitude,latitude[,altitude], with blanks between corners."""
     corners = []
-    for word in text.split():
+    for word in re.sub(r"\s*,\s*", ",", text).split():
         cells = [cell for cell in word.split(",") if cell]
         longitude, latitude, *_ = _numbers([*cells, "0"][:3], 3)
         corners.append((latitude, longitude))

@@ -9,6 +9,7 @@ from onboard.config.strict import ConfigError
 from onboard.core.geometry.assessment import assess
 from onboard.core.geometry.cones import blocked_cones
 from onboard.core.math.vectors import ZERO, distance
+from onboard.core.safety.fence import inside
 from onboard.game.scenario import Scenario
 from sim_bridge.plane_game.setup import conditions_of, vehicles_of
 
@@ -159,6 +160,9 @@ def _duration(scenario: Scenario) -> list[str]:
     if faster:
         least = min(distance(p.position, evader.position) / (p.speed - evader.speed) for p in faster)
         lines.append(f"{len(faster)} faster than the evader: a chase from behind ends within {least:.0f} s")
+    fence = scenario.flight.fence
+    if target.exists and fence is not None and not inside(*target.position[:2], fence.polygon):
+        lines.append("warning: the target lies outside flight.fence, where nobody is let")
     if target.exists and distance(evader.position, target.position) <= rules.epsilon_min:
         lines.append("warning: the evader starts at its target")
     if any(distance(p.position, evader.position) <= rules.R for p in pursuers):

@@ -17,6 +17,7 @@ from onboard.game.fence_file import GeoFence, polygon_in, read_fence
 from onboard.game.scenario import Scenario, load
 from onboard.wire.geodesy import Frame
 from onboard.wire.mavlink.dialect import dialect
+from sim_bridge.programs.scenario_tools import check
 from tests.support.real_time import patience
 
 ORIGIN = (47.397742, 8.545594, 488.0)
@@ -104,6 +105,7 @@ def test_each_tools_fence_becomes_the_same_square(tmp_path: Path) -> None:
     (tmp_path / "old.plan").write_text(plan(polygon=[list(corner) for corner in CORNERS]))
     (tmp_path / "bom.plan").write_text(plan(polygons=[area()]), encoding="utf-8-sig")
     (tmp_path / "a.kml").write_text(kml())
+    (tmp_path / "blanks.kml").write_text(kml().replace(",", ", "))
     (tmp_path / "line.kml").write_text(kml(tag="LineString"))
     points(tmp_path / "fence.txt")
     items(tmp_path / "items.txt")
@@ -217,6 +219,12 @@ def test_a_scenario_names_the_file_beside_it(tmp_path: Path) -> None:
 def test_a_fence_that_encloses_nothing_or_nobody_is_refused(tmp_path: Path, line: str, reason: str) -> None:
     with pytest.raises(ConfigError, match=reason):
         scenario(tmp_path, line)
+
+
+def test_a_target_outside_is_warned_of(tmp_path: Path) -> None:
+    near = scenario(tmp_path, "polygon = [[-90,-90],[-90,90],[90,90],[90,-90]]")
+    assert "the target lies outside flight.fence" in check(near)
+    assert "outside" not in check(scenario(tmp_path, f"polygon = {json.dumps(SQUARE)}"))
 
 
 def test_a_ring_that_is_closed_is_a_fence(tmp_path: Path) -> None:

@@ -42,13 +42,14 @@ class Line:
 
 
 class Flight:
-    """An agent beside a simulated autopilot, on a line of its own where `baud` is given."""
+    """An agent beside a simulated autopilot: over UDP, a serial line of `baud`, or one `bridged` to UDP."""
 
-    def __init__(self, kind: Kind, baud: int = 0, **options: Any) -> None:
+    def __init__(self, kind: Kind, baud: int = 0, *, bridged: bool = False, **options: Any) -> None:
         self.flown = FlownAutopilot(kind, system=SYSTEM, tick_s=STEP_S, **options)
         self.flown.frames.clear()
-        link = f"serial:///dev/ttyAMA0:{baud}" if baud else "udpin://127.0.0.1:14541"
-        self.core = AgentCore(AgentConfig(id=SYSTEM, link=(link,)), Facts(1, (LinkFacts(link, bool(baud)),)))
+        serial = baud > 0 and not bridged
+        link = f"serial:///dev/ttyAMA0:{baud}" if serial else "udpin://127.0.0.1:14541"
+        self.core = AgentCore(AgentConfig(id=SYSTEM, link=(link,)), Facts(1, (LinkFacts(link, serial),)))
         self.line = Line(baud) if baud else None
         self.told: list[str] = []
         self.positions: list[float] = []  # when they came
@@ -95,6 +96,12 @@ def test_px4s_default_streams_are_switched_off_on_a_narrow_line(monkeypatch: pyt
     assert before.rate(10.0) < 5.0
     assert mended.rate(10.0) > 15.0
     assert mended.core.vehicle.look(mended.now).heartbeat_at > mended.now - 1.5
+
+
+def test_a_narrow_line_behind_udp_is_known_by_what_stays_out() -> None:
+    flight = Flight(Kind.PX4, 57600, bridged=True, full_streams=True)
+    flight.fly(40.0)
+    assert flight.rate(10.0) > 15.0
 
 
 def test_on_a_wide_line_nothing_is_switched_off() -> None:

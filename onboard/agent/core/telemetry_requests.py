@@ -121,7 +121,8 @@ class Requests:
             share = max(0.1, quality)
             rates = {name: count / span / share for name, count in self._arrived.items()}
             messages += self._rates.step(now, rates, self._buffer_free, share, late)
-            messages += self._unread.step(now, self._arrived, span)
+            starving = self._rates.cause in (Shortfall.LINK, Shortfall.RADIO)
+            messages += self._unread.step(now, self._arrived, span, starving)
             if first:
                 messages.append(commands.request_message(self._to, MessageId.HOME_POSITION))
             self._arrived.clear()
