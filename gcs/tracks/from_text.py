@@ -13,6 +13,7 @@ import msgspec
 from gcs.tracks.report import Height, Report, named
 from onboard.config.strict import ConfigError
 from onboard.config.table_file import Row, demand_seconds, read_table
+from onboard.config.undecodable import UNDECODABLE
 from onboard.core.math.vectors import Vec
 
 FOOT, KNOT = 0.3048, 1852.0 / 3600.0  # [m], [m/s]
@@ -110,7 +111,7 @@ class AircraftReports:
         """
         try:
             document = msgspec.json.decode(content)
-        except msgspec.MsgspecError as error:
+        except UNDECODABLE as error:
             raise ConfigError(f"{name}: {error}, expected the JSON of an ADS-B receiver") from None
         aircraft = document.get("aircraft") if isinstance(document, dict) else None
         if not isinstance(aircraft, list):

@@ -42,6 +42,7 @@ from onboard.agent.core.events import (
 )
 from onboard.agent.core.machine import Facts
 from onboard.config.strict import ConfigError
+from onboard.config.undecodable import UNDECODABLE
 from onboard.pilot.setup import Side
 from onboard.runtime.file_writer import FileWriter
 
@@ -260,13 +261,13 @@ def read(path: Path) -> Story:
     first = next(pieces, b"")
     try:
         _tag, schema = msgspec.msgpack.decode(first, type=tuple[int, int, msgspec.Raw, msgspec.Raw])[:2]
-    except msgspec.MsgspecError:
+    except UNDECODABLE:
         raise ConfigError(f"{path}: found no recorded flight, expected what an agent wrote") from None
     if schema != SCHEMA:
         raise ConfigError(f"{path}: found version {schema}, expected {SCHEMA}: recorded by another release")
     try:
         head = msgspec.msgpack.decode(first, type=Head)
-    except msgspec.MsgspecError as error:
+    except UNDECODABLE as error:
         raise ConfigError(f"{path}: the configuration does not fit this release: {error}") from None
     return Story(head, _records(path, pieces, len(data)))
 
@@ -291,5 +292,5 @@ def _records(
         done += len(piece) + 4
         try:
             yield done / size, decoder.decode(piece)
-        except msgspec.MsgspecError as error:
+        except UNDECODABLE as error:
             raise ConfigError(f"{path}: record {number} is damaged: {error}") from None

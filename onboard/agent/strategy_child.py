@@ -21,6 +21,7 @@ from onboard.agent.core.events import Answered, Load, Loaded, Think
 from onboard.agent.strategy_process import HEAD, EvaderQuestion, PursuerQuestion, packed
 from onboard.agent.thinker import Thinker, is_own
 from onboard.config.printable import printable
+from onboard.config.undecodable import UNDECODABLE
 from onboard.core.game.views import EvaderView
 from onboard.pilot.setup import Side
 from onboard.runtime.off_loop import off_loop
@@ -142,7 +143,7 @@ class StrategyChild:
             body, self._rest = self._rest[HEAD : HEAD + size], self._rest[HEAD + size :]
             try:
                 message = self._decoder.decode(body)
-            except (msgspec.MsgspecError, ValueError):
+            except (*UNDECODABLE, ValueError):
                 self._over("its process does not keep to the protocol")
                 return
             self._said(message)

@@ -16,6 +16,7 @@ from xml.etree import ElementTree
 import msgspec
 
 from onboard.config.strict import FILE_MAX, ConfigError
+from onboard.config.undecodable import UNDECODABLE
 from onboard.core.math.vectors import Vec
 from onboard.wire.geodesy import Frame
 
@@ -144,7 +145,7 @@ class _Plan(msgspec.Struct):
 def _plan(data: bytes) -> Corners:
     try:
         plan = msgspec.json.decode(data, type=_Plan)
-    except (msgspec.DecodeError, RecursionError) as error:
+    except UNDECODABLE as error:
         raise _refused(f"no plan: {' '.join(str(error).split())}", "a QGroundControl .plan") from None
     fence = plan.geoFence or _GeoFence()
     areas = [area.polygon for area in fence.polygons if area.inclusion]

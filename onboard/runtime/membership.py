@@ -9,6 +9,7 @@ import msgspec
 from msgspec import Meta
 
 from onboard.config.strict import ConfigError
+from onboard.config.undecodable import UNDECODABLE
 from onboard.runtime.secret_files import read_secret
 
 MEMBER_FILE = "member.json"
@@ -55,7 +56,7 @@ class Membership(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         """The membership of a file's content; `name` stands for it in errors. Raises ConfigError."""
         try:
             return msgspec.json.decode(content, type=Membership)
-        except msgspec.MsgspecError as error:
+        except UNDECODABLE as error:
             raise ConfigError(f"{name}: {error}; expected what gcs keys init wrote") from None
 
     def lock(self, now_s: float) -> str:

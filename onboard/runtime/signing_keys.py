@@ -8,6 +8,7 @@ from pathlib import Path
 import msgspec
 
 from onboard.config.strict import ConfigError
+from onboard.config.undecodable import UNDECODABLE
 from onboard.runtime.file_writer import FileWriter
 from onboard.runtime.secret_files import read_secret, write_secret
 from onboard.wire.mavlink.signing import Stamps
@@ -61,7 +62,7 @@ class StampFile:
             return Stamps(0, {})
         except OSError as error:
             raise ConfigError(f"{self.path}: stamps: {(error.strerror or str(error)).lower()}") from None
-        except msgspec.MsgspecError:
+        except UNDECODABLE:
             raise ConfigError(
                 f"{self.path}: stamps: found damaged content, expected what was saved here; "
                 "remove the file if no recorded frame can be replayed"

@@ -14,6 +14,7 @@ from typing import Any
 import msgspec
 
 from onboard.config.strict import ConfigError
+from onboard.config.undecodable import UNDECODABLE
 from onboard.game.scenario import Scenario
 from onboard.runtime.zenoh_config import DEFAULT_ENDPOINT
 from onboard.wire.bus.topics import DEFAULT_GAME
@@ -62,7 +63,7 @@ class AgentProcesses:
         found: dict[str, object] = {}
         for id in self._scenario.flown_ids:
             path = self._folder / f".timing-{id}.json"
-            with contextlib.suppress(OSError, msgspec.DecodeError):
+            with contextlib.suppress(OSError, *UNDECODABLE):
                 found[str(id)] = msgspec.json.decode(path.read_bytes())
             path.unlink(missing_ok=True)
         return found

@@ -20,7 +20,13 @@ from tests.mutants.trial import Bench, Ledger, Mutant, changed, mutants
 from tests.support import benchmark_record
 from tests.support.paths import ROOT
 
-AGENT = ["tests/onboard/agent", "tests/field", "-m", "not real and not long and not game"]
+QUICK = ["one_exit", "orders", "whose_hands", "radio", "bus_view", "floods"]  # on virtual time, in seconds
+FIELD = ["clocks_and_masters", "who_sent_it", "unknown_is_no_default"]
+AGENT = [
+    *(f"tests/onboard/agent/test_{name}.py" for name in QUICK),
+    *(f"tests/field/test_{name}.py" for name in FIELD),
+    "-m", "not real and not long and not game",
+]  # fmt: skip
 ROOMS = {
     "safety": (["onboard/core/safety/"], ["tests/onboard/core/safety"]),
     "signing": (["onboard/wire/mavlink/signing.py"], ["tests/onboard/wire/test_signing.py"]),

@@ -92,7 +92,7 @@ class Bench:
                 copy = shutil.copytree if (ROOT / part).is_dir() else shutil.copy2
                 copy(ROOT / part, self._tree / part)  # type: ignore[operator]
 
-    def look(self, folders: list[str]) -> None:
+    def look(self, files: list[str]) -> None:
         """Run the room's tests once, unchanged. Raises RuntimeError where they do not pass."""
         if self._known.exists():
             self._took, lines = json.loads(self._known.read_text(encoding="utf-8"))
@@ -100,8 +100,10 @@ class Bench:
             return
         data, times = self._tree / ".coverage", self._tree / "times.xml"
         data.unlink(missing_ok=True)
+        folders = {str(ROOT / file if (ROOT / file).is_dir() else (ROOT / file).parent) for file in files}
         words = [*PYTEST, *self._tests, "--cov-context=test", "--cov-report=", f"--junitxml={times}",
-                 "-o", "junit_family=xunit1", *(f"--cov={folder}" for folder in folders)]  # fmt: skip
+                 "-o", "junit_family=xunit1",
+                 *(f"--cov={Path(folder).relative_to(ROOT)}" for folder in sorted(folders))]  # fmt: skip
         command = [str(ROOT / ".venv/bin/python"), "-m", "pytest", *words]
         env = {**os.environ, "PYTHONPATH": str(self._tree)}
         done = subprocess.run(command, cwd=self._tree, env=env, capture_output=True, text=True, check=False)

@@ -7,6 +7,7 @@ from typing import Generic, TypeVar
 
 import msgspec
 
+from onboard.config.undecodable import UNDECODABLE
 from onboard.wire.bus.messages import SCHEMA, Message
 from onboard.wire.finite import all_finite
 
@@ -32,7 +33,7 @@ class Codec(Generic[M]):
         """The message of a payload; None (and one more in `drops`) for a bad one."""
         try:
             version, message = self._decoder.decode(payload)
-        except (msgspec.DecodeError, UnicodeDecodeError, RecursionError):
+        except UNDECODABLE:
             drops["schema" if self._other_version(payload) else "undecodable"] += 1
             return None
         if version != SCHEMA:
@@ -46,6 +47,6 @@ class Codec(Generic[M]):
     def _other_version(self, payload: bytes) -> bool:
         try:
             version, _ = self._version.decode(payload)
-        except (msgspec.DecodeError, UnicodeDecodeError, RecursionError):
+        except UNDECODABLE:
             return False
         return version != SCHEMA

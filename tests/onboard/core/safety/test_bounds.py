@@ -165,6 +165,7 @@ def test_a_demand_too_large_to_square_keeps_its_direction() -> None:
     found = bounded(Vec(3e200, -4e200, 0.0), ZERO, POLICY.envelope)
     assert found.cause is Cause.SPEED
     assert found.velocity == pytest.approx((6.0, -8.0, 0.0))
+    assert bounded(Vec(0.0, 0.0, -5e200), ZERO, POLICY.envelope).velocity == pytest.approx((0.0, 0.0, -3.0))
 
 
 @pytest.mark.parametrize(
