@@ -73,10 +73,22 @@ def test_px4s_own_default_of_offboard_loss_fails() -> None:
     assert "without them it sinks" in rows["agent dies"].found
 
 
-def test_an_autopilot_that_nobody_flies_is_one_line() -> None:
-    rows, _ = checked(Kind.PX4_PLANE)
+@pytest.mark.parametrize(
+    ("kind", "vehicle_type", "said"),
+    [(Kind.PX4, 22, "PX4 VTOL"), (Kind.ARDUPLANE, 22, "ArduPlane VTOL"), (Kind.ARDUCOPTER, 10, "unknown")],
+)
+def test_an_autopilot_that_nobody_flies_is_one_line(kind: Kind, vehicle_type: int, said: str) -> None:
+    rows, _ = checked(kind, vehicle_type=vehicle_type)
     assert failing(rows) == {"autopilot"}
-    assert "PX4 fixed wing" in rows["autopilot"].found
+    assert said in rows["autopilot"].found
+    assert not rows.keys() & {"rates", "estimate", "agent dies", "parameters"}
+
+
+def test_a_px4_planes_circle_that_nothing_ends_fails() -> None:
+    rows, _ = checked(Kind.PX4_PLANE)
+    assert failing(rows) == {"agent dies"}
+    assert "circles" in rows["agent dies"].found
+    assert failing(checked(Kind.PX4_PLANE, parameters={"COM_LOW_BAT_ACT": 3})[0]) == set()
 
 
 def test_a_gimbal_that_keeps_the_failsafe_quiet_is_named() -> None:

@@ -29,12 +29,14 @@ def checked(
     theirs: Signing | None = None,
     twin: bool = False,
     loss: float = 0.0,
+    vehicle_type: int | None = None,
     **options: Any,
 ) -> tuple[dict[str, Row], list[FlownAutopilot]]:
     """The rows of a check by name, and the vehicles: one, or with `twin` two of one system id.
 
-    `signing` is the check's, `theirs` the autopilot's; `loss` the share of frames lost either way."""
-    options["signing"] = theirs
+    `signing` is the check's, `theirs` the autopilot's; `loss` the share of frames lost either way;
+    `vehicle_type` a MAV_TYPE that the heartbeat says in place of the kind's."""
+    options |= {"signing": theirs, "vehicle_type": vehicle_type}
     return run_virtual(_checked(kind, seconds, signing, (twin, loss), options), epoch_ns=EPOCH_NS)
 
 
@@ -44,8 +46,11 @@ async def _checked(
     clock = cast(VirtualLoop, asyncio.get_running_loop()).clock
     near, far = memory_pair("wire")
     (twin, loss), rng = link, Random(7)
+    vehicle_type = options.pop("vehicle_type")
     flown = [FlownAutopilot(kind, system=SYSTEM, tick_s=TICK_S, **options) for _ in range(2 if twin else 1)]
     for number, one in enumerate(flown):  # a twin was switched on earlier
+        if vehicle_type is not None:
+            one.autopilot.vehicle_type = vehicle_type  # type: ignore[misc]
         one.forward(SETTLED_S + 30.0 * number)
         one.frames.clear()
 
