@@ -139,6 +139,39 @@ def test_a_call_that_nobody_answers_goes_on_and_strangers_who_answer_have_a_boun
     assert len(legs(book)) == 256
 
 
+def test_everybody_is_called_for_a_second_and_a_half_and_until_somebody_is_told():
+    book = CommandBook()
+    book.issue(order(), (2,), START_NS, everybody=True)
+    last = START_NS + 3 * NS_PER_S // 2
+
+    def called(now_ns: int) -> bool:
+        return any(due.id is None for due in book.due(now_ns))
+
+    assert called(START_NS)
+    assert not called(START_NS + 79_999_999)
+    assert called(START_NS + 80_000_000)
+    assert called(last - 1)
+    assert not called(last + NS_PER_S)
+    alone = CommandBook()
+    alone.issue(order(), (), START_NS, everybody=True)
+    assert [due.id for due in alone.due(START_NS + 60 * NS_PER_S)] == [None]
+    named = CommandBook()
+    named.issue(order(), (2,), START_NS)
+    assert [due.id for due in named.due(START_NS)] == [2]
+
+
+def test_an_answer_that_the_book_has_already_is_known_and_no_other():
+    book = CommandBook()
+    book.issue(order(), (2,), START_NS)
+    said = reply(CommandState.PENDING, reason="slow")
+    assert not book.knows(said)
+    book.reply(said, START_NS)
+    assert book.knows(said)
+    assert not book.knows(reply(CommandState.CONFIRMED, reason="slow"))
+    assert not book.knows(reply(CommandState.PENDING, 3, reason="slow"))
+    assert not book.knows(reply(CommandState.PENDING, name="c9", reason="slow"))
+
+
 def test_the_book_is_bounded():
     book = CommandBook()
     for n in range(200):

@@ -68,6 +68,26 @@ def test_what_is_stored_is_above_all_that_was_heard_and_ahead_by_the_reserve() -
         assert kept <= ticks(NOW) + k + RESERVE
 
 
+def test_a_key_has_32_bytes() -> None:
+    for length in (0, 31, 33):
+        with pytest.raises(ValueError, match="32 bytes"):
+            Signing(bytes(length), MemoryStore())
+    assert MemoryStore().load() == Stamps(0, {})
+
+
+def test_stamps_are_stored_once_a_second_and_two_seconds_ahead() -> None:
+    second, tick = 100_000, 10_000  # ticks in a second, nanoseconds in a tick
+    heard, own = MemoryStore(), MemoryStore()
+    hearing, signing = Signing(KEY, heard), Signing(KEY, own)
+    for after, saves in ((0, 1), (second - 1, 1), (second, 2), (2 * second - 1, 2), (2 * second, 3)):
+        assert judged(hearing, NOW + after * tick) is SignatureCheck.GOOD
+        assert signing.next_stamp(NOW + after * tick) == ticks(NOW) + after
+        assert (heard.saves, own.saves) == (saves, saves)
+        base = ticks(NOW) + (saves - 1) * second
+        assert heard.stamps.streams[(3, 1, 191)] == base + 2 * second
+        assert own.stamps.own == base + 2 * second
+
+
 def test_a_signed_stream_passes_and_an_unsigned_one_does_not() -> None:
     tx, rx = sender(), receiver()
     for k in range(50):
