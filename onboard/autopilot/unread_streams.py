@@ -45,6 +45,11 @@ class UnreadStreams:
         self._tries: Counter[str] = Counter()
         self._asked_at: dict[str, float] = {}
 
+    @property
+    def asked(self) -> tuple[str, ...]:
+        """The messages that were asked off, or slower."""
+        return tuple(sorted(self._asked_at))
+
     def forget(self) -> None:
         """Begin anew: the autopilot has started again, or another link is used."""
         self._seen.clear()

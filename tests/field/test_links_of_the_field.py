@@ -173,3 +173,29 @@ async def test_the_check_finds_an_autopilot_over(way: str) -> None:
     assert row_of(mine, seen, "link")[0] is Mark.PASS
     assert seen.telemetry.position_at > seen.now - LISTEN_S  # it flies on to the end
     assert len(seen.parameters or {}) > 5  # it hears us, too
+
+
+@pytest.mark.real
+async def test_the_check_names_two_autopilots_that_send_from_two_ports() -> None:
+    mine = await open_link("udpin:127.0.0.1:0")
+    assert isinstance(mine, UdpLink)
+    far = [await open_link(f"udpout:127.0.0.1:{mine.address[1]}") for _ in range(2)]
+    flown = [FlownAutopilot(Kind.ARDUCOPTER, system=SYSTEM, tick_s=0.05) for _ in range(2)]
+    flown[1].forward(30.0)  # switched on earlier
+
+    async def fly() -> None:
+        while True:
+            for one, link in zip(flown, far, strict=True):
+                one.forward(0.05)
+                for frame in one.frames:
+                    link.send(frame)
+                one.frames.clear()
+                await asyncio.sleep(0.02)
+
+    flown[1].frames.clear()
+    task = asyncio.create_task(fly())
+    seen = await Ears(AgentConfig(id=SYSTEM), [mine], None, None, RealClock()).listen(Sight(), LISTEN_S)
+    task.cancel()
+    for link in (mine, *far):
+        link.close()
+    assert row_of(mine, seen, "system id") == (Mark.FAIL, "two autopilots have system id 2")

@@ -95,6 +95,7 @@ def test_px4s_default_streams_are_switched_off_on_a_narrow_line(monkeypatch: pyt
         before.fly(30.0)
     assert before.rate(10.0) < 5.0
     assert mended.rate(10.0) > 15.0
+    assert any("streams: the link is narrow" in line and "HIGHRES_IMU" in line for line in mended.told)
     assert mended.core.vehicle.look(mended.now).heartbeat_at > mended.now - 1.5
 
 

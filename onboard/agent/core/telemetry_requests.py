@@ -85,6 +85,11 @@ class Requests:
         """Why less comes than was asked for."""
         return self._rates.cause
 
+    @property
+    def asked_off(self) -> tuple[str, ...]:
+        """The streams that nobody here reads, and that were asked off or slower on a narrow link."""
+        return self._unread.asked
+
     def parameter(self, value: ParamValue) -> None:
         """Keep a parameter's value."""
         if value.name not in self._wanted:

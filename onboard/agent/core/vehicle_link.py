@@ -129,6 +129,7 @@ class VehicleLink:
         self._doubt = ""  # told last
         self._undoubted_at = NEVER  # when positions counted last [s]
         self._stepped_at = NEVER
+        self._asked_off: set[str] = set()  # streams that were told of
         self._short_at: dict[Shortfall, float] = {}  # causes of slow telemetry, and when they were told [s]
 
     @property
@@ -298,6 +299,7 @@ class VehicleLink:
                 if isinstance(message, CommandLong):
                     self._answers.sent(now, message.command)
             self._tell_shortfall(now, self._asking.shortfall)
+            self._tell_asked_off(self._asking.asked_off)
         self.position_rate.review(now)
         self.setpoint_rate.review(now)
 
@@ -313,6 +315,14 @@ class VehicleLink:
         self._short_at[cause] = now
         rate = f"position at {self.position_rate.value:.1f} Hz of {self.config.control_rate_hz:g}"
         self._journal.warning("rates", f"{rate}: {cause.value}; {REMEDIES[cause]}")
+
+    def _tell_asked_off(self, names: tuple[str, ...]) -> None:
+        """Say which streams were switched off, once for each."""
+        new = [name for name in names if name not in self._asked_off]
+        if new:
+            self._asked_off.update(new)
+            text = f"the link is narrow: off or slower, as nobody here reads them: {', '.join(new)}"
+            self._journal.info("streams", text)
 
     def other_link(self) -> None:
         """Another link is used from now on: what was asked for on the last one is asked for again."""
