@@ -240,6 +240,28 @@ def game_run(
     return _play(programs.play(found, played, plain=plain, auto_start=start, takes_over=take_over))
 
 
+@game_app.command("check", epilog="Example: gcs game check one-on-one")
+@takes(*BUS)
+def game_check(
+    options: Options,
+    scenario: Annotated[
+        Path,
+        typer.Argument(
+            help="Scenario file, or the name of a shipped one.", autocompletion=shipped(SCENARIOS)
+        ),
+    ],
+    wait: Annotated[
+        float, value(ListenTime, "--wait", words="How long to listen first [s].", unit="S")
+    ] = 3.0,
+) -> int:
+    """Whether many who hold, abort or return at once keep apart; exit 1 where two might meet."""
+    from gcs import programs
+    from onboard.game.scenario import load
+
+    found, played = options.settings(), load(shipped_file(scenario, SCENARIOS))
+    return _play(programs.check_crowd(found, played, wait))
+
+
 app.command(
     epilog="Examples: gcs tracks udpin://0.0.0.0:14560 --map 7=1 | gcs tracks radar.csv --map radar-17=1"
     " | gcs tracks sbs://127.0.0.1:30003 --map 4CA7B3=1 --qnh 1021"

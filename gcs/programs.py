@@ -106,6 +106,19 @@ async def status(settings: Settings, *, json: bool, wait_s: float) -> int:
     return 0
 
 
+async def check_crowd(settings: Settings, scenario: Scenario, wait_s: float) -> int:
+    """Compare the roster's vehicles after listening for `wait_s`; exit code 1 where two might meet."""
+    from gcs.crowd import compare
+
+    async with on_air(settings, listen=False, record=False) as session:
+        await asyncio.sleep(wait_s)
+        heard = {vehicle.id: vehicle.health for vehicle in session.picture().vehicles}
+        lines = compare(scenario, heard)
+    for line in lines:
+        print(f"{'PASS' if line.well else 'FAIL'}  vehicle {line.id}: {printable(line.text)}", flush=True)
+    return 0 if all(line.well for line in lines) else 1
+
+
 async def play(
     settings: Settings, scenario: Scenario, *, plain: bool, auto_start: bool, takes_over: str = ""
 ) -> int:

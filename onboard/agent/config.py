@@ -138,7 +138,16 @@ POLICY_KEYS = {
 }
 """How `[safety]` writes the supervisor's Policy, with the fence and the meaning of an abort beside it."""
 
-POLICY_ALONE = ("envelope", "fences", "mate_forget", "layered", "layer", "layer_band", "track_latched")
+POLICY_ALONE = (
+    "envelope",
+    "fences",
+    "coast",
+    "mate_forget",
+    "layered",
+    "layer",
+    "layer_band",
+    "track_latched",
+)
 """Fields of the Policy that `[safety]` does not hold."""
 
 

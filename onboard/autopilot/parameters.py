@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from onboard.autopilot.flight_limits import names_of
 from onboard.wire.mavlink.modes import Kind
 
 Parameters = Mapping[str, float]
@@ -32,40 +33,24 @@ ALIASES: tuple[tuple[str, ...], ...] = (
 
 Sources: ArduPilot's list of renamed parameters (4.6 to 4.7), PX4's release notes of 1.18."""
 
-WANTED: dict[Kind, tuple[str, ...]] = {
+_WANTED: dict[Kind, tuple[str, ...]] = {
     Kind.PX4_MULTICOPTER: (
-        "COM_OF_LOSS_T",
         "COM_OBL_RC_ACT",
         "NAV_DLL_ACT",
         "COM_RC_OVERRIDE",
         "GF_ACTION",
-        "MPC_XY_VEL_MAX",
-        "MPC_Z_VEL_MAX_UP",
-        "MPC_Z_VEL_MAX_DN",
     ),
     Kind.PX4_PLANE: (
-        "COM_OF_LOSS_T",
         "COM_OBL_RC_ACT",
         "NAV_DLL_ACT",
         "COM_RC_OVERRIDE",
         "GF_ACTION",
-        "FW_AIRSPD_TRIM",
-        "FW_T_CLMB_MAX",
-        "FW_T_SINK_MAX",
-        "FW_R_LIM",
     ),
     Kind.ARDUCOPTER: (
         "FS_GCS_ENABLE",
         "MAV_GCS_SYSID",
         "SYSID_MYGCS",
         "FENCE_ENABLE",
-        "GUID_TIMEOUT",
-        "WP_SPD",
-        "WPNAV_SPEED",
-        "WP_SPD_UP",
-        "WPNAV_SPEED_UP",
-        "WP_SPD_DN",
-        "WPNAV_SPEED_DN",
         "FS_OPTIONS",
         "THR_DZ",
         "RCMAP_THROTTLE",
@@ -78,17 +63,10 @@ WANTED: dict[Kind, tuple[str, ...]] = {
         "SYSID_MYGCS",
         "FS_LONG_ACTN",
         "FENCE_ENABLE",
-        "AIRSPEED_MIN",
-        "AIRSPEED_MAX",
-        "ARSPD_FBW_MIN",
-        "ARSPD_FBW_MAX",
-        "ROLL_LIMIT_DEG",
-        "LIM_ROLL_CD",
-        "TECS_CLMB_MAX",
-        "TECS_SINK_MAX",
     ),
 }
-"""What to read at the start; names of older versions included, so some will not be answered."""
+WANTED = {kind: tuple(dict.fromkeys((*names, *names_of(kind)))) for kind, names in _WANTED.items()}
+"""What to read at the start, limits too; names of older versions included, so some will not be answered."""
 
 _BATTERIES = tuple(
     f"{battery}_{what}"

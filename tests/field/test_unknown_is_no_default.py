@@ -204,6 +204,17 @@ def test_without_parameters_control_is_refused_with_the_reason_and_limits_can_be
         (Kind.PX4_MULTICOPTER,
          {"MPC_XY_VEL_MAX": 12.0, "MPC_Z_VEL_MAX_UP": 3.0, "MPC_Z_VEL_MAX_DN": 1.5},
          FlightLimits(None, 12.0, 3.0, 1.5)),
+        (Kind.ARDUCOPTER, {"ANGLE_MAX": 3000.0, "RTL_ALT": 1500.0, "GUID_TIMEOUT": 3.0},
+         FlightLimits(bank_max=radians(30.0), coast=3.0, return_height=15.0)),
+        (Kind.ARDUCOPTER, {"ATC_ANGLE_MAX": 30.0, "RTL_ALT_M": 15.0},
+         FlightLimits(bank_max=radians(30.0), return_height=15.0)),
+        (Kind.ARDUPLANE, {"ALT_HOLD_RTL": 10000.0, "WP_LOITER_RAD": -80.0},
+         FlightLimits(return_height=100.0, loiter_radius=80.0)),
+        (Kind.ARDUPLANE, {"RTL_ALTITUDE": 100.0}, FlightLimits(return_height=100.0)),
+        (Kind.PX4_MULTICOPTER, {"MPC_TILTMAX_AIR": 45.0, "COM_OF_LOSS_T": 1.0, "RTL_RETURN_ALT": 30.0},
+         FlightLimits(bank_max=radians(45.0), coast=1.0, return_height=30.0)),
+        (Kind.PX4_PLANE, {"FW_AIRSPD_TRIM": 15.0, "FW_R_LIM": 50.0, "NAV_LOITER_RAD": 80.0},
+         FlightLimits(bank_max=radians(50.0), cruise=15.0, loiter_radius=80.0)),
         (Kind.ARDUCOPTER, {"WPNAV_SPEED": 0.0}, FlightLimits()),
         (Kind.ARDUCOPTER, {"WPNAV_SPEED": float("nan")}, FlightLimits()),
     ],
@@ -219,4 +230,4 @@ def test_both_generations_of_names_give_one_limit_in_one_unit(
 def test_what_is_not_read_is_named_by_its_newest_name() -> None:
     assert unread(Kind.ARDUCOPTER, FlightLimits(), {}) == ("WP_SPD", "WP_SPD_UP", "WP_SPD_DN")
     assert unread(Kind.ARDUPLANE, FlightLimits(speed_min=9.0), {"speed_max": 20.0}) == ()
-    assert set(NAMES) == {Kind.PX4_MULTICOPTER, Kind.ARDUCOPTER, Kind.ARDUPLANE}
+    assert set(NAMES) == {Kind.PX4_MULTICOPTER, Kind.PX4_PLANE, Kind.ARDUCOPTER, Kind.ARDUPLANE}

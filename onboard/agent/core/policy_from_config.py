@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import asin, pi, radians, sin, tan
+from math import asin, inf, pi, radians, sin, tan
 
 from onboard.agent.config import POLICY_ALONE, POLICY_KEYS, AgentConfig
 from onboard.autopilot.flight_limits import FlightLimits
@@ -18,6 +18,7 @@ from onboard.pilot.setup import GameSetup, Player, Side
 from onboard.wire.bus.messages import Member, Role, Setup
 
 _DEFAULT = Policy()
+COAST = 3.0  # [s] GUID_TIMEOUT as ArduCopter has it
 SAME = 0.02  # of a speed by which two count as alike
 UNKNOWN_LIMITS = FlightLimits()  # of an autopilot that has not said any
 
@@ -50,6 +51,7 @@ def envelope_of(
     if turn <= 0.0:
         turn = coordinated
     radius = e.turn_radius if e.turn_radius is not None else speed_max / max(1e-3, min(turn, coordinated))
+    lean = STANDARD_GRAVITY * tan(own.bank_max) if hovers and own.bank_max is not None else inf
     return Envelope(
         hovers=hovers,
         speed_min=0.0 if hovers else min(speed_min, speed_max),
@@ -57,10 +59,17 @@ def envelope_of(
         climb_max=climb,
         sink_max=sink,
         turn_rate=turn,
-        acceleration=e.acceleration,
-        deceleration=e.deceleration,
+        acceleration=min(e.acceleration, lean),
+        deceleration=min(e.deceleration, lean),
         turn_radius=radius,
     )
+
+
+def _coast(hovers: bool, own: FlightLimits) -> float:
+    """For how long a dead agent's last velocity is flown on [s]; unknown counts as ArduCopter's default."""
+    if not hovers:
+        return 0.0  # a plane flies on until its failsafe, whatever was asked last: its rule is the circle
+    return COAST if own.coast is None else own.coast
 
 
 def _least(value: float, own: float | None) -> float:
@@ -85,6 +94,7 @@ def policy_of(
         "envelope": envelope_of(config, member, hovers, own),
         "fences": tuple(fences),
         "separation": separation,
+        "coast": _coast(hovers, own),
         "heartbeat_alone": max(s.heartbeat_age_s, s.heartbeat_alone_s),
         "track_action": s.track_action.action(),
         "ground_action": s.ground_action.action(),

@@ -107,6 +107,7 @@ class Reports:
     def health(self, standing: Standing, now: Instant) -> Health:
         """`vehicles/<id>/health`."""
         vehicle, t, flight, output = self._vehicle, self._vehicle.telemetry, self._flight, self._flight.output
+        own = vehicle.limits
         return Health(
             id=self._id,
             role=self._role,
@@ -134,6 +135,8 @@ class Reports:
             link_lock=standing.link_lock,
             failsafe=vehicle.by_failsafe,
             hold_lost=self._flight.hold.lost,
+            return_m=-1.0 if own.return_height is None else own.return_height,
+            loiter_m=own.loiter_radius or 0.0,
             place_s=flight.part.place_s(now),
         )
 

@@ -115,7 +115,8 @@ def keep_height(v: Vec, position: Vec, fence: Fence, margin: float, reaction: fl
 
 def brake(v: Vec, position: Vec, policy: Policy) -> Fenced:
     """A multicopter's velocity, slowed towards every wall it could not stop before; outside, the way back."""
-    fences, margin, reaction, e = policy.fences, policy.fence_margin, policy.reaction, policy.envelope
+    fences, margin, e = policy.fences, policy.fence_margin, policy.envelope
+    reaction = policy.reaction + policy.coast
     walls: list[tuple[float, float, float]] = []  # direction to the wall, and how fast it may be approached
     for fence in fences:
         if not inside(position.x, position.y, fence.polygon):

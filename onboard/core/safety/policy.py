@@ -95,6 +95,7 @@ class Policy(NamedTuple):
     height_margin: float = 3.0  # kept to floor and ceiling [m]
     fence_far: float = 30.0  # so far outside the autopilot flies home [m]
     reaction: float = 0.5  # from a decision to the vehicle's answer [s]
+    coast: float = 0.0  # a multicopter whose agent dies flies on with its last velocity for so long [s]
     separation: float = 0.0  # kept to team mates [m]; 0 = off
     mate_age: float = 1.0  # a team mate unheard for longer counts with twice the separation [s]
     mate_forget: float = 10.0  # and after this not at all [s]

@@ -236,8 +236,9 @@ def allow(
         ground = apart.velocity
         if apart.changed:
             cause = Cause.SEPARATION
+    answers = policy.reaction + policy.coast
     for fence in policy.fences:
-        height = keep_height(ground, position, fence, policy.height_margin, policy.reaction, e)
+        height = keep_height(ground, position, fence, policy.height_margin, answers, e)
         ground = height.velocity
         if height.cause != Cause.NONE:
             cause = height.cause

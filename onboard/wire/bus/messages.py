@@ -281,6 +281,8 @@ class Health(Message, frozen=True):
     link_lock: LinkLock = LinkLock.OPEN
     failsafe: bool = False  # handed over: to the autopilot's own failsafe, not to a person
     hold_lost: str = ""  # why the mode in which it was left does not hold it; '' = it does, or none was left
+    return_m: float = -1.0  # height above home of the autopilot's way home, −1 = as high as it is, or unknown
+    loiter_m: float = 0.0  # radius of its circle when it holds; 0 of those that hover
     place_s: float = 0.0  # time that the vehicle needs to its place; before t₀, by which it would be late
 
 
