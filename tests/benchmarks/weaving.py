@@ -1,9 +1,9 @@
 """Why pursuers weave and rules change: strategy, sensor, or the vehicle's limits, each switched off in turn.
 
-`python -m tests.benchmarks.weaving [SCENARIO]` plays a plane scenario (the demo) as the paper has it, in steps
-and simple motion, and flown on virtual time. Of each way it tells, a vehicle and second: how often the rule
-changed, how often the decided course turned back (by more than 2 degrees a decision), and how far it turned.
-In the plane every decision counts, flown those that are reported, ten a second.
+`python -m tests.benchmarks.weaving [SCENARIO]` plays a plane scenario (the demo) as the paper has it, in
+steps and simple motion, and flown on virtual time. Of each way it tells, a vehicle and second: how often the
+rule changed, how often the decided course turned back (by more than 2 degrees a decision), and how far it
+turned. In the plane every decision counts, flown those that are reported, ten a second.
 """
 
 from __future__ import annotations
