@@ -108,6 +108,8 @@ TABLE: dict[tuple[Stage, ModeEvent], Transition] = {
     (S.LEFT, E.ECHO): _LEAVE_AGAIN,
     (S.LEFT, E.ENTER): _ENTER,
     (S.LEFT, E.LEAVE): _LEAVE,
+    (S.LEFT, E.REBOOT): _REBOOT,
+    (S.LEFT, E.REBOOT_AFTER_TAKING): _REBOOT,
     (S.TAKEN, E.GUIDED_AGAIN): _BACK,
     (S.TAKEN, E.FOREIGN): Transition(S.TAKEN, (A.TELL_FOREIGN,)),
     (S.TAKEN, E.ECHO): Transition(S.TAKEN, (A.TELL_CROSSED,)),

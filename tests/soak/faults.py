@@ -19,6 +19,7 @@ Rng = np.random.Generator
 Undo = Callable[[], None]
 Strike = Callable[[Rehearsal, int, Rng], Undo]
 STORM, STORM_S = 100, 0.1  # messages and datagrams at a time, as often [s]
+GIVES = {Kind.PX4: "HOLD", Kind.ARDUCOPTER: "GUIDED", Kind.ARDUPLANE: "GUIDED"}
 PILOTS = {Kind.PX4: "POSCTL", Kind.ARDUCOPTER: "LOITER", Kind.ARDUPLANE: "LOITER"}
 
 
@@ -87,10 +88,11 @@ def battery(game: Rehearsal, id: int, rng: Rng) -> Undo:
 
 
 def pilot(game: Rehearsal, id: int, rng: Rng) -> Undo:
-    """The safety pilot takes it."""
-    kind = game.scenario.flight.autopilot
-    game.bridge.world.vehicles[id].autopilot.pilot_mode(game.bridge.world.elapsed_ns, PILOTS[kind])
-    return lambda: None
+    """The safety pilot takes it, and gives it back by his switch: on PX4 to the ground, which resumes it."""
+    kind, world = game.scenario.flight.autopilot, game.bridge.world
+    autopilot = world.vehicles[id].autopilot
+    autopilot.pilot_mode(world.elapsed_ns, PILOTS[kind])
+    return lambda: autopilot.pilot_mode(world.elapsed_ns, GIVES[kind])
 
 
 def killed(game: Rehearsal, id: int, rng: Rng) -> Undo:

@@ -44,7 +44,7 @@ WARM = 3  # games after which memory must be flat
 GROWTH_MB = 12.0
 EXPLAINS = (
     "supervisor_hold", "supervisor_return", "supervisor_end", "take_over", "reboot", "released", "regain",
-    "command", "started", "clock_jump", "phase", "late", "strategy", "control",
+    "failsafe", "command", "started", "clock_jump", "phase", "late", "strategy", "control",
 )  # fmt: skip
 
 
