@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from gcs.options import Options, takes
-from onboard.config.bounds import Pressure, Undulation, WaitTime
+from onboard.config.bounds import Pressure, SystemId, Undulation, WaitTime
 from onboard.config.strict import ConfigError
 from onboard.runtime.options import value
 from onboard.runtime.resources import SCENARIOS, shipped_file
@@ -54,13 +54,15 @@ def sign(
         list[Path] | None, typer.Option("--keys", help="Key files or folders to compare with; repeatable.")
     ] = None,
     set_: Annotated[Path | None, typer.Option("--set", help="Key file to set on the autopilot.")] = None,
-    system: Annotated[int, typer.Option("--system", help="System id, where several are heard.")] = 0,
+    system: Annotated[
+        int | None, value(SystemId, "--system", words="System id, where several are heard.", unit="N")
+    ] = None,
     yes: Annotated[bool, typer.Option("--yes", help="Send the key over a network, readable.")] = False,
 ) -> int:
     """List which keys the autopilots on a link sign with; set one with --set, on the ground."""
     from gcs import signing
 
-    return asyncio.run(signing.sign(link, keys or [], set_, system, yes))
+    return asyncio.run(signing.sign(link, keys or [], set_, system or 0, yes))
 
 
 @takes()
