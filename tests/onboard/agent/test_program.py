@@ -65,7 +65,7 @@ def test_help_imports_neither_numpy_nor_the_dialect() -> None:
         (["--id", "0"], "id: found 0, expected a MAVLink system id from 1 to 250"),
         (["--id", "x"], "--id: found 'x', expected a whole number"),
         (["--nonsense"], "unrecognized arguments: --nonsense"),
-        (["--link", "carrier-pigeon"], "link: found 'carrier-pigeon', expected udpin://"),
+        (["--link", "carrier-pigeon"], "link: found 'carrier-pigeon', expected udpin:HOST"),
         (["--config", "/nowhere/agent.toml"], "/nowhere/agent.toml"),
         (["--game", "a/b"], "game: found 'a/b', expected a name without"),
         (["--autopilot", "horse"], "autopilot"),
