@@ -18,7 +18,7 @@ from math import isfinite, sqrt
 from typing import NamedTuple
 
 from onboard.core.math.constants import NEVER
-from onboard.core.math.vectors import ZERO, Vec, along, distance
+from onboard.core.math.vectors import ZERO, Vec, along, distance, norm
 from onboard.pilot.kalman import Axes, Axis, Learning, Measured, Variance, carry, corrected
 
 BOUND = 1e12  # no number of a sample is larger; NaN fails the comparison too
@@ -34,6 +34,7 @@ class Fate(IntEnum):
     STALE = 4  # refused: older than the history kept
     JUMP = 5  # refused: farther away, or later, than the target can be
     NOT_FINITE = 6  # refused: NaN, infinite, beyond all bounds or with a negative variance
+    REPEATED = 7  # refused: the last place under a new stamp, of a target that moves: nothing was measured
 
 
 class Estimate(NamedTuple):
@@ -57,6 +58,7 @@ class FilterSettings(NamedTuple):
     history_max: int = 400  # but no more of them
     speed_max: float = 150.0  # no target is faster [m/s]
     gap_max: float = 10.0  # a longer silence needs the samples after it to agree [s]
+    resting: float = 0.1  # way within which a place may repeat itself to the last digit [m]
     agreeing: int = 3  # doubtful samples in a row that must agree before the filter restarts
     sigma_min: float = 0.01  # floor of a stated position error [m] and velocity error [m/s]
     velocity_unknown: float = 30.0  # velocity error before any was measured [m/s]
@@ -160,6 +162,8 @@ class TrackFilter:
             return Fate.DUPLICATE
         if index < 0:
             return self._doubt(sample, Fate.STALE)
+        if self._repeated(index, sample):
+            return Fate.REPEATED
         if not self._plausible(steps[index], sample):
             return self._doubt(sample, Fate.JUMP)
         self._doubts.clear()
@@ -194,6 +198,25 @@ class TrackFilter:
         noise = sqrt(sum(sample.variance[:3]))
         reach = self.settings.speed_max * dt + 6.0 * (noise + min(here.sigma, self.settings.speed_max)) + 10.0
         return distance(here.position, sample.position) <= reach
+
+    def _repeated(self, index: int, sample: _Sample) -> bool:
+        """Whether `sample` tells again where the target was at an earlier step, while it moves.
+
+        A receiver that hears nothing reports its last fix; two measurements are equal to the last digit only
+        at rest."""
+        step = self._steps[index]
+        if step.sample.position != sample.position:
+            return False
+        while index > 0 and self._steps[index - 1].sample.position == sample.position:
+            index -= 1
+        since = sample.t - self._steps[index].sample.t
+        if since > self.settings.gap_max:
+            return False
+        if sample.variance[3] >= 0.0:
+            return norm(sample.velocity) * since > self.settings.resting
+        here = _estimate(step.sample.t, step.axes)
+        speed = norm(here.velocity)
+        return speed > 2.0 * here.sigma_velocity and speed * since > self.settings.resting
 
     def _doubt(self, sample: _Sample, fate: Fate) -> Fate:
         """Keep a sample that does not fit; begin anew once enough of them fit each other."""

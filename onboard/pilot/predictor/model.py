@@ -5,7 +5,8 @@ directly. The target is the innovation: the mean velocity to the horizon minus t
 velocity now, in the heading frame. The ladder: below 8 points constant velocity; up to 30 a small
 network over constant velocity; from then on the ridge with the network over its rest. Every
 horizon keeps constant velocity unless the last 30 % of the points, held out, say that the model is
-better by a margin.
+better by a margin. A manoeuvre filter beside it (constant velocity and coordinated turn) has the share in
+each horizon that the same points give it.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ import numpy.typing as npt
 
 from onboard.pilot.predictor import network, ridge
 from onboard.pilot.predictor.activation import Array, SParabola
+from onboard.pilot.predictor.choice import Held, judge, mean_distance
 from onboard.pilot.predictor.heading import Indices, Windows, turn, windows
 from onboard.pilot.predictor.prediction import PredictorKind
 
@@ -60,6 +62,7 @@ class Model(NamedTuple):
     scale: Array  # (inputs,) and divided by
     spread: Array  # (H, axes) scale of the network's outputs [m a step]
     sigma: Array  # (H,) root mean square distance error, held out [m]; NaN where nothing was held out
+    turning: Array  # (H,) share of the manoeuvre filter in the answer, 0…1
 
 
 class Forecast(NamedTuple):
@@ -75,9 +78,14 @@ REACH = 2.5  # inputs are clipped to this many standard deviations: no answer fa
 
 
 def fit(
-    positions: Array, velocities: Array, settings: ModelSettings, rng: np.random.Generator
+    positions: Array,
+    velocities: Array,
+    settings: ModelSettings,
+    rng: np.random.Generator,
+    turned: Array | None = None,
 ) -> Generator[None, None, Model | None]:
-    """Train on a grid: positions (n, 3) [m], velocities (n, 3) [m a step].
+    """Train on a grid: positions (n, 3) [m], velocities (n, 3) [m a step], and places (n, H, 2) [m] that a
+    manoeuvre filter expected at the horizons after each point (None or NaN: it was silent).
 
     Yields after each slice of about 1 ms; returns None where there are too few points."""
     total = len(positions)
@@ -109,8 +117,10 @@ def fit(
             act, weights, data, settings.iterations, settings.epsilon, settings.decay
         )
     answer = _answer(act, weights, net, len(horizons)) * settings.networks
-    verdict = [_judge(wanted[part, i], base[part, i], answer[part, i], int(h), enough[i], settings)
-               for i, (h, part) in enumerate(zip(horizons, late, strict=True))]
+    turn_on = _turning(turned, positions, view, origins, horizons)
+    held = [Held(wanted[part, i], base[part, i], answer[part, i], turn_on[part, i])
+            for i, part in enumerate(late)]
+    verdict = [judge(held[i], int(h), enough[i], settings.margin) for i, h in enumerate(horizons)]
     kinds = tuple(one.kind for one in verdict)
     yield
 
@@ -126,7 +136,7 @@ def fit(
     return Model(
         points, coefficients, kinds, chosen, np.array([one.shrink for one in verdict]),
         np.array([one.believed for one in verdict]), weights, net.lags, net.axes, net.middle, net.scale,
-        net.spread, np.array([one.sigma for one in verdict]),
+        net.spread, np.array([one.sigma for one in verdict]), np.array([one.turning for one in verdict]),
     )  # fmt: skip
 
 
@@ -146,11 +156,17 @@ def refresh(positions: Array, velocities: Array, model: Model, settings: ModelSe
 
 
 def forecast(
-    model: Model, positions: Array, velocity: Array, settings: ModelSettings, trust: Array | None = None
+    model: Model,
+    positions: Array,
+    velocity: Array,
+    settings: ModelSettings,
+    trust: Array | None = None,
+    turned: Array | None = None,
 ) -> Forecast:
     """Predict from the last positions (at least model.points, 3) and the velocity now (3,) [m a step].
 
-    `trust` (H,) scales the innovations: see Trust."""
+    `trust` (H,) scales the innovations: see Trust. `turned` (H, 2) are the places that a manoeuvre filter
+    expects; without them the model speaks alone."""
     last = np.array([model.points - 1])
     recent = positions[-model.points :]
     newest = np.broadcast_to(velocity, recent.shape)
@@ -163,11 +179,16 @@ def forecast(
         said = (raw.reshape(len(model.kinds), -1) - 0.5) / SQUEEZE * model.spread
         by_net = np.array([kind is PredictorKind.NETWORK for kind in model.kinds]) * model.shrink
         innovation[:, model.axes] += said * by_net[:, None]
-    steady = np.array([kind is PredictorKind.CONSTANT_VELOCITY for kind in model.kinds])
-    innovation[steady] = 0.0
-    share = model.believed if trust is None else model.believed * trust
-    turned = turn((innovation * share[:, None])[None], view.cos, -view.sin)[0]
-    return Forecast(velocity + turned, model.kinds, model.sigma)
+    learnt = np.array([kind in (PredictorKind.RIDGE, PredictorKind.NETWORK) for kind in model.kinds])
+    innovation[~learnt] = 0.0
+    own = turn((innovation * model.believed[:, None])[None], view.cos, -view.sin)[0]
+    if turned is not None and np.isfinite(turned).all():
+        horizons = np.array(settings.horizons)[:, None]
+        other = np.zeros_like(own)
+        other[:, :2] = (turned - positions[-1, :2]) / horizons - velocity[:2]
+        own += model.turning[:, None] * (other - own)
+    share = np.ones(len(own)) if trust is None else trust
+    return Forecast(velocity + own * share[:, None], model.kinds, model.sigma)
 
 
 class _Net(NamedTuple):
@@ -192,6 +213,19 @@ def _targets(positions: Array, view: Windows, origins: Indices, horizons: Indice
     return np.where(known[..., None], out, 0.0), known
 
 
+def _turning(
+    turned: Array | None, positions: Array, view: Windows, origins: Indices, horizons: Indices
+) -> Array:
+    """The manoeuvre filter's innovations (k, H, 3) [m a step] in the heading frames; NaN: it was silent."""
+    if turned is None:
+        return np.full((len(origins), len(horizons), 3), np.nan)
+    mean = np.zeros((len(origins), len(horizons), 3))
+    mean[..., :2] = (turned[origins] - positions[origins][:, None, :2]) / horizons[None, :, None]
+    out = turn(mean, view.cos, view.sin) - view.moves[:, :1]
+    out[..., 2] = np.where(np.isnan(out[..., 0]), np.nan, 0.0)
+    return out
+
+
 def _base(
     rows: Array,
     wanted: Array,
@@ -211,7 +245,7 @@ def _base(
     count = 0
     for i in range(len(early)):
         if enough[i]:
-            errors = [_mean(wanted[late[i], i] - answer[late[i], i]) for answer in answers]
+            errors = [mean_distance(wanted[late[i], i] - answer[late[i], i]) for answer in answers]
             if np.isfinite(errors[0]):
                 score += np.log(np.array(errors) + 1e-9)
                 count += 1
@@ -222,38 +256,6 @@ def _base(
         if enough[i]:
             base[:, i] = answers[chosen[i]][:, i]
     return chosen, base
-
-
-class _Verdict(NamedTuple):
-    """What the points held out say of one horizon."""
-
-    kind: PredictorKind
-    shrink: float
-    believed: float
-    sigma: float
-
-
-def _judge(
-    fact: Array, base: Array, said: Array, horizon: int, linear: bool, settings: ModelSettings
-) -> _Verdict:
-    """Choose between constant velocity, ridge and network: innovations (k, 3) held out, the base's and the
-    network's answers, and the shares of them to be believed (least squares, clipped to 0…1)."""
-    count = len(fact)
-    if count < max(3, horizon // 2):
-        return _Verdict(PredictorKind.CONSTANT_VELOCITY, 0.0, 1.0, float("nan"))
-    rest = fact - base
-    independent = count / horizon  # overlapping horizons are no independent evidence
-    shrink = _share(said, rest) * independent / (independent + 1.0)
-    by_net = _mean(rest - shrink * said) if shrink > 0.0 else np.inf
-    by_ridge = _mean(rest) if linear else np.inf
-    if min(by_net, by_ridge) < np.inf:
-        kind = PredictorKind.NETWORK if by_net < by_ridge else PredictorKind.RIDGE
-        whole = base + shrink * said if kind is PredictorKind.NETWORK else base
-        share = _share(whole, fact)
-        if _mean(fact - share * whole) < (1.0 - settings.margin) * _mean(fact):
-            believed = float(np.sqrt(share))  # judged on 70 % of the points, it flies with all of them
-            return _Verdict(kind, shrink, believed, horizon * _root_mean_square(fact - believed * whole))
-    return _Verdict(PredictorKind.CONSTANT_VELOCITY, 0.0, 1.0, horizon * _root_mean_square(fact))
 
 
 def _final(
@@ -328,18 +330,3 @@ def _answer(act: SParabola, weights: network.Weights, net: _Net, count: int) -> 
     out = np.zeros((len(raw), count, 3))
     out[:, :, net.axes] = (raw.reshape(len(raw), count, -1) - 0.5) / SQUEEZE * net.spread
     return out
-
-
-def _share(said: Array, fact: Array) -> float:
-    """The multiple of `said` nearest to `fact`, both (k, 3), clipped to 0…1."""
-    power = float((said * said).sum())
-    return min(max(float((said * fact).sum()) / power, 0.0), 1.0) if power > 0.0 else 0.0
-
-
-def _root_mean_square(errors: Array) -> float:
-    return float(np.sqrt((errors * errors).sum(axis=1).mean()))
-
-
-def _mean(errors: Array) -> float:
-    """Mean distance of error vectors (k, 3); infinite for none."""
-    return float(np.sqrt((errors * errors).sum(axis=1)).mean()) if len(errors) else float("inf")

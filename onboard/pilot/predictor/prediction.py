@@ -16,6 +16,7 @@ class PredictorKind(IntEnum):
     CONSTANT_VELOCITY = 2  # the track filter, carried forward
     RIDGE = 3  # linear regression over the last points
     NETWORK = 4  # s-parabola network over the ridge
+    MANOEUVRE = 5  # constant velocity and coordinated turn, weighed by how well each explains the track
 
 
 class Prediction(NamedTuple):

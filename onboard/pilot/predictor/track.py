@@ -11,7 +11,10 @@ import numpy as np
 from onboard.core.math.vectors import ZERO, Vec, norm
 from onboard.pilot.kalman import Variance
 from onboard.pilot.predictor import model as flying
+from onboard.pilot.predictor.activation import Array
+from onboard.pilot.predictor.calibration import Calibration
 from onboard.pilot.predictor.grid import Grid
+from onboard.pilot.predictor.manoeuvre import ManoeuvreFilter
 from onboard.pilot.predictor.model import Model, ModelSettings
 from onboard.pilot.predictor.path import Path, at, path, sound
 from onboard.pilot.predictor.prediction import REFUSAL, Prediction, PredictorKind
@@ -45,7 +48,10 @@ class TrackPredictor:
         self.grid = Grid(self.settings.step, self.settings.window, self.settings.gap)
         self.model: Model | None = None
         self.trust = Trust(self.settings.model.horizons)
+        self.calibration = Calibration(self.settings.model.horizons)
         self.trainings = 0
+        self.manoeuvre = ManoeuvreFilter()
+        self._turned: dict[int, Array] = {}  # grid point → places (H, 2) [m] expected by `manoeuvre`
         self._seed = seed
         self._life = 0  # counts restarts: a training that began before one is thrown away
         self._fitted = -1  # grid points at the last fit of the ridge
@@ -57,20 +63,46 @@ class TrackPredictor:
         fate = self.filter.add(t, position, velocity, variance)
         if not self.settings.learns:
             return fate
+        if fate in (Fate.TAKEN, Fate.RESTARTED):
+            self.manoeuvre.add(t, position, velocity, variance)
         if fate is Fate.TAKEN:
             self.grid.extend(self.filter)
         elif fate is Fate.LATE:
             self.grid.revise(self.filter, t)
         elif fate is Fate.RESTARTED:
+            self._turned.clear()
             self.grid.clear()
             self.grid.extend(self.filter)
             self.trust.clear()
+            self.calibration.clear()
             self.model = None
             self._life += 1
         else:
             return fate
+        self._note()
         self._fresh = False
         return fate
+
+    def _note(self) -> None:
+        """Keep what the manoeuvre filter expects from the newest grid point on, once a point."""
+        newest = self.grid.last
+        if newest in self._turned or not len(self.grid):
+            return
+        self._turned[newest] = self._expected(newest * self.settings.step)
+        while len(self._turned) > self.settings.window:
+            del self._turned[next(iter(self._turned))]
+
+    def _expected(self, since: float) -> Array:
+        """Places (H, 2) [m] that the manoeuvre filter expects at the horizons after `since` [s]."""
+        ahead = np.array(self.settings.model.horizons) * self.settings.step
+        with np.errstate(over="ignore", invalid="ignore"):
+            return self.manoeuvre.places(ahead + (since - self.manoeuvre.newest))
+
+    def _expectations(self) -> Array:
+        """(n, H, 2) of the grid's points, NaN where nothing was noted."""
+        silent = np.full((len(self.settings.model.horizons), 2), np.nan)
+        first = self.grid.last - len(self.grid) + 1
+        return np.array([self._turned.get(point, silent) for point in range(first, self.grid.last + 1)])
 
     def predict(self, t: float) -> Prediction:
         """The target at instant `t` [s], before or after the newest sample."""
@@ -108,7 +140,7 @@ class TrackPredictor:
         count = self.grid.added
         self.trainings += 1
         rng = np.random.default_rng([self._seed, self.trainings])
-        trained = yield from flying.fit(*self.grid.arrays(), self.settings.model, rng)
+        trained = yield from flying.fit(*self.grid.arrays(), self.settings.model, rng, self._expectations())
         if trained is not None and life == self._life:
             self.model = trained
             self._fitted = count
@@ -133,10 +165,20 @@ class TrackPredictor:
         self._fitted = self.grid.added
         self._fresh = False
         self.trust.judge(self.grid.last, positions)
+        self.calibration.judge(self.grid.last, positions)
         if len(positions) >= self.model.points:
-            said = flying.forecast(self.model, positions, velocities[-1], self.settings.model)
+            turned = self._turned.get(self.grid.last)
+            said = flying.forecast(
+                self.model, positions, velocities[-1], self.settings.model, None, turned
+            )
             innovation = said.velocities - velocities[-1]
             self.trust.tell(self.grid.last, positions[-1], velocities[-1], innovation)
+            horizons = np.array(self.settings.model.horizons)[:, None]
+            believed = velocities[-1] + innovation * self.trust.shares()[:, None]
+            start = self.filter.estimate(self.grid.last * self.settings.step).sigma
+            self.calibration.tell(
+                self.grid.last, positions[-1] + believed * horizons, np.hypot(start, said.sigma)
+            )
 
     def _line(self) -> Path | None:
         """The path from the newest sample on; None where the model cannot speak."""
@@ -153,7 +195,11 @@ class TrackPredictor:
         here = self.filter.estimate(newest)
         with np.errstate(over="ignore", invalid="ignore"):
             velocity = np.array(here.velocity) * step
-            said = flying.forecast(model, places, velocity, self.settings.model, self.trust.shares())
+            said = flying.forecast(
+                model, places, velocity, self.settings.model, self.trust.shares(), self._expected(newest)
+            )
+        whole = self.calibration.factors() * np.hypot(here.sigma, said.sigma)
+        said = said._replace(sigma=np.sqrt(whole * whole - here.sigma * here.sigma))
         horizons = self.settings.model.horizons
         line = path(here, said, horizons, step)
         moves = np.diff(places, axis=0)

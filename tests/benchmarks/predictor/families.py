@@ -168,3 +168,9 @@ def trajectory(
     noise = sensor.normal(0.0, 1.0, true.shape) * conditions.noise
     noise[:, 2] *= 1.0 if spatial else 0.0
     return true + noise, true
+
+
+def geometric(rows: Array | list[Array]) -> Array:
+    """Geometric mean over the first axis."""
+    out: Array = np.exp(np.mean(np.log(np.asarray(rows)), axis=0))
+    return out

@@ -12,8 +12,7 @@ import numpy as np
 from onboard.core.math.vectors import Vec, distance
 from onboard.pilot.predictor import TrackPredictor, Trainer
 from onboard.pilot.predictor.activation import SParabola
-from tests.benchmarks.predictor.families import FAMILIES, Array, Conditions, trajectory
-from tests.benchmarks.predictor.study import geometric
+from tests.benchmarks.predictor.families import FAMILIES, Array, Conditions, geometric, trajectory
 
 AHEAD = (0.2, 0.5, 1.0, 2.0, 4.0)  # [s]
 SPEED, SIGMA, RATES, SECONDS, FROM = 50.0, 3.0, (10.0, 20.0), 60.0, 40.0

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tests.benchmarks.predictor.families import CONDITIONS, FAMILIES, Array, trajectory
+from tests.benchmarks.predictor.families import CONDITIONS, FAMILIES, Array, geometric, trajectory
 from tests.benchmarks.predictor.methods import ConstantVelocity, Flying, Method, Online, Paper
 from tests.benchmarks.predictor.recurrent import Recurrent
 
@@ -101,12 +101,6 @@ def family_errors(study: Study, condition: str, method: str, seeds: int | None =
     """(families, H) mean errors."""
     by_family = study.trials[condition][method].values()
     return np.array([np.mean([t.errors for t in trials[:seeds]], axis=0) for trials in by_family])
-
-
-def geometric(rows: Array | list[Array]) -> Array:
-    """Geometric mean over the first axis."""
-    out: Array = np.exp(np.mean(np.log(np.asarray(rows)), axis=0))
-    return out
 
 
 def ratio(study: Study, condition: str, method: str, to: str) -> Array:
