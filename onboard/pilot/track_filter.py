@@ -18,7 +18,7 @@ from math import isfinite, sqrt
 from typing import NamedTuple
 
 from onboard.core.math.constants import NEVER
-from onboard.core.math.vectors import ZERO, Vec, along, distance, norm
+from onboard.core.math.vectors import ZERO, Vec, along, distance, norm, scale
 from onboard.pilot.kalman import Axes, Axis, Learning, Measured, Variance, carry, corrected
 
 BOUND = 1e12  # no number of a sample is larger; NaN fails the comparison too
@@ -145,6 +145,19 @@ class TrackFilter:
             return _estimate(t, _carry_back(step.axes, step.sample.t - t, step.density))
         index = self._index_before(t)
         return _between(steps[index], steps[index + 1], t)
+
+    def measured(self, t: float) -> Vec:
+        """Where the samples themselves say the target was at instant `t` [s], by a straight line between the
+        two about it; beyond them the nearest. With no sample: zero."""
+        steps = self._steps
+        if not steps:
+            return ZERO
+        index = self._index_before(t)
+        if index < 0 or index == len(steps) - 1:
+            return steps[max(index, 0)].sample.position
+        before, after = steps[index].sample, steps[index + 1].sample
+        share = (t - before.t) / (after.t - before.t) if after.t > before.t else 0.0
+        return along(scale(before.position, 1.0 - share), after.position, share)
 
     def _add(self, t: float, position: Vec, velocity: Vec | None, variance: Variance) -> Fate:
         numbers = (t, *position, *variance, *(velocity or ()))

@@ -19,7 +19,8 @@ from sim_bridge.studies.tracks import Array, Recording
 
 HORIZONS = (0.2, 0.5, 1.0, 2.0, 4.0)  # [s]
 ONE_S = HORIZONS.index(1.0)
-LAST, STEADY, FLYING, PAPER = "last known", "constant velocity (filtered)", "s-parabola", "paper's network"
+LAST, STEADY = "last known", "constant velocity (filtered)"
+FLYING, PAPER = "ridge + s-parabola", "paper's network"
 
 
 class Row(msgspec.Struct, frozen=True):
@@ -40,7 +41,7 @@ class Comparison(msgspec.Struct, frozen=True):
     horizons: tuple[float, ...]  # [s]
     instants: int  # at which all predicted
     rows: tuple[Row, ...]
-    spoke: dict[str, int]  # how often each kind of the s-parabola predictor spoke, 1 s ahead
+    spoke: dict[str, int]  # how often each part of it spoke, 1 s ahead
 
 
 class Drawn(NamedTuple):
@@ -143,7 +144,7 @@ def table(comparison: Comparison) -> str:
         ]
         lines.append(f"{row.predictor:30}" + "".join(cells))
     spoke = ", ".join(f"{kind.replace('_', ' ')} {count}" for kind, count in comparison.spoke.items())
-    lines.append(f"who spoke for the s-parabola predictor 1 s ahead: {spoke}")
+    lines.append(f"who spoke for ridge + s-parabola 1 s ahead: {spoke}")
     return "\n".join(lines)
 
 

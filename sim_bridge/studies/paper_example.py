@@ -24,6 +24,7 @@ class Example(msgspec.Struct, frozen=True):
     coordinate: str
     error_training: float  # mean |error| on the training set [m]
     error_test: float  # mean |error| on the test set [m]
+    error_steady: float  # the same of the last displacement carried on (constant velocity) [m]
     epochs: int
     time: float  # of the training [s]
 
@@ -60,7 +61,9 @@ def example(
                 predicted[k, column] = network.next(series[k - n : k])
         misses = np.abs(predicted[:, column] - series)
         trained, test = misses[n:FIGURE4_TRAINED], misses[FIGURE4_TRAINED:]
-        results.append(Example(name, float(trained.mean()), float(test.mean()), len(done), spent))
+        steady = np.abs(np.diff(series, n=2)[FIGURE4_TRAINED - 2 :])
+        errors = (float(trained.mean()), float(test.mean()), float(steady.mean()))
+        results.append(Example(name, *errors, len(done), spent))
     return Figure4((results[0], results[1]), truth, predicted)
 
 
@@ -76,4 +79,6 @@ def example_table(figure: Figure4) -> str:
             f"  {one.coordinate}: mean error {one.error_training:.3f} m on the training set, "
             f"{one.error_test:.3f} m on the test set; {one.epochs} epochs in {one.time:.2f} s"
         )
+    better = " and ".join(f"{one.error_steady:.3f} m in {one.coordinate}" for one in figure.results)
+    lines.append(f"  constant velocity, which learns nothing, errs by {better} on the test set")
     return "\n".join(lines)

@@ -13,6 +13,10 @@ import numpy as np
 from onboard.pilot.predictor.activation import Array
 from onboard.pilot.predictor.prediction import PredictorKind
 
+WITNESSES = 40.0  # no choice is held surer than by so many independent points
+FEW = 0.55  # Student's t: 68 % lie within 1 + 0.55 / n of the deviation that n errors gave
+HANDICAP = 1.15  # of what was learnt against what needs no learning, in mean square error
+
 
 class Held(NamedTuple):
     """Innovations of one horizon at the points held out, each (k, 3) [m a step]."""
@@ -21,6 +25,7 @@ class Held(NamedTuple):
     base: Array  # what the ridge said; zeros below the ladder
     said: Array  # what the network said on top
     turning: Array  # what the manoeuvre filter said; NaN where it was silent
+    measured: Array  # what came, as the sensor says: `fact` is filtered, and lags in a turn
 
 
 class Verdict(NamedTuple):
@@ -52,29 +57,28 @@ def judge(held: Held, horizon: int, linear: bool, margin: float) -> Verdict:
         if mean_distance(fact - share * told) < (1.0 - margin) * mean_distance(fact):
             believed = float(np.sqrt(share))  # judged on 70 % of the points, it flies with all of them
             kind, whole = spoke, believed * told
-    turning = _blend(held, whole, independent, kind is PredictorKind.CONSTANT_VELOCITY, margin)
+    turning = _blend(held, whole, independent)
     if turning > 0.0:
         whole = whole + turning * (held.turning - whole)
-        kind = PredictorKind.MANOEUVRE if kind is PredictorKind.CONSTANT_VELOCITY else kind
+        if kind is PredictorKind.CONSTANT_VELOCITY and turning > 0.5:
+            kind = PredictorKind.MANOEUVRE
     if kind not in (PredictorKind.RIDGE, PredictorKind.NETWORK):
         shrink = 0.0
-    return Verdict(kind, shrink, believed, horizon * _root_mean_square(fact - whole), turning)
+    error = _root_mean_square(fact - whole) * (1.0 + FEW / independent)
+    return Verdict(kind, shrink, believed, horizon * error, turning)
 
 
-def _blend(held: Held, whole: Array, independent: float, alone: bool, margin: float) -> float:
-    """The share of the manoeuvre filter beside what the model says, 0 where it brings nothing: least squares,
-    drawn towards one half by as much as one independent point, since two fair guesses are best averaged."""
+def _blend(held: Held, whole: Array, independent: float) -> float:
+    """The share of the manoeuvre filter beside what the model says: how likely it is the better of the two.
+
+    Witness is each independent point held out, by mean square errors against the sensor (two Gaussian errors
+    of unknown size); what was learnt bears a handicap."""
     if np.isnan(held.turning).any():
         return 0.0
-    apart, rest = held.turning - whole, held.fact - whole
-    power, match = float((apart * apart).mean()), float((apart * rest).mean())
-    if power < 1e-12:
-        return 0.0
-    middle = 0.0 if alone else 0.5
-    share = (match * independent + middle * power) / (power * (independent + 1.0))
-    share = min(max(share, 0.0), 1.0)
-    better = mean_distance(rest - share * apart) < (1.0 - margin * alone) * mean_distance(rest)
-    return share if better else 0.0
+    mine = float(((held.measured - whole) ** 2).sum(axis=1).mean())
+    other = float(((held.measured - held.turning) ** 2).sum(axis=1).mean())
+    odds = (other / max(mine * HANDICAP, 1e-12)) ** min(independent, WITNESSES)
+    return float(1.0 / (1.0 + odds))
 
 
 def _share(said: Array, fact: Array) -> float:

@@ -12,7 +12,7 @@ from onboard.core.math.constants import NEVER
 from onboard.pilot.predictor.activation import Array
 from onboard.pilot.track_filter import TrackFilter
 
-_Row = tuple[float, float, float, float, float, float]
+_Row = tuple[float, ...]  # position, velocity, measured position
 
 
 class Grid:
@@ -24,7 +24,7 @@ class Grid:
         self.step = step  # [s]
         self.gap = gap  # [s]
         self.added = 0  # points ever added
-        self._rows: deque[_Row] = deque(maxlen=capacity)  # position [m], velocity [m/s]
+        self._rows: deque[_Row] = deque(maxlen=capacity)  # position [m], velocity [m/s], measured [m]
         self._last = 0  # the newest point is at instant _last · step
         self._seen = NEVER  # newest sample that was taken in [s]
 
@@ -50,8 +50,9 @@ class Grid:
         self._seen = newest
         while (self._last + 1) * self.step <= newest + 1e-9:
             self._last += 1
-            here = track.estimate(self._last * self.step)
-            self._rows.append((*here.position, *here.velocity))
+            t = self._last * self.step
+            here = track.estimate(t)
+            self._rows.append((*here.position, *here.velocity, *track.measured(t)))
             self.added += 1
 
     def revise(self, track: TrackFilter, t: float) -> None:
@@ -65,8 +66,12 @@ class Grid:
 
     def arrays(self) -> tuple[Array, Array]:
         """Positions (n, 3) [m] and velocities (n, 3) [m a step], oldest first."""
-        both = np.array(tuple(self._rows)).reshape(-1, 6)
-        return both[:, :3], both[:, 3:] * self.step
+        both = np.array(tuple(self._rows)).reshape(-1, 9)
+        return both[:, :3], both[:, 3:6] * self.step
+
+    def measured(self) -> Array:
+        """Measured positions (n, 3) [m], oldest first: noisy, but with no lag."""
+        return np.array(tuple(self._rows)).reshape(-1, 9)[:, 6:]
 
     def window(self, track: TrackFilter, points: int) -> Array | None:
         """Positions (points, 3) [m] at the newest sample and each `step` before it, oldest first; None where
@@ -78,8 +83,8 @@ class Grid:
         out = np.empty((points, 3))
         out[-1] = track.estimate(newest).position
         out[-2] = track.estimate(newest - self.step).position
-        both = np.array(tuple(islice(reversed(self._rows), 1, points)))[::-1]  # (points − 1, 6): around each
-        place, speed = both[:, :3], both[:, 3:] * self.step
+        both = np.array(tuple(islice(reversed(self._rows), 1, points)))[::-1]  # (points − 1, 9): around each
+        place, speed = both[:, :3], both[:, 3:6] * self.step
         u = shift
         h = u * u * (3.0 - 2.0 * u)
         near, far = u * (1.0 - u) * (1.0 - u), u * u * (1.0 - u)

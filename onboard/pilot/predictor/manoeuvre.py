@@ -26,10 +26,10 @@ STRAIGHT, TURNING = 0, 1  # the models
 class ManoeuvreSettings(NamedTuple):
     """Settings of the filter."""
 
-    density: tuple[float, float] = (3.0, 3.0)  # white acceleration of each model [m²/s³]
-    turn_density: float = 0.02  # of the turn rate's random walk [rad²/s³]
+    density: tuple[float, float] = (0.3, 2.0)  # white acceleration of each model [m²/s³]
+    turn_density: float = 0.005  # of the turn rate's random walk [rad²/s³]
     turn_unknown: float = 0.3  # turn rate before anything is known [rad/s]
-    stay: float = 4.0  # mean time in a model [s]
+    stay: float = 8.0  # mean time in a model [s]
     gap_max: float = 2.0  # a longer silence begins anew [s]
     velocity_unknown: float = 30.0  # velocity error before any was measured [m/s]
 
@@ -63,6 +63,9 @@ class ManoeuvreFilter:
         score = np.zeros(2)
         for i in range(4 if measured else 2):
             score += self._correct(i, wanted[i], max(spread[i], 1e-4))
+        if not self._sound(score):
+            self._begin(t, position, moving, variance, measured)
+            return
         weight = self.shares * np.exp(score - score.max())
         self.shares = np.maximum(weight / weight.sum(), 1e-4)
         self.shares /= self.shares.sum()
@@ -99,10 +102,10 @@ class ManoeuvreFilter:
         spread = self._p[None] + apart[..., :, None] * apart[..., None, :]
         covariance = (weights[:, :, None, None] * spread).sum(axis=1)
         self.shares = after
-        moves = np.array([_straight(dt), _turning(mixed[TURNING].tolist(), dt)])
+        moves = np.array([_straight(dt), turning(mixed[TURNING].tolist(), dt)])
         mixed[STRAIGHT, 4] = 0.0
         self._p = moves @ covariance @ moves.transpose(0, 2, 1) + self._noise(dt)
-        self._x = np.array([_straight(dt) @ mixed[STRAIGHT], _turned(mixed[TURNING].tolist(), dt)])
+        self._x = np.array([_straight(dt) @ mixed[STRAIGHT], turned(mixed[TURNING].tolist(), dt)])
 
     def _noise(self, dt: float) -> Array:
         """Process noise (2, 5, 5) over `dt` [s]."""
@@ -123,8 +126,14 @@ class ManoeuvreFilter:
         gain = self._p[:, :, i] / s[:, None]
         self._x = self._x + gain * y[:, None]
         self._p = self._p - gain[:, :, None] * self._p[:, None, i, :]
-        out: Array = -0.5 * (y * y / s + np.log(2.0 * pi * s))
+        out: Array = -0.5 * (y * y / s + np.log(2.0 * pi * np.maximum(s, 1e-12)))
         return out
+
+    def _sound(self, score: Array) -> bool:
+        """Whether numbers are finite and variances positive: digits run out between samples good to a
+        millimetre and such good to a thousand kilometres."""
+        variances = self._p[:, range(STATES), range(STATES)]
+        return bool(np.isfinite(score).all() and np.isfinite(self._x).all() and variances.min() >= 0.0)
 
 
 def _straight(dt: float) -> Array:
@@ -135,7 +144,7 @@ def _straight(dt: float) -> Array:
     return out
 
 
-def _turned(x: list[float], dt: float) -> list[float]:
+def turned(x: list[float], dt: float) -> list[float]:
     """A state after `dt` seconds of its turn."""
     n, e, vn, ve, rate = x
     safe = rate if abs(rate) > 1e-6 else 1e-6
@@ -146,8 +155,8 @@ def _turned(x: list[float], dt: float) -> list[float]:
     return [north, east, c * vn - s * ve, s * vn + c * ve, rate]
 
 
-def _turning(x: list[float], dt: float) -> Array:
-    """Derivative (5, 5) of `_turned` by the state."""
+def turning(x: list[float], dt: float) -> Array:
+    """Derivative (5, 5) of `turned` by the state."""
     _, _, vn, ve, rate = x
     safe = rate if abs(rate) > 1e-6 else 1e-6
     angle = safe * dt

@@ -43,7 +43,8 @@ class ModelSettings(NamedTuple):
     decay: float = 0.1  # pull of the weights towards zero
     iterations: int = 8  # of Levenberg–Marquardt before the choice
     finishing: int = 3  # and after it, on all points
-    networks: bool = True  # off: the ridge base alone
+    networks: bool = True  # off: no network over the ridge
+    manoeuvres: bool = True  # off: no manoeuvre filter beside them
 
 
 class Model(NamedTuple):
@@ -65,6 +66,13 @@ class Model(NamedTuple):
     turning: Array  # (H,) share of the manoeuvre filter in the answer, 0…1
 
 
+class Heard(NamedTuple):
+    """What a manoeuvre filter expected at each grid point, and what came."""
+
+    places: Array  # (n, H, 2) expected at the horizons [m]; NaN: it was silent
+    measured: Array  # (n, 3) as the sensor says [m]: noisy, but with no lag of a filter
+
+
 class Forecast(NamedTuple):
     """Mean velocities to the horizons."""
 
@@ -82,10 +90,10 @@ def fit(
     velocities: Array,
     settings: ModelSettings,
     rng: np.random.Generator,
-    turned: Array | None = None,
+    heard: Heard | None = None,
 ) -> Generator[None, None, Model | None]:
-    """Train on a grid: positions (n, 3) [m], velocities (n, 3) [m a step], and places (n, H, 2) [m] that a
-    manoeuvre filter expected at the horizons after each point (None or NaN: it was silent).
+    """Train on a grid: positions (n, 3) [m], velocities (n, 3) [m a step], and what was heard of a manoeuvre
+    filter (None: it is not asked).
 
     Yields after each slice of about 1 ms; returns None where there are too few points."""
     total = len(positions)
@@ -117,8 +125,8 @@ def fit(
             act, weights, data, settings.iterations, settings.epsilon, settings.decay
         )
     answer = _answer(act, weights, net, len(horizons)) * settings.networks
-    turn_on = _turning(turned, positions, view, origins, horizons)
-    held = [Held(wanted[part, i], base[part, i], answer[part, i], turn_on[part, i])
+    turn_on, came = _turning(heard if settings.manoeuvres else None, positions, view, origins, horizons)
+    held = [Held(wanted[part, i], base[part, i], answer[part, i], turn_on[part, i], came[part, i])
             for i, part in enumerate(late)]
     verdict = [judge(held[i], int(h), enough[i], settings.margin) for i, h in enumerate(horizons)]
     kinds = tuple(one.kind for one in verdict)
@@ -165,7 +173,7 @@ def forecast(
 ) -> Forecast:
     """Predict from the last positions (at least model.points, 3) and the velocity now (3,) [m a step].
 
-    `trust` (H,) scales the innovations: see Trust. `turned` (H, 2) are the places that a manoeuvre filter
+    `trust` (H,) scales what was learnt: see Trust. `turned` (H, 2) are the places that a manoeuvre filter
     expects; without them the model speaks alone."""
     last = np.array([model.points - 1])
     recent = positions[-model.points :]
@@ -181,14 +189,14 @@ def forecast(
         innovation[:, model.axes] += said * by_net[:, None]
     learnt = np.array([kind in (PredictorKind.RIDGE, PredictorKind.NETWORK) for kind in model.kinds])
     innovation[~learnt] = 0.0
-    own = turn((innovation * model.believed[:, None])[None], view.cos, -view.sin)[0]
+    share = model.believed if trust is None else model.believed * trust
+    own = turn((innovation * share[:, None])[None], view.cos, -view.sin)[0]
     if turned is not None and np.isfinite(turned).all():
         horizons = np.array(settings.horizons)[:, None]
         other = np.zeros_like(own)
         other[:, :2] = (turned - positions[-1, :2]) / horizons - velocity[:2]
         own += model.turning[:, None] * (other - own)
-    share = np.ones(len(own)) if trust is None else trust
-    return Forecast(velocity + own * share[:, None], model.kinds, model.sigma)
+    return Forecast(velocity + own, model.kinds, model.sigma)
 
 
 class _Net(NamedTuple):
@@ -214,16 +222,20 @@ def _targets(positions: Array, view: Windows, origins: Indices, horizons: Indice
 
 
 def _turning(
-    turned: Array | None, positions: Array, view: Windows, origins: Indices, horizons: Indices
-) -> Array:
-    """The manoeuvre filter's innovations (k, H, 3) [m a step] in the heading frames; NaN: it was silent."""
-    if turned is None:
-        return np.full((len(origins), len(horizons), 3), np.nan)
-    mean = np.zeros((len(origins), len(horizons), 3))
-    mean[..., :2] = (turned[origins] - positions[origins][:, None, :2]) / horizons[None, :, None]
-    out = turn(mean, view.cos, view.sin) - view.moves[:, :1]
-    out[..., 2] = np.where(np.isnan(out[..., 0]), np.nan, 0.0)
-    return out
+    heard: Heard | None, positions: Array, view: Windows, origins: Indices, horizons: Indices
+) -> tuple[Array, Array]:
+    """Innovations (k, H, 3) [m a step] in the heading frames: those that the manoeuvre filter expected (NaN:
+    it was silent), and those that the sensor measured."""
+    shape = (len(origins), len(horizons), 3)
+    if heard is None:
+        return np.full(shape, np.nan), np.zeros(shape)
+    here, steps = positions[origins][:, None], horizons[None, :, None]
+    mean = np.zeros(shape)
+    mean[..., :2] = (heard.places[origins] - here[..., :2]) / steps
+    expected = turn(mean, view.cos, view.sin) - view.moves[:, :1]
+    expected[..., 2] = np.where(np.isnan(expected[..., 0]), np.nan, 0.0)
+    ends = heard.measured[np.minimum(origins[:, None] + horizons, len(positions) - 1)]
+    return expected, turn((ends - here) / steps, view.cos, view.sin) - view.moves[:, :1]
 
 
 def _base(

@@ -15,7 +15,7 @@ from onboard.pilot.predictor.activation import Array
 from onboard.pilot.predictor.calibration import Calibration
 from onboard.pilot.predictor.grid import Grid
 from onboard.pilot.predictor.manoeuvre import ManoeuvreFilter
-from onboard.pilot.predictor.model import Model, ModelSettings
+from onboard.pilot.predictor.model import Heard, Model, ModelSettings
 from onboard.pilot.predictor.path import Path, at, path, sound
 from onboard.pilot.predictor.prediction import REFUSAL, Prediction, PredictorKind
 from onboard.pilot.predictor.trust import Trust
@@ -98,11 +98,12 @@ class TrackPredictor:
         with np.errstate(over="ignore", invalid="ignore"):
             return self.manoeuvre.places(ahead + (since - self.manoeuvre.newest))
 
-    def _expectations(self) -> Array:
-        """(n, H, 2) of the grid's points, NaN where nothing was noted."""
+    def _heard(self) -> Heard:
+        """What the manoeuvre filter expected at the grid's points, NaN where nothing was noted."""
         silent = np.full((len(self.settings.model.horizons), 2), np.nan)
         first = self.grid.last - len(self.grid) + 1
-        return np.array([self._turned.get(point, silent) for point in range(first, self.grid.last + 1)])
+        points = range(first, self.grid.last + 1)
+        return Heard(np.array([self._turned.get(point, silent) for point in points]), self.grid.measured())
 
     def predict(self, t: float) -> Prediction:
         """The target at instant `t` [s], before or after the newest sample."""
@@ -140,7 +141,7 @@ class TrackPredictor:
         count = self.grid.added
         self.trainings += 1
         rng = np.random.default_rng([self._seed, self.trainings])
-        trained = yield from flying.fit(*self.grid.arrays(), self.settings.model, rng, self._expectations())
+        trained = yield from flying.fit(*self.grid.arrays(), self.settings.model, rng, self._heard())
         if trained is not None and life == self._life:
             self.model = trained
             self._fitted = count
@@ -167,18 +168,16 @@ class TrackPredictor:
         self.trust.judge(self.grid.last, positions)
         self.calibration.judge(self.grid.last, positions)
         if len(positions) >= self.model.points:
-            turned = self._turned.get(self.grid.last)
-            said = flying.forecast(
-                self.model, positions, velocities[-1], self.settings.model, None, turned
-            )
-            innovation = said.velocities - velocities[-1]
+            learnt = flying.forecast(self.model, positions, velocities[-1], self.settings.model)
+            innovation = learnt.velocities - velocities[-1]
             self.trust.tell(self.grid.last, positions[-1], velocities[-1], innovation)
-            horizons = np.array(self.settings.model.horizons)[:, None]
-            believed = velocities[-1] + innovation * self.trust.shares()[:, None]
+            said = flying.forecast(
+                self.model, positions, velocities[-1], self.settings.model, self.trust.shares(),
+                self._turned.get(self.grid.last),
+            )  # fmt: skip
+            ends = positions[-1] + said.velocities * np.array(self.settings.model.horizons)[:, None]
             start = self.filter.estimate(self.grid.last * self.settings.step).sigma
-            self.calibration.tell(
-                self.grid.last, positions[-1] + believed * horizons, np.hypot(start, said.sigma)
-            )
+            self.calibration.tell(self.grid.last, ends, np.hypot(start, said.sigma))
 
     def _line(self) -> Path | None:
         """The path from the newest sample on; None where the model cannot speak."""

@@ -104,7 +104,7 @@ def play(seed: int, carry: Carry, weaving: bool) -> Played:
             swing = 0.7 * sin(2.0 * pi * now / 8.0)
             c, s = cos(swing), sin(swing)
             wanted = Vec(wanted.x * c - wanted.y * s, wanted.x * s + wanted.y * c, 0.0)
-        ahead = _turned(unit(game.evader.velocity, NORTH), wanted, TURN * DT)
+        ahead = turned_by(unit(game.evader.velocity, NORTH), wanted, TURN * DT)
         runner = Vehicle(game.evader.position, scale(ahead, 50.0), 50.0)
         pursuers = game.pursuers
         if not track.filter.empty:
@@ -126,7 +126,7 @@ def play(seed: int, carry: Carry, weaving: bool) -> Played:
     return Played(smallest, float(np.mean(errors)))
 
 
-def _turned(u: Vec, wanted: Vec, most: float) -> Vec:
+def turned_by(u: Vec, wanted: Vec, most: float) -> Vec:
     """The unit vector u (level) turned towards `wanted` by at most `most` [rad]."""
     angle = min(angle_between(u, unit(wanted, u)), most)
     side = 1.0 if u.x * wanted.y - u.y * wanted.x >= 0.0 else -1.0

@@ -149,3 +149,26 @@ def test_bad_numbers_are_counted() -> None:
     assert track.fates[Fate.NOT_FINITE] == 3
     assert track.empty
     assert not isfinite(track.estimate(0.0).sigma)
+
+
+def test_a_place_told_again_is_refused_of_a_target_that_moves_and_taken_of_one_that_rests() -> None:
+    moving, resting, blind = TrackFilter(), TrackFilter(), TrackFilter()
+    measured = (1.0, 1.0, 1.0, 0.01, 0.01, 0.01)
+    for k in range(20):
+        place = Vec(10.0 * (k // 5), 0.0, 0.0)  # a new fix every fifth row, at 20 m/s
+        fate = moving.add(0.1 * k, place, Vec(20.0, 0.0, 0.0), measured)
+        assert fate is (Fate.TAKEN if k % 5 == 0 else Fate.REPEATED)
+        assert resting.add(0.1 * k, Vec(1.0, 2.0, 3.0), Vec(0.02, 0.0, 0.0), measured) is Fate.TAKEN
+        assert blind.add(0.1 * k, Vec(1.0, 2.0, 3.0), None, (1.0, 1.0, 1.0, -1.0, -1.0, -1.0)) is Fate.TAKEN
+    assert moving.fates[Fate.REPEATED] == 16
+
+
+def test_a_target_that_stops_for_good_is_found_where_it_stopped() -> None:
+    """Told without velocity and without noise, a stop cannot be told from a receiver's last fix at once."""
+    track = TrackFilter()
+    variance = (1.0, 1.0, 1.0, -1.0, -1.0, -1.0)
+    for k in range(400):
+        track.add(0.1 * k, Vec(min(2.0 * k, 100.0), 0.0, 0.0), None, variance)
+    estimate = track.estimate(40.0)
+    assert abs(estimate.position.x - 100.0) < 1.0
+    assert abs(estimate.velocity.x) < 1.0

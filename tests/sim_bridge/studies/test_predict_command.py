@@ -53,6 +53,10 @@ def test_the_example_of_3_5_2_has_a_network_a_coordinate_and_a_figure(tmp_path: 
         assert one.time > 0.0
     assert [one.coordinate for one in played.results] == ["x", "y"]
     assert "test set" in example_table(played)
+    x, y = (one.error_steady for one in played.results)  # of the trajectory alone: second differences
+    assert x == pytest.approx(0.0129, abs=5e-5)
+    assert y == pytest.approx(0.0259, abs=5e-5)
+    assert "which learns nothing, errs by 0.013 m in x and 0.026 m in y" in example_table(played)
     assert all(path.stat().st_size > 1000 for path in draw_example(played, tmp_path))
     assert all(path.stat().st_size > 1000 for path in draw_activation(tmp_path))
 

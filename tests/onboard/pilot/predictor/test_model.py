@@ -8,7 +8,7 @@ import pytest
 from onboard.pilot.predictor import ridge
 from onboard.pilot.predictor.activation import Array
 from onboard.pilot.predictor.heading import windows
-from onboard.pilot.predictor.model import Model, ModelSettings, fit, forecast, refresh
+from onboard.pilot.predictor.model import Heard, Model, ModelSettings, fit, forecast, refresh
 from onboard.pilot.predictor.prediction import PredictorKind
 
 SETTINGS = ModelSettings()
@@ -166,3 +166,35 @@ def test_the_same_seed_gives_the_same_bytes() -> None:
     assert a.weights.first.tobytes() == b.weights.first.tobytes()
     assert a.coefficients.tobytes() == b.coefficients.tobytes()
     assert a.weights.first.tobytes() != c.weights.first.tobytes()
+
+
+def test_a_manoeuvre_filter_is_believed_as_far_as_it_was_right() -> None:
+    """It is asked where nothing is to be learnt: turns of random rate in noise. Right, it is believed; wrong
+    by a mirror, it is not; silent, nothing changes."""
+    rng = np.random.default_rng(4)
+    heading = np.cumsum(np.repeat(rng.uniform(-0.15, 0.15, 30), 10))
+    truth = np.cumsum(3.0 * np.stack([np.cos(heading), np.sin(heading), 0.0 * heading], axis=1), axis=0)
+    seen = truth + rng.normal(0.0, 0.15, truth.shape) * np.array([1.0, 1.0, 0.0])
+    horizons = np.array(SETTINGS.horizons)
+    ends = np.minimum(np.arange(200)[:, None] + horizons, 199)
+    right = truth[ends][..., :2]
+    drift = right - seen[:200, None, :2] - horizons[:, None] * steps(seen)[:200, None, :2]
+    models = {}
+    for name, places in (("right", right), ("wrong", right - 2.0 * drift), ("silent", None)):
+        heard = None if places is None else Heard(places, seen[:200])
+        training = fit(seen[:200], steps(seen)[:200], SETTINGS, np.random.default_rng(0), heard)
+        while True:
+            try:
+                next(training)
+            except StopIteration as end:
+                models[name] = end.value
+                break
+    assert (models["right"].turning[:4] > 0.8).all()
+    assert (models["wrong"].turning < 0.2).all()
+    assert not models["silent"].turning.any()
+    future = truth[250 + horizons][:, :2]
+    said = forecast(models["right"], seen[:251], steps(seen)[250], SETTINGS, None, future)
+    reached = seen[250, :2] + horizons[:, None] * said.velocities[:, :2]
+    plain = seen[250, :2] + horizons[:, None] * steps(seen)[250, :2]
+    off, steady = (np.linalg.norm(one - future, axis=1) for one in (reached, plain))
+    assert (off[:4] < 0.5 * steady[:4]).all()
