@@ -124,7 +124,9 @@ def _prospect(picture: Picture, vehicle: VehicleView) -> list[Line]:
         return []
     if vehicle.role is Role.EVADER:
         who = ", ".join(f"{p.id} in {p.time_s:.0f} s" for p in found.prospects if p.intercepts)
-        free = "encircled" if found.encircled else f"widest gap {degrees(found.largest_gap):.0f}°"
+        free = f"widest gap {degrees(found.largest_gap):.0f}°"
+        if found.encircled:
+            free = "encircled (no free ray; no proof of capture)"
         return [(f"{free}; its course is met by {who or 'nobody'}", "")]
     for prospect in found.prospects:
         if prospect.id == vehicle.id:

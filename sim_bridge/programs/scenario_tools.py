@@ -128,7 +128,11 @@ def _freedom(scenario: Scenario) -> list[str]:
     evader, *pursuers = vehicles_of(scenario)
     seen = assess(evader, tuple(pursuers), rules.rho, target.exists, target.position, rules.planar)
     if seen.encircled:
-        return ["free rays at the start: none, the evader is encircled"]
+        return [
+            "free rays at the start: none, the evader is encircled. Outcome 1 of 3.4.2 says: then it is captured;",
+            "  from places drawn at random more than a quarter of such evaders are not: "
+            "python -m sim_bridge.campaign encircled",
+        ]
     if rules.planar:
         gaps = ", ".join(
             f"{degrees(g.start) % 360:.0f}° to {degrees(g.start + g.width) % 360:.0f}°" for g in seen.gaps

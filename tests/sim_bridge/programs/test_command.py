@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import cos, pi, sin
 from pathlib import Path
 
 import pytest
@@ -120,3 +121,17 @@ def test_every_shipped_scenario_loads_and_can_be_told_of(path: Path) -> None:
 def test_the_scenarios_people_are_promised_are_shipped() -> None:
     names = {path.stem for path in SHIPPED}
     assert {"demo", "one-on-one", "slower-evader", "heavy-loss", "five", "six", "row01"} <= names
+
+
+def test_who_reads_encircled_reads_that_it_is_no_proof_of_capture(tmp_path: Path) -> None:
+    ring = "".join(
+        f"[[pursuers]]\nposition = [{40 * cos(k * pi / 4):.3f}, {40 * sin(k * pi / 4):.3f}]\nspeed = 4\n"
+        for k in range(8)
+    )
+    path = tmp_path / "ring.toml"
+    evader = 'name = "ring"\n[evader]\nposition = [0, 0]\nspeed = 5\n'
+    path.write_text(f"{evader}{ring}[parameters]\nR = 2.0\nepsilon_min = 1.0\n")
+    said = check(load(path))
+    assert "the evader is encircled" in said
+    assert "more than a quarter of such evaders are not" in said
+    assert "python -m sim_bridge.campaign encircled" in said
