@@ -129,7 +129,7 @@ def _freedom(scenario: Scenario) -> list[str]:
     seen = assess(evader, tuple(pursuers), rules.rho, target.exists, target.position, rules.planar)
     if seen.encircled:
         return [
-            "free rays at the start: none, the evader is encircled. Outcome 1 of 3.4.2 says: then it is captured;",
+            "free rays at the start: none, the evader is encircled. By outcome 1 of 3.4.2 it is captured;",
             "  from places drawn at random more than a quarter of such evaders are not: "
             "python -m sim_bridge.campaign encircled",
         ]
