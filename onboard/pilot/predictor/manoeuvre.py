@@ -16,8 +16,8 @@ import numpy as np
 
 from onboard.core.math.constants import NEVER
 from onboard.core.math.vectors import Vec
+from onboard.pilot.kalman import Variance
 from onboard.pilot.predictor.activation import Array
-from onboard.pilot.track_filter import Variance
 
 STATES = 5  # north, east [m], velocities [m/s], turn rate [rad/s], positive to the right
 STRAIGHT, TURNING = 0, 1  # the models
