@@ -38,6 +38,22 @@ class Verdict(NamedTuple):
     turning: float
 
 
+class Verdicts(NamedTuple):
+    """Those of all horizons, each (H,)."""
+
+    kinds: tuple[PredictorKind, ...]
+    shrink: Array
+    believed: Array
+    sigma: Array
+    turning: Array
+
+
+def verdicts(each: list[Verdict]) -> Verdicts:
+    """Put those of single horizons side by side."""
+    kinds, *columns = zip(*each, strict=True)
+    return Verdicts(kinds, *(np.array(column) for column in columns))
+
+
 def judge(held: Held, horizon: int, linear: bool, margin: float) -> Verdict:
     """Choose for a horizon [steps] between constant velocity, ridge and network by what each said of points
     held out, and the share of the manoeuvre filter beside it; shares are least squares', clipped to 0…1."""

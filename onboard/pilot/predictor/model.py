@@ -19,7 +19,7 @@ import numpy.typing as npt
 
 from onboard.pilot.predictor import network, ridge
 from onboard.pilot.predictor.activation import Array, SParabola
-from onboard.pilot.predictor.choice import Held, judge, mean_distance
+from onboard.pilot.predictor.choice import Held, judge, mean_distance, verdicts
 from onboard.pilot.predictor.heading import Indices, Windows, turn, windows
 from onboard.pilot.predictor.prediction import PredictorKind
 
@@ -128,23 +128,21 @@ def fit(
     turn_on, came = _turning(heard if settings.manoeuvres else None, positions, view, origins, horizons)
     held = [Held(wanted[part, i], base[part, i], answer[part, i], turn_on[part, i], came[part, i])
             for i, part in enumerate(late)]
-    verdict = [judge(held[i], int(h), enough[i], settings.margin) for i, h in enumerate(horizons)]
-    kinds = tuple(one.kind for one in verdict)
+    verdict = verdicts([judge(held[i], int(h), enough[i], settings.margin) for i, h in enumerate(horizons)])
     yield
 
     every = [max(0, int(total - h - origins[0])) for h in horizons]
     coefficients = _final(rows, wanted, every, enough, chosen, settings)
     base = ridge.predict(coefficients, rows)
-    if PredictorKind.NETWORK in kinds:
+    if PredictorKind.NETWORK in verdict.kinds:
         yield
         data = _batch(net, wanted - base, known, every)
         weights = yield from network.train(
             act, weights, data, settings.finishing, settings.epsilon, settings.decay
         )
     return Model(
-        points, coefficients, kinds, chosen, np.array([one.shrink for one in verdict]),
-        np.array([one.believed for one in verdict]), weights, net.lags, net.axes, net.middle, net.scale,
-        net.spread, np.array([one.sigma for one in verdict]), np.array([one.turning for one in verdict]),
+        points, coefficients, verdict.kinds, chosen, verdict.shrink, verdict.believed, weights, net.lags,
+        net.axes, net.middle, net.scale, net.spread, verdict.sigma, verdict.turning,
     )  # fmt: skip
 
 
