@@ -6,18 +6,22 @@ from enum import Enum
 from typing import NamedTuple
 
 from onboard.agent.config import AgentConfig
+from onboard.agent.core.policy_from_config import policy_of
 from onboard.agent.core.signing_watch import SIGNING_REMEDY
 from onboard.autopilot.base import Telemetry
 from onboard.autopilot.batteries import FLIGHT, FUNCTIONS, Gauged
 from onboard.autopilot.failsafes import Around, findings
+from onboard.autopilot.flight_limits import read_limits
 from onboard.autopilot.stream_rates import REMEDIES, Shortfall
 from onboard.core.math.constants import NEVER
+from onboard.core.safety.fence import deepest
 from onboard.runtime.bus_security import BusSecurity, Lock
 from onboard.wire.bus.messages import LinkLock
 from onboard.wire.mavlink.frames import SIGNATURES
 from onboard.wire.mavlink.modes import Kind
 
 ENOUGH = 0.7  # of the position rate that was asked for
+WINGED = (Kind.ARDUPLANE, Kind.PX4_PLANE)
 DISK_MIN = 200e6  # bytes free, for logs
 
 
@@ -201,8 +205,25 @@ def _failsafes(config: AgentConfig, seen: Sight) -> list[Row]:
         )
         for one in findings(Kind(seen.kind), parameters, config.id, Around(seen.sticks, seen.components))
     ]
+    rows += _coasting(config, Kind(seen.kind), parameters)
     return [*rows, Row("parameters", Mark.PASS if parameters else Mark.FAIL, f"{len(parameters)} read",
                        "see signing" if seen.signing_trouble else "a link that answers")]  # fmt: skip
+
+
+def _coasting(config: AgentConfig, kind: Kind, parameters: dict[str, float]) -> list[Row]:
+    """Whether the own fence holds a multicopter whose agent dies at full speed."""
+    own = read_limits(kind, parameters)
+    policy = policy_of(config, None, kind not in WINGED, own)
+    if policy.coast <= 0.0 or not policy.fences:
+        return []
+    speed, e = policy.envelope.speed_max, policy.envelope
+    way = speed * (policy.reaction + policy.coast) + 0.5 * speed * speed / max(0.1, e.deceleration)
+    room = min(deepest(fence) for fence in policy.fences) - policy.fence_margin
+    found = f"at {speed:g} m/s it flies on {way:.0f} m, with {policy.coast:g} s of the last velocity"
+    if room >= way:
+        return [Row("fence, agent dies", Mark.PASS, f"{found}; the fence is {room:.0f} m deep")]
+    remedy = "a shorter GUID_TIMEOUT (COM_OF_LOSS_T), a slower envelope.speed_max, or a larger fence"
+    return [Row("fence, agent dies", Mark.FAIL, f"{found}; the fence is {room:.0f} m deep only", remedy)]
 
 
 def _bus(config: AgentConfig, seen: Sight) -> list[Row]:

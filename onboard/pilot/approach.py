@@ -6,7 +6,7 @@ circles. A multicopter waits there with its nose that way. Both fly at the heigh
 
 from __future__ import annotations
 
-from math import atan2, cos, sin
+from math import atan2, cos, isnan, sin
 from typing import NamedTuple
 
 from onboard.core.math.angles import wrap
@@ -38,7 +38,7 @@ SETTLES = 3.0  # [s] for a multicopter to come to rest
 class Place(NamedTuple):
     """Where a vehicle is to be at t₀, and how it may fly there."""
 
-    position: Vec  # [m; NED]
+    position: Vec  # [m; NED]; a NaN down: as high as it is
     heading: float | None  # [rad]; None: any
     speed: float  # [m/s; air] that the game reckons with
     slowest: float  # [m/s; air] that a plane may fly
@@ -94,7 +94,7 @@ class Approach:
         """Velocity to fly [m/s]: a multicopter's over ground, a plane's through the air."""
         offset = sub(self.place.position, own.position)
         most = CLIMB_SHARE * self.place.speed
-        down = clamp(HEIGHT_GAIN * offset.z, -most, most)
+        down = 0.0 if isnan(offset.z) else clamp(HEIGHT_GAIN * offset.z, -most, most)
         if self.place.hovers:
             way = max(1e-6, self.distance(own))
             pace = min(self.place.speed, 0.8 * way, (self.place.braking * way) ** 0.5)

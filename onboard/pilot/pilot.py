@@ -8,7 +8,7 @@ vehicle keeps that of its staging place.
 
 from __future__ import annotations
 
-from math import inf
+from math import inf, isnan
 from typing import NamedTuple
 
 from onboard.core.game.advance import EvaderStrategy, PursuerStrategy
@@ -229,6 +229,8 @@ def _steered(decision: Decision, own: Own, me: Player, planar: bool) -> Vec:
     velocity = scale(decision.direction, decision.speed)
     if not planar:
         return velocity
+    if isnan(me.height):
+        return level(velocity, True)
     most = CLIMB_SHARE * decision.speed
     down = clamp(-HEIGHT_GAIN * (me.height + own.position.z), -most, most)
     return add(level(velocity, True), Vec(0.0, 0.0, down))

@@ -25,7 +25,7 @@ class Player(NamedTuple):
     side: Side
     speed: float  # [m/s; air] declared maximum; 0 = not declared
     limits: VehicleLimits = VehicleLimits()
-    height: float = 0.0  # of its staging place above the origin [m]; plane games are flown there
+    height: float = 0.0  # [m above the origin] of its place: plane games are flown there; NaN: as it is
 
 
 class GameSetup(NamedTuple):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import asin, inf, pi, radians, sin, tan
+from math import asin, inf, nan, pi, radians, sin, tan
 
 from onboard.agent.config import POLICY_ALONE, POLICY_KEYS, AgentConfig
 from onboard.autopilot.flight_limits import FlightLimits
@@ -18,6 +18,7 @@ from onboard.pilot.setup import GameSetup, Player, Side
 from onboard.wire.bus.messages import Member, Role, Setup
 
 _DEFAULT = Policy()
+GROUND = 1.0  # [m] above the origin; a start below it is one on the ground
 COAST = 3.0  # [s] GUID_TIMEOUT as ArduCopter has it
 SAME = 0.02  # of a speed by which two count as alike
 UNKNOWN_LIMITS = FlightLimits()  # of an autopilot that has not said any
@@ -101,7 +102,8 @@ def policy_of(
     }
     policy = core_from(s, Policy, POLICY_KEYS, **given)
     if setup is not None and setup.field_profile and member is not None:
-        heights = layers(tuple(-one.start[2] for one in setup.roster))
+        starts = (-one.start[2] for one in setup.roster)
+        heights = layers(tuple(up if up >= GROUND else config.take_off_height for up in starts))
         place = next(index for index, one in enumerate(setup.roster) if one.id == config.id)
         policy = field_policy(policy, heights[place])
     return policy
@@ -178,8 +180,8 @@ def game_setup(
             )
         side = Side.EVADER if member.role is Role.EVADER else Side.PURSUER
         height = -member.start[2]
-        if config.may_arm and height < 1.0:  # a ground start
-            height = config.take_off_height
+        if height < GROUND:  # a ground start: who does not take off was given no height, and keeps its own
+            height = config.take_off_height if config.may_arm else nan
         players.append(Player(member.id, side, member.speed, limits, height))
     return GameSetup(
         roster=tuple(players),

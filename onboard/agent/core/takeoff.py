@@ -14,6 +14,7 @@ from onboard.wire.retry import CommandRetry, RetryPolicy
 RETRY = RetryPolicy(2.0)  # [s]
 ON_GROUND = 1  # MAV_LANDED_STATE_ON_GROUND
 REACHED = 0.9  # of the height
+HALFWAY = 0.5  # … where the autopilot itself says that it is up
 
 
 class TakeOff:
@@ -35,7 +36,10 @@ class TakeOff:
             return False
         if t.landed_state == ON_GROUND and not self.climbing:
             self.climbing, self._retry = True, CommandRetry(RETRY)
-        if self.climbing and t.landed_state != ON_GROUND and t.above_home_m >= REACHED * self.height:
+        # A PX4 plane says by HOLD that it is up: it accepts a height ten metres off (NAV_FW_ALT_RAD).
+        up = adapter.kind is Kind.PX4_PLANE and t.mode == "HOLD"
+        share = HALFWAY if up else REACHED
+        if self.climbing and t.landed_state != ON_GROUND and t.above_home_m >= share * self.height:
             self.climbing = False
         if not self.climbing:
             return False

@@ -16,6 +16,7 @@ from onboard.core.math.vectors import TINY, Vec, clamp
 from onboard.core.safety.policy import Cause, Envelope, Fence, Policy
 
 PASSES = 4  # of projection on the walls, before what is left is scaled down
+GRID = 32  # steps in which a fence is searched for its innermost place
 LEAD = pi / 3  # a plane's evasive course, ahead of its present one [rad]
 
 
@@ -191,17 +192,20 @@ def fits(fence: Fence, e: Envelope, margin: float, wind: float) -> bool:
     """Whether a plane can circle anywhere inside a fence: some place is deeper than its circle needs."""
     if e.hovers:
         return True
+    return deepest(fence) >= turning_radius(e, wind) + margin
+
+
+def deepest(fence: Fence) -> float:
+    """How far the innermost place of a fence lies from its walls [m], on a grid of 32 by 32."""
     xs = [corner[0] for corner in fence.polygon]
     ys = [corner[1] for corner in fence.polygon]
-    need = turning_radius(e, wind) + margin
-    steps = 32
-    for i in range(1, steps):
-        for j in range(1, steps):
-            x = min(xs) + (max(xs) - min(xs)) * i / steps
-            y = min(ys) + (max(ys) - min(ys)) * j / steps
-            if depth(x, y, fence.polygon) >= need:
-                return True
-    return False
+    best = 0.0
+    for i in range(1, GRID):
+        for j in range(1, GRID):
+            x = min(xs) + (max(xs) - min(xs)) * i / GRID
+            y = min(ys) + (max(ys) - min(ys)) * j / GRID
+            best = max(best, depth(x, y, fence.polygon))
+    return best
 
 
 def _room(x: float, y: float, course: float, radius: float, side: float, fences: tuple[Fence, ...]) -> float:

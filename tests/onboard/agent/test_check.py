@@ -10,7 +10,7 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from onboard.agent.config import AgentConfig
+from onboard.agent.config import AgentConfig, EnvelopeConfig, FenceConfig, SafetyConfig
 from onboard.agent.preflight import look
 from onboard.agent.preflight_rows import Mark, Row, Sight, judge, table
 from onboard.autopilot.base import Telemetry
@@ -92,6 +92,19 @@ def test_each_trouble_has_its_row_with_what_to_do(
     found = row(GOOD._replace(**change), name)  # type: ignore[arg-type]
     assert (found.mark, said in found.found, bool(found.remedy)) == (mark, True, True)
     assert "→" in table([found])[0]
+
+
+@pytest.mark.parametrize(("seconds", "mark"), [(1.0, Mark.PASS), (3.0, Mark.FAIL)])
+def test_the_own_fence_holds_what_a_dead_agents_vehicle_flies_on(seconds: float, mark: Mark) -> None:
+    """10 m/s for 0.5 s and the timeout, and 25 m to stop at 2 m/s²: 40 m and 60 m; the fence gives 45 m."""
+    corners = ((-50.0, -50.0), (50.0, -50.0), (50.0, 50.0), (-50.0, 50.0))
+    fence = FenceConfig(polygon=corners, height_min=10.0, height_max=90.0)
+    config = AgentConfig(safety=SafetyConfig(fence=fence), envelope=EnvelopeConfig(speed_max=10.0))
+    seen = GOOD._replace(parameters={**WATCHED, "GUID_TIMEOUT": seconds})
+    found = row(seen, "fence, agent dies", config)
+    assert found.mark is mark
+    assert f"flies on {10.0 * (0.5 + seconds) + 25.0:.0f} m" in found.found
+    assert "the fence is 45 m deep" in found.found
 
 
 @pytest.mark.parametrize("field", [False, True])
