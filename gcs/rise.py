@@ -114,7 +114,7 @@ class Rise:
                 return []
             self.step, self._ground_m = Step.GROUND, spot.altitude_m
         if self.step is Step.GROUND and beat.armed and self._landed != ON_GROUND:
-            self.step = Step.CLIMBS
+            self.step, self._said = Step.CLIMBS, ""
         assert self._ground_m is not None
         goal = self.place.frame.geodetic_from_ned(self.place.ned).altitude_m - self._ground_m
         if self.step is Step.CLIMBS and spot.altitude_m - self._ground_m >= REACHED * goal:
