@@ -35,7 +35,7 @@ def test_a_vehicle_that_is_set_as_demanded_passes_healthy_and_no_failsafe_starts
     assert rows["estimate"].mark is Mark.PASS
     alone = FlownAutopilot(kind, system=SYSTEM, airborne=airborne, parameters=BROUGHT_HOME[kind])
     for one in (alone, flown):
-        one.forward(60.0 - one.now_ns / NS_PER_S)
+        one.forward(45.0 - one.now_ns / NS_PER_S)
     assert (flown.mode, flown.texts()) == (alone.mode, alone.texts())
 
 
