@@ -72,6 +72,14 @@ def test_no_aircraft_leaves_its_limits(played: Callable[[int, Evasion], Played])
         assert reach.lowest > 200.0
 
 
+def test_mates_keep_apart(five: Scenario, played: Callable[[int, Evasion], Played]) -> None:
+    assert five.rules.separation == 100.0
+    for seed in range(12):
+        team = played(seed, Evasion.STRATEGY).log[:, 1:, :3]
+        apart = np.linalg.norm(team[:, :, None] - team[:, None], axis=3) + 1e9 * np.eye(team.shape[1])
+        assert float(np.min(apart)) >= 2.0 * five.rules.R
+
+
 def test_reversals_are_rare(played: Callable[[int, Evasion], Played]) -> None:
     games = [played(seed, Evasion.STRATEGY) for seed in range(12)]
     minutes = sum(game.time for game in games) / 60.0
