@@ -103,7 +103,7 @@ class FieldMaster:
         flight = scenario.flight
         timing = Timing(flight.ready_s, flight.timeout_s if auto_start else 0.0, RECOVERY_S, auto_start)
         nonce = secrets.randbits(48) if nonce is None else nonce
-        name = f"{station.member}/{nonce & 0xFFFF:04x}"  # a person takes over by name: no two have one
+        name = f"{station.member}/{nonce & 0xFFFFFFFF:08x}"  # a person takes over by name: no two have one
         self.rules = GameMaster(
             setup_of(scenario, station.game, name),
             target_of(scenario),

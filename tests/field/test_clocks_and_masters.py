@@ -145,7 +145,7 @@ def test_two_stations_without_keys_never_share_a_name_by_which_a_game_is_taken_o
     assert len(names) == 50
     assert all(name.startswith("gcs/") for name in names)
     with_keys = Station(broker.connect(), RealClock(), StationSetup("g", member="ground"))
-    assert FieldMaster(with_keys, TINY, nonce=0xABCDE).rules.name == "ground/bcde"
+    assert FieldMaster(with_keys, TINY, nonce=0xABCDE).rules.name == "ground/000abcde"
 
 
 def heard(signing: Signing, sender: Sender, wall_ns: int) -> dict[str, int]:
