@@ -17,7 +17,7 @@ import pytest
 
 from onboard.agent.config import AgentConfig
 from onboard.agent.preflight import Ears, Sight
-from onboard.game.scenario import Kind, SimulatedSpec, Transmitter
+from onboard.game.scenario import WINGED, Kind, SimulatedSpec, Transmitter
 from onboard.pilot.predictor_choice import Predicting
 from onboard.wire.bus.messages import CommandKind
 from sim_bridge.vehicle.autopilot.command import Command
@@ -40,7 +40,7 @@ from tests.support.whole_games import (
 pytestmark = pytest.mark.game
 
 STICK, LOW, NONE = Transmitter.CENTRED, Transmitter.LOW, Transmitter.NONE
-COPTER, PLANE, PX4 = Kind.ARDUCOPTER, Kind.ARDUPLANE, Kind.PX4
+COPTER, PLANE, PX4, PX4_PLANE = Kind.ARDUCOPTER, Kind.ARDUPLANE, Kind.PX4, Kind.PX4_PLANE
 WITHOUT = (LOW, NONE)
 ALL = (STICK, LOW, NONE)
 SINKS_IN = frozenset(("LAND", "RTL"))
@@ -51,6 +51,7 @@ SET_UP = {
     COPTER: {"FS_GCS_ENABLE": 1.0, "SYSID_MYGCS": float(PURSUER), "FS_EKF_ACTION": 1.0, "FS_OPTIONS": 16.0},
     PLANE: {"FS_GCS_ENABL": 1.0, "SYSID_MYGCS": float(PURSUER), "FS_LONG_ACTN": 1.0},
     PX4: {"COM_OBL_RC_ACT": 5.0},
+    PX4_PLANE: {"COM_OBL_RC_ACT": 5.0},
 }
 
 
@@ -70,6 +71,7 @@ ORDERS = {
     (COPTER, WITHOUT): ("BRAKE", "RTL", "LAND"),
     (PLANE, ALL): ("LOITER", "RTL", "RTL"),  # how a plane lands is its mission's business
     (PX4, ALL): ("HOLD", "RTL", "LAND"),
+    (PX4_PLANE, ALL): ("HOLD", "RTL", "LAND"),
 }
 TABLE = [
     *(Row(ending, kind, sticks, modes[0], HELD)
@@ -84,25 +86,29 @@ TABLE = [
     Row("ctrl-C, SIGTERM, FS_OPTIONS 0", COPTER, WITHOUT, "RTL", RETURNING, (("FS_OPTIONS", 0.0),)),
     Row("ctrl-C, SIGTERM", PLANE, ALL, "RTL", RETURNING),
     Row("ctrl-C, SIGTERM", PX4, ALL, "HOLD", HELD),
+    Row("ctrl-C, SIGTERM", PX4_PLANE, ALL, "HOLD", HELD),
     # The agent falls silent: the autopilot's own failsafe.
     *(Row(ending, kind, ALL, left, what)
       for ending in ("kill", "crash")
-      for kind, left, what in ((COPTER, "RTL", RETURNING), (PLANE, "RTL", RETURNING), (PX4, "HOLD", HELD))),
+      for kind, left, what in ((COPTER, "RTL", RETURNING), (PLANE, "RTL", RETURNING), (PX4, "HOLD", HELD),
+                               (PX4_PLANE, "HOLD", HELD))),
     *(Row("check ends", kind, sticks, left, HELD)  # it was never flown by us: nothing changes
       for kind, sticks, left in ((COPTER, (STICK,), "LOITER"), (COPTER, WITHOUT, "BRAKE"),
-                                 (PX4, ALL, "HOLD"))),
+                                 (PX4, ALL, "HOLD"), (PX4_PLANE, ALL, "HOLD"))),
     # ArduPlane's GCS failsafe counts from boot, heard or not: here it is off.
     Row("check ends", PLANE, ALL, "LOITER", HELD, (("FS_GCS_ENABL", 0.0),)),
     # The agent lives, and cannot go on.
     *(Row("lost bus", kind, ALL, left, HELD)
-      for kind, left in ((COPTER, "GUIDED"), (PLANE, "LOITER"), (PX4, "OFFBOARD"))),
+      for kind, left in ((COPTER, "GUIDED"), (PLANE, "LOITER"), (PX4, "OFFBOARD"),
+                         (PX4_PLANE, "HOLD"))),
     *(Row("strategy fault", kind, ALL, left, HELD)
-      for kind, left in ((COPTER, "GUIDED"), (PLANE, "LOITER"), (PX4, "HOLD"))),
-    *(Row("battery", kind, ALL, "RTL", RETURNING) for kind in (COPTER, PLANE, PX4)),
+      for kind, left in ((COPTER, "GUIDED"), (PLANE, "LOITER"), (PX4, "HOLD"), (PX4_PLANE, "HOLD"))),
+    *(Row("battery", kind, ALL, "RTL", RETURNING) for kind in (COPTER, PLANE, PX4, PX4_PLANE)),
     # Without position: the autopilot's own failsafe, and no mode that needs position.
     *(Row(ending, kind, ALL, left, what)
       for ending in ("GPS", "EKF", "hold without GPS", "ctrl-C without GPS")
-      for kind, left, what in ((COPTER, "LAND", LANDING), (PLANE, "CIRCLE", HELD), (PX4, "LAND", LANDING))
+      for kind, left, what in ((COPTER, "LAND", LANDING), (PLANE, "CIRCLE", HELD), (PX4, "LAND", LANDING),
+                               (PX4_PLANE, "LAND", LANDING))
       if (ending, kind) != ("ctrl-C without GPS", PLANE)),
     # … out of which ArduPlane's GCS failsafe flies home by what it reckons.
     Row("ctrl-C without GPS", PLANE, ALL, "RTL", RETURNING),
@@ -116,14 +122,16 @@ EVERYWHERE = {  # what the suite flies each time; all else is `long`
 
 def printed() -> str:
     """The table as docs/safety.md has it."""
-    columns = ((COPTER, STICK), (COPTER, NONE), (PLANE, NONE), (PX4, NONE))
+    columns = ((COPTER, STICK), (COPTER, NONE), (PLANE, NONE), (PX4, NONE),
+               (PX4_PLANE, NONE))
     left = {
         (row.ending, row.kind, sticks): row.mode if row.what == HELD or row.mode == "LAND" else "RTL"
         for row in TABLE
         for sticks in row.sticks
     }
-    lines = ["| the flight ends by | ArduCopter, stick centred | ArduCopter without | ArduPlane | PX4 |",
-             "|---|---|---|---|---|"]  # fmt: skip
+    names = ("the flight ends by", "ArduCopter, stick centred", "ArduCopter without", "ArduPlane",
+             "PX4 multicopter", "PX4 plane")  # fmt: skip
+    lines = [f"| {' | '.join(names)} |", "|---" * len(names) + "|"]
     for ending in dict.fromkeys(row.ending for row in TABLE):
         cells = [left.get((ending, *column), "") for column in columns]
         lines.append(f"| {ending} | {' | '.join(cells)} |")
@@ -252,7 +260,7 @@ async def flown(row: Row, sticks: Transmitter) -> None:
         sinking = Sinking(game)
         asked = _modes_asked(game)
         await ENDINGS[row.ending](game)
-        within = 60.0 if row.ending == "lost bus" else 9.0  # until what was last known is known no more
+        within = 150.0 if row.ending == "lost bus" else 9.0  # until what was last known is known no more
         await game.forward(within, until=lambda: sinking.look() or _there(game, row))
         await _then(game, row, sinking)
         if "GPS" in row.ending or row.ending == "EKF":
@@ -283,7 +291,7 @@ def _there(game: WholeGame, row: Row) -> bool:
 
 async def _then(game: WholeGame, row: Row, sinking: Sinking) -> None:
     """What the vehicle does from the row's mode on."""
-    plane = row.kind is PLANE
+    plane = row.kind in WINGED
     await _for(game, 4.0, sinking)
     begun, places = place(game, PURSUER), []
     for _ in range(20):
@@ -338,7 +346,7 @@ def test_every_ending_is_in_the_table_for_every_kind_with_every_state_of_the_sti
     covered = {(row.ending, row.kind, sticks) for row in TABLE for sticks in row.sticks}
     special = "ctrl-C, SIGTERM, FS_OPTIONS 0"
     for ending in ENDINGS:
-        for kind in (COPTER, PLANE, PX4):
+        for kind in (COPTER, PLANE, PX4, PX4_PLANE):
             for sticks in ALL:
                 assert (ending, kind, sticks) in covered or ending == special, (ending, kind, sticks)
     assert len(covered) == sum(len(row.sticks) for row in TABLE)
