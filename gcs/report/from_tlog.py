@@ -16,6 +16,8 @@ from onboard.wire.geodesy import Frame
 from onboard.wire.mavlink.tlog import read_tlog
 from onboard.wire.mavlink.values import AirData, GlobalPosition, SysStatus, Wind
 
+AUTOPILOT = 1  # MAV_COMP_ID_AUTOPILOT1
+
 
 class _Log:
     """What one log says."""
@@ -25,28 +27,27 @@ class _Log:
         self.airspeeds: list[tuple[int, float]] = []
         self.winds: list[tuple[int, tuple[float, float, float]]] = []
         self.batteries: list[tuple[int, float]] = []
-        self.causes: Counter[str] = Counter()
 
 
 def from_tlogs(folder: Path, files: Beside, why: str) -> Run:
     """What can be said without a recording; `why` there is none goes into the notes.
 
-    Raises ConfigError where there is no log either.
+    `folder` holds `vehicle-ID.tlog` files, or logs with names of their own, of any number of vehicles each;
+    it may be such a log itself. Raises ConfigError where there is none.
     """
     notes = [*files.notes, why, "made from telemetry logs: no decisions, no alerts, no commands"]
     logs: dict[int, _Log] = {}
-    for path in sorted(folder.glob("vehicle-*.tlog")):
-        number = path.stem.split("-")[1]
-        if not number.isdigit():
-            continue
-        log = _read(path, int(number))
-        if log.causes:
-            told = ", ".join(f"{n} {cause}" for cause, n in sorted(log.causes.items()))
+    for path in sorted(folder.glob("*.tlog")) if folder.is_dir() else [folder]:
+        kind, _, number = path.stem.partition("-")
+        own = int(number) if kind == "vehicle" and number.isdecimal() else None
+        causes = Counter[str]()
+        found = {i: log for i, log in _read(path, own, causes).items() if log.places}
+        if causes:
+            told = ", ".join(f"{n} {cause}" for cause, n in sorted(causes.items()))
             notes.append(f"{path}: damaged: {told}")
-        if log.places:
-            logs[int(number)] = log
-        else:
-            notes.append(f"{path}: no position of vehicle {number}")
+        if not found:
+            notes.append(f"{path}: no position{'' if own is None else f' of vehicle {own}'}")
+        logs = found | logs
     if not logs:
         raise ConfigError(f"{folder}: found neither a recording nor a log with positions; {why}")
     zero_ns = min(log.places[0][0] for log in logs.values())
@@ -61,7 +62,7 @@ def from_tlogs(folder: Path, files: Beside, why: str) -> Run:
         target = (north, east, -(height[0] if height else scenario.flight.height))
     return Run(
         name=scenario.name if scenario is not None else folder.name,
-        folder=folder,
+        folder=folder if folder.is_dir() else folder.parent,
         notes=tuple(notes),
         scenario=scenario,
         setup=None,
@@ -81,25 +82,27 @@ def from_tlogs(folder: Path, files: Beside, why: str) -> Run:
     )
 
 
-def _read(path: Path, system: int) -> _Log:
-    log = _Log()
+def _read(path: Path, own: int | None, causes: Counter[str]) -> dict[int, _Log]:
+    """What the autopilots in a log say; of vehicle `own` alone where that is given."""
+    logs: dict[int, _Log] = {}
     try:
         data = path.read_bytes()
     except OSError as error:
         raise ConfigError(f"{path}: {(error.strerror or str(error)).lower()}") from None
-    for stamp_ns, packet in read_tlog(data, log.causes):
-        if packet.system != system:
+    for stamp_ns, packet in read_tlog(data, causes):
+        if packet.component != AUTOPILOT or own not in (None, packet.system):
             continue
-        value = packet.value
+        value, log = packet.value, logs.setdefault(packet.system, _Log())
         if isinstance(value, GlobalPosition):
-            log.places.append((stamp_ns, value))
+            if value.latitude_deg or value.longitude_deg:  # 0°, 0° is told before there is a fix
+                log.places.append((stamp_ns, value))
         elif isinstance(value, AirData):
             log.airspeeds.append((stamp_ns, value.airspeed))
         elif isinstance(value, Wind):
             log.winds.append((stamp_ns, (value.velocity.x, value.velocity.y, value.velocity.z)))
         elif isinstance(value, SysStatus) and value.battery >= 0:
             log.batteries.append((stamp_ns, value.battery))
-    return log
+    return logs
 
 
 def _frame(files: Beside, logs: dict[int, _Log]) -> Frame:

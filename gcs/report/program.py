@@ -39,10 +39,12 @@ def read_run(run: Path, limits: Thresholds | None = None, version: str = "") -> 
         raise ConfigError(f"{run}: no such run")
     files = beside(run if run.is_dir() else run.parent)
     path = run / RECORDING if run.is_dir() else run
+    if path.suffix == ".tlog":
+        return from_tlogs(run, files, "a telemetry log alone")
     try:
         recording = Recording(path)
     except ConfigError as error:
-        if not run.is_dir() or not any(run.glob("vehicle-*.tlog")) or "version" in str(error):
+        if not run.is_dir() or not any(run.glob("*.tlog")) or "version" in str(error):
             raise
         return from_tlogs(run, files, str(error))
     try:
