@@ -21,7 +21,7 @@ from onboard.runtime.bus_zenoh import ZenohBus, open_zenoh
 from onboard.runtime.clock import RealClock, SteadyClock
 from onboard.runtime.impairment import CLEAR, Impaired
 from onboard.runtime.links import open_udp
-from onboard.runtime.protocols import Link
+from onboard.runtime.protocols import Bus, Link
 from onboard.runtime.spoken_lines import SpokenLines
 from onboard.runtime.tasks import Pace, periodic
 from onboard.wire.bus.messages import Event, Outcome, Phase
@@ -153,7 +153,7 @@ async def _until_stopped(
             task.cancel()
 
 
-def _tell_of_doubles(bus: ZenohBus, game: str, say: Callable[[str], None]) -> None:
+def _tell_of_doubles(bus: Bus, game: str, say: Callable[[str], None]) -> None:
     """Say where another autopilot, a real one perhaps, has a simulated vehicle's id: agents hear both."""
     told: set[int] = set()
 

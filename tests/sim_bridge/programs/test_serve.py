@@ -14,14 +14,15 @@ import pytest
 
 from onboard.config.strict import ConfigError
 from onboard.game.scenario import Flight, ImpairmentSpec, Kind, Parameters, Scenario, VehicleSpec
+from onboard.runtime.bus_memory import MemoryBroker
 from onboard.runtime.bus_zenoh import open_zenoh
 from onboard.runtime.clock import RealClock
 from onboard.runtime.links import open_udp
-from onboard.wire.bus.messages import OutcomeResult
-from onboard.wire.bus.topics import SETUP, TRACK
+from onboard.wire.bus.messages import Event, OutcomeResult, Severity
+from onboard.wire.bus.topics import EVENTS, SETUP, TRACK
 from onboard.wire.mavlink.commands import set_message_interval
 from onboard.wire.mavlink.dialect import dialect
-from sim_bridge.programs.serve import Options, serve, serve_scenario
+from sim_bridge.programs.serve import Options, _tell_of_doubles, serve, serve_scenario
 from sim_bridge.world.bridge import Bridge
 from sim_bridge.world.radio import CALLERS_MAX, Radio, agent_ports
 from tests.support.bus_stages import Heard, free_port
@@ -183,3 +184,15 @@ def test_a_signal_ends_it_cleanly(number: signal.Signals, tmp_path: Path) -> Non
 def test_a_wrong_scenario_is_one_clear_line(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match=r"none\.toml: no such file"):
         serve(tmp_path / "none.toml", Options())
+
+
+async def test_another_autopilot_with_a_simulated_vehicles_id_is_said_once() -> None:
+    broker, said = MemoryBroker(), list[str]()
+    _tell_of_doubles(broker.connect(), "g", said.append)
+    agent = broker.connect()
+    text = "two autopilots with system id 31: on one link; give each an id of its own"
+    for number, kind in enumerate(("started", "second_autopilot", "second_autopilot")):
+        event = Event(31, number + 1, 0, Severity.ERROR, kind, text)
+        agent.publish(EVENTS.key("g", 31), EVENTS.encode(event), EVENTS.delivery)
+    await until(lambda: bool(said))
+    assert said == [f"vehicle 31: another autopilot has this id, its agent hears both: {text}"]
