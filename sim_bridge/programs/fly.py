@@ -70,13 +70,13 @@ def fly(path: Path, options: Options, say: Callable[[str], None] = print) -> Flo
         run_folder.discard(folder)
         raise
     except KeyboardInterrupt:
-        raise KeyboardInterrupt(f"{folder} holds an unfinished game") from None
+        raise KeyboardInterrupt(f"no outcome; the unfinished game is in {folder}") from None
     wall_s = (clock.monotonic_ns() - began) / NS_PER_S
     run_folder.write(folder / "summary.json", summary)
     timing = {"wall_s": round(wall_s, 3), **timing}
     run_folder.write(folder / "timing.json", timing)
     if summary.verdict == "none":  # a signal ended it: agents and vehicles were brought to an end before
-        raise KeyboardInterrupt(f"{folder} holds an unfinished game")
+        raise KeyboardInterrupt(f"no outcome; the unfinished game is in {folder}")
     report = _report(folder, tell) if options.report else None
     return Flown(folder, summary, report)
 

@@ -93,14 +93,15 @@ def test_ctrl_c_in_flight_ends_everybody_and_says_that_there_was_no_verdict(tmp_
         assert len(crew) >= 2
         os.killpg(child.pid, signal.SIGINT)  # as a terminal does it
         out, err = child.communicate(timeout=patience(FLY_ENDS_S))
-        assert child.returncode == 1, out + err
+        assert child.returncode == 130, out + err
         assert "Traceback" not in err
         gone, left = psutil.wait_procs(crew, timeout=patience(1.0))
         assert left == []
         assert len(gone) == len(crew)
     (folder,) = (tmp_path / "runs").iterdir()
     assert json.loads((folder / "summary.json").read_bytes())["verdict"] == "none"
-    assert "no outcome" in out
+    told = f"sim-bridge: interrupted: no outcome; the unfinished game is in {folder}"
+    assert err.rstrip().endswith(told)
     for id in (1, 2):  # while there still was something to fly, it was left in a mode it can hold
         last = (folder / f"agent-{id}.log").read_text(encoding="utf-8").splitlines()[-1]
         assert last.endswith("stopped: vehicle left in LOITER")
