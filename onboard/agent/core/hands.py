@@ -41,8 +41,17 @@ class Hands:
         self._given_at = NEVER
 
     def given(self, now: float) -> bool:
-        """Whether control was given, and is not taken yet."""
+        """Whether control was given, and is not taken yet; a pilot's moving sticks end it."""
+        if self._flown:
+            self._given_at = NEVER
         return now - self._given_at < GIVEN_S
+
+    @property
+    def _flown(self) -> bool:
+        """Whether a pilot's sticks move a vehicle that this agent does not fly."""
+        adapter = self._vehicle.adapter
+        ours = self._vehicle.stage not in (Stage.TAKEN, Stage.IDLE)
+        return adapter is not None and not ours and adapter.pilot(self._vehicle.now) is Pilot.FLYING
 
     def taken(self) -> None:
         """Other hands took the vehicle: leave must be given anew."""
@@ -81,11 +90,10 @@ class Hands:
         was started while the game runs it enters nothing: then it flies a vehicle that it finds in the guided
         mode.
         """
-        vehicle, orders = self._vehicle, self._orders
-        t, adapter = vehicle.telemetry, vehicle.adapter
-        flown = adapter is not None and adapter.pilot(t.heartbeat_at) is Pilot.FLYING
-        bound = t.mode in HOMEWARD or t.status >= CRITICAL or flown
-        return (orders.granted or (self.trusted and not bound)) and not orders.blocked
+        t, orders = self._vehicle.telemetry, self._orders
+        bound = t.mode in HOMEWARD or t.status >= CRITICAL
+        let = orders.granted or (self.trusted and not bound)
+        return let and not (orders.blocked or self._flown)
 
     def objection(self, now: float, command: Command) -> str:
         """Why the hands that fly now stand against a command; "" where they do not.

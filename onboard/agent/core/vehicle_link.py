@@ -114,6 +114,7 @@ class VehicleLink:
         self.heard_systems: dict[int, float] = {}
         self.position_rate, self.setpoint_rate = Rate(), Rate()
         self.sent_at = NEVER  # of the last setpoint [s]
+        self.now = NEVER  # when it was looked at last [s]
         self.facing: float | None = None  # [rad] where a multicopter is to look; None: as it likes
         self.flown = False  # the vehicle was under this process's control once
         self.version: Version | None = None  # of the autopilot, once it has said so
@@ -243,7 +244,7 @@ class VehicleLink:
 
     def look(self, now: float) -> Telemetry:
         """What is known of the vehicle at `now`; also notices an autopilot that started again."""
-        self.telemetry = self.observer.snapshot()
+        self.telemetry, self.now = self.observer.snapshot(), now
         if self.telemetry.reboots != self._reboots:
             self._reboots = self.telemetry.reboots
             self._journal.error("reboot", "the autopilot has started again")
@@ -280,7 +281,7 @@ class VehicleLink:
             verdict = None
         setpoint = None if verdict is None else _let_through(verdict, self.facing)
         step = adapter.step(now, self.telemetry, setpoint)
-        self._stepped_at = now
+        self._stepped_at = self.now = now
         self.flown = self.flown or adapter.stage is Stage.ACTIVE
         for message in step.messages:
             self.radio.send(message)

@@ -155,12 +155,13 @@ async def test_what_is_found_guided_before_a_game_is_not_flown_without_leave() -
         await game.forward(0.5)
         game.start_agent(PURSUER)
         heard = setpoints_heard(game, PURSUER)
-        await under_way(game, 5.0)
+        await game.forward(10.0)
         assert (mode(game, PURSUER), heard) == ("GUIDED", [])
-        game.expects_abort()
-        game.bridge.master.abort("the day is over")  # type: ignore[union-attr]
-        await game.forward(4.0)
-        assert mode(game, PURSUER) == "GUIDED"  # nor is the other one's vehicle stopped
+        lacks = game.health[PURSUER].lacks  # and the game waits, for a reason that a person can act on
+        assert any("a person's resume: found in GUIDED" in lack for lack in lacks)
+        await order(game, PURSUER, command(CommandKind.RESUME))
+        await under_way(game, 1.0)
+        assert flies(game.agents[PURSUER])
 
 
 @virtual
