@@ -10,7 +10,7 @@ from onboard.core.math.vectors import distance
 from onboard.game.scenario import FenceSpec, Flight, Kind, Parameters, Scenario, VehicleSpec
 from onboard.wire.bus.messages import CommandKind
 from sim_bridge.vehicle.autopilot.autopilot import Autopilot
-from tests.support.small_scenarios import EVADER
+from tests.support.small_scenarios import EVADER, chase
 from tests.support.virtual_time import virtual
 from tests.support.whole_games import (
     WholeGame,
@@ -103,3 +103,18 @@ async def test_abort_and_then_return_of_all_at_once_keep_them_apart(kind: Kind) 
         await game.forward(1.0)
         assert {mode(game, id) for id in game.scenario.ids} == {"RTL"}
         assert await nearest_until(game, 25.0) > 8.0
+
+
+@virtual
+async def test_in_the_field_a_silent_master_makes_everybody_hold_and_after_a_minute_fly_home() -> None:
+    async with game_of(chase(field_profile=True, separation=8.0), any_error=True) as game:
+        await under_way(game, 3.0)
+        assert game.bridge.master is not None
+        game.bridge.master.step = lambda motions: None  # type: ignore[method-assign]
+        await game.forward(8.0)
+        assert [mode(game, id) for id in game.scenario.ids] == ["GUIDED"] * 2
+        assert all(speed(game, id) < 0.5 for id in game.scenario.ids), "after 5 s they hold"
+        await game.forward(50.0)
+        assert [mode(game, id) for id in game.scenario.ids] == ["GUIDED"] * 2
+        await game.forward(5.0)
+        assert [mode(game, id) for id in game.scenario.ids] == ["RTL"] * 2
