@@ -23,7 +23,7 @@ from onboard.wire.bus.messages import CommandKind
 from sim_bridge.vehicle.autopilot.command import Command
 from sim_bridge.vehicle.autopilot.health import Fault
 from tests.support.paths import ROOT
-from tests.support.small_scenarios import PURSUER, chase
+from tests.support.small_scenarios import EVADER, PURSUER, chase
 from tests.support.virtual_time import virtual
 from tests.support.whole_games import (
     WholeGame,
@@ -252,6 +252,8 @@ async def flown(row: Row, sticks: Transmitter) -> None:
     scenario = chase(row.kind, simulated=around, prediction=Predicting.CONSTANT_VELOCITY)
     async with game_of(scenario, any_error=True) as game:
         game.expects_abort()
+        if row.kind is PLANE:  # the set-up is the pursuer's; unwatched, the evader would fly home
+            autopilot(game, EVADER).parameters.put("SYSID_MYGCS", float(EVADER))
         if row.ending == "check ends":
             game.kill_agent(PURSUER)  # at once: it has said nothing
             await game.forward(2.0)
