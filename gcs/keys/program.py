@@ -5,6 +5,7 @@ from __future__ import annotations
 from datetime import UTC, datetime
 from pathlib import Path
 
+from onboard.config.printable import printable
 from onboard.config.strict import ConfigError
 from onboard.game import field_roster
 from onboard.runtime.clock import RealClock
@@ -25,10 +26,10 @@ def init(roster_file: Path, folder: Path | None) -> int:
     place = folder_of(roster_file) if folder is None else folder
     issued = keys.init(roster, roster_file.read_bytes(), place, _now())
     made = ", ".join(entry.member.name for entry in issued if entry.made)
-    print(f"{place}: {len(issued)} members of field {roster.game}, new keys for {made or 'nobody'}")
+    _say(f"{place}: {len(issued)} members of field {roster.game}, new keys for {made or 'nobody'}")
     listener = issued[0].member.name
-    print(f"copy each member's folder to its computer; restart {listener}, which enforces the roster")
-    print(f"what to write where: gcs keys sheet {place}")
+    _say(f"copy each member's folder to its computer; restart {listener}, which enforces the roster")
+    _say(f"what to write where: gcs keys sheet {place}")
     return 0
 
 
@@ -36,13 +37,13 @@ def show(folder: Path) -> int:
     """List the members; 1 where a certificate has ended."""
     roster, issued = keys.show(folder)
     now = _now()
-    print(f"field {roster.game} at {roster.endpoint}")
+    _say(f"field {roster.game} at {roster.endpoint}")
     for entry in issued:
         left = (entry.ends - now).total_seconds() / 86400
         until = f"until {entry.ends:%Y-%m-%d}" if left > 0 else f"EXPIRED {entry.ends:%Y-%m-%d}"
         soon = " (soon)" if 0 < left < SOON_DAYS else ""
         mavlink = f", MAVLink key {entry.mavlink}" if entry.mavlink else ""
-        print(f"  {entry.member.certificate:24} {entry.fingerprint} {until}{soon}{mavlink}")
+        _say(f"  {entry.member.certificate:24} {entry.fingerprint} {until}{soon}{mavlink}")
     return 1 if any(entry.ends <= now for entry in issued) else 0
 
 
@@ -51,24 +52,29 @@ def sheet(folder: Path) -> int:
     from onboard.game.access import Use, grants
 
     roster, issued = keys.show(folder)
-    print(f"# field {roster.game}, {len(issued)} members, everybody meets at {roster.endpoint}")
+    _say(f"# field {roster.game}, {len(issued)} members, everybody meets at {roster.endpoint}")
     for index, (member, *_) in enumerate(issued):
-        print(f"\n# {member.name}: copy {folder / member.name}/ to its computer (scp -rp), files stay 0600")
+        _say(f"\n# {member.name}: copy {folder / member.name}/ to its computer (scp -rp), files stay 0600")
         if member.vehicle is not None:
-            print(f'# agent.toml\nzenoh = "{member.name}/{keys.ZENOH_FILE}"\nfield = true')
-            print(f'[signing]\nkey = "{member.name}/{keys.MAVLINK_FILE}"')
+            _say(f'# agent.toml\nzenoh = "{member.name}/{keys.ZENOH_FILE}"\nfield = true')
+            _say(f'[signing]\nkey = "{member.name}/{keys.MAVLINK_FILE}"')
         else:
-            print(f'# gcs.toml\n[bus]\nzenoh = "{member.name}/{keys.ZENOH_FILE}"')
-            print(f"listen = {'true' if index == 0 else 'false'}")
+            _say(f'# gcs.toml\n[bus]\nzenoh = "{member.name}/{keys.ZENOH_FILE}"')
+            _say(f"listen = {'true' if index == 0 else 'false'}")
         for use in Use:
             topics = sorted({grant.topic.suffix for grant in grants(member, roster) if grant.use is use})
-            print(f"# may {use.value}: {', '.join(topics) or 'nothing'}")
+            _say(f"# may {use.value}: {', '.join(topics) or 'nothing'}")
     return 0
 
 
 def folder_of(roster_file: Path) -> Path:
     """Where a roster's keys lie unless told: beside it, in NAME-keys."""
     return roster_file.with_name(f"{roster_file.stem}-keys")
+
+
+def _say(text: str) -> None:
+    """Lines to standard output, whatever a folder's name holds."""
+    print("\n".join(map(printable, text.split("\n"))))
 
 
 def _now() -> datetime:

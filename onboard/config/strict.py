@@ -16,6 +16,8 @@ from typing import Any, TypeVar
 
 import msgspec
 
+from onboard.config.printable import printable
+
 T = TypeVar("T")
 S = TypeVar("S", bound=msgspec.Struct)
 
@@ -23,7 +25,10 @@ FILE_MAX = 1 << 20  # [bytes] a longer file is no configuration
 
 
 class ConfigError(Exception):
-    """A fault in a file or option of the user's: its text is the one line to print (exit code 2)."""
+    """A fault in a file or option of the user's: its text is the one printable line to say (exit code 2)."""
+
+    def __str__(self) -> str:
+        return printable(" ".join(super().__str__().split()))
 
 
 class FieldError(ValueError):

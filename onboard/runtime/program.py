@@ -110,7 +110,7 @@ def _end_of(error: BaseException) -> _End | None:
         order = (INTERRUPTED, MISTAKE, NOT_WRITTEN, READER_LEFT)
         return min(found, key=lambda end: order.index(end.code)) if len(found) == len(ends) else None
     if isinstance(error, ConfigError):
-        return _End(MISTAKE, " ".join(str(error).split()))
+        return _End(MISTAKE, str(error))
     if isinstance(error, KeyboardInterrupt):  # its words say what was left behind
         return _End(INTERRUPTED, ": ".join(("interrupted", *map(str, error.args[:1]))))
     if isinstance(error, BrokenPipeError):

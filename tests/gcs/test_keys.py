@@ -117,6 +117,30 @@ def test_a_wrong_roster_is_one_line(tmp_path: Path, old: str, new: str, said: st
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.parametrize("place", ["plain", "red\x1b[31m", "latin\udce9", "turned\u202e"])
+@pytest.mark.parametrize("damaged", ["", "ground", "vehicle-2"])
+def test_what_is_said_of_keys_is_printable_whatever_files_and_names_hold(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], place: str, damaged: str
+) -> None:
+    """A folder's name may hold anything but NUL and /, and a damaged file anything at all."""
+    roster = tmp_path / place / "range.toml"
+    roster.parent.mkdir()
+    roster.write_text(Field(tmp_path / "keys").text)
+    assert program.init(roster, None) == 0
+    made = program.folder_of(roster)
+    if damaged:
+        member = made / damaged / "member.json"
+        member.write_text(member.read_text().replace('"name"', '"\x85na\\u001b]0;x\\u202eme"', 1))
+        with pytest.raises(ConfigError, match=r"unknown field `.na·") as caught:
+            program.init(roster, None)
+        assert str(caught.value).isprintable()
+    assert program.show(made) == 0
+    assert program.sheet(made) == 0
+    said = capsys.readouterr().out
+    assert "6 members of field range" in said
+    assert all(line.isprintable() for line in said.split("\n"))
+
+
 def test_a_secret_file_follows_no_link_and_replaces_in_one_piece(tmp_path: Path) -> None:
     victim, link = tmp_path / "victim", tmp_path / "key"
     victim.write_text("untouched")
