@@ -39,19 +39,21 @@ def draw_activation(folder: Path) -> list[Path]:
 def draw_example(example: Figure4, folder: Path) -> list[Path]:
     """Trajectory, prediction on the training set and on the test set (Figure 4). Returns the files."""
     plt = pyplot()
-    figure, axis = plt.subplots(figsize=(8, 6), layout="constrained")
+    wide, high = np.ptp(example.truth, axis=0)
+    figure, axis = plt.subplots(figsize=(8, 1.3 + 7.0 * high / wide), layout="constrained")
     cut = FIGURE4_TRAINED
     axis.plot(*example.truth.T, color=_TRACK, label="trajectory")
     axis.plot(*example.predicted[:cut].T, color=_BLUE, linestyle="-.", label="prediction, training set")
     axis.plot(*example.predicted[cut:].T, color=_GREEN, linestyle="--", label="prediction, test set")
     x, y = example.results
     axis.set(
-        title=f"mean test error: x {x.error_test:.2f} m, y {y.error_test:.2f} m",
+        title=f"mean test error: x {x.error_test:.2f} m, y {y.error_test:.2f} m"
+        f" (constant velocity: {x.error_steady:.2f} and {y.error_steady:.2f} m)",
         xlabel="x [m]",
         ylabel="y [m]",
         aspect="equal",
     )
-    axis.legend()
+    axis.legend(fontsize=8)
     return save_both(figure, folder, "example-3-5-2")
 
 
