@@ -20,7 +20,7 @@ from tests.mutants.trial import Bench, Ledger, Mutant, changed, mutants
 from tests.support import benchmark_record
 from tests.support.paths import ROOT
 
-QUICK = ["orders", "radio", "bus_view", "floods"]  # on virtual time, in seconds
+QUICK = ["core_parts", "lone_agent", "orders", "radio", "bus_view", "floods"]  # on virtual time, in seconds
 FIELD = ["clocks_and_masters", "who_sent_it", "unknown_is_no_default"]
 AGENT = [
     *(f"tests/onboard/agent/test_{name}.py" for name in QUICK),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, sin
+from math import atan2, cos, degrees, hypot, sin
 from typing import Any
 
 import msgspec
@@ -70,14 +70,24 @@ class FakeAutopilot:
         self.names = {number: name for name, number in MODES[kind].items()}
         self.mode = MODES[kind]["LOITER" if kind is not Kind.PX4_MULTICOPTER else "HOLD"]
         self.battery, self.fix, self.ekf = 95, 3, 0x33F
+        self.armed, self.status, self.landed = True, 4, dialect.MAV_LANDED_STATE_IN_AIR
+        self.parameters: dict[str, float] = {}  # that say something else than `LIMIT`
+        self.wind: Vec | None = None  # [m/s; NED] where the air moves to, as a plane reports it
+        self.booted = 0.0  # when it was last started [s]
         self.place, self.speed = Vec(0.0, 0.0, -50.0), 15.0 if kind is Kind.ARDUPLANE else 0.0
         self.drift = 0.0  # [m/s; north] reported over that
         self._asked: list[str] = []  # parameters
         self.talks = True
         self.setpoints: list[float] = []  # when each arrived
+        self.orders: list[tuple[float, int, float]] = []  # when, MAV_CMD and second parameter of each
         self._mav: Any = dialect.MAVLink(None, srcSystem=VEHICLE, srcComponent=1)
         self._ears: Any = dialect.MAVLink(None)
         self._frame = Frame(ORIGIN.latitude_deg, ORIGIN.longitude_deg, ORIGIN.altitude_m)
+
+    def set_parameter(self, name: str, value: float) -> None:
+        """Somebody changes a parameter: it is said by itself."""
+        self.parameters[name] = value
+        self._asked.append(name)
 
     @property
     def mode_name(self) -> str:
@@ -92,7 +102,9 @@ class FakeAutopilot:
                 self.setpoints.append(now)
             elif name == "PARAM_REQUEST_READ":
                 self._asked.append(m.param_id)
-            elif name == "COMMAND_LONG" and m.command == dialect.MAV_CMD_DO_SET_MODE:
+            if name == "COMMAND_LONG":
+                self.orders.append((now, m.command, m.param2))
+            if name == "COMMAND_LONG" and m.command == dialect.MAV_CMD_DO_SET_MODE:
                 px4 = self.kind is Kind.PX4_MULTICOPTER
                 self.mode = int(m.param2) << 16 | int(m.param3) << 24 if px4 else int(m.param2)
             return name
@@ -102,21 +114,21 @@ class FakeAutopilot:
         """What it sends in one step."""
         if not self.talks:
             return []
-        d, boot = dialect, round(now * 1e3)
+        d, boot = dialect, round((now - self.booted) * 1e3)
         kind, autopilot = KINDS[self.kind]
         turn = now * self.speed / RADIUS  # a plane circles about its place
         v = Vec(self.speed * cos(turn) + self.drift, self.speed * sin(turn), 0.0)
         off = Vec(RADIUS * sin(turn), -RADIUS * cos(turn), 0.0) if self.speed else Vec(0.0, 0.0, 0.0)
         latitude, longitude, altitude = self._frame.geodetic_from_ned(add(self.place, off))
         said = [
-            d.MAVLink_heartbeat_message(kind, autopilot, 128 | 1, self.mode, 4, 3),
+            d.MAVLink_heartbeat_message(kind, autopilot, 128 * self.armed | 1, self.mode, self.status, 3),
             d.MAVLink_gps_raw_int_message(
                 boot * 1000, self.fix, round(latitude * 1e7), round(longitude * 1e7), round(altitude * 1e3),
                 80, 80, 0, 0, 12,
             ),
             d.MAVLink_sys_status_message(0, 0, 0, 100, 12000, 100, self.battery, 0, 0, 0, 0, 0, 0),
             d.MAVLink_attitude_message(boot, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
-            d.MAVLink_extended_sys_state_message(0, d.MAV_LANDED_STATE_IN_AIR),
+            d.MAVLink_extended_sys_state_message(0, self.landed),
         ]  # fmt: skip
         if self.kind is Kind.PX4_MULTICOPTER:
             said.append(
@@ -130,8 +142,11 @@ class FakeAutopilot:
                 round(-self.place.z * 1e3), round(v.x * 100), round(v.y * 100), round(v.z * 100), 0,
             )
         )  # fmt: skip
+        if self.wind is not None:
+            from_deg = degrees(atan2(-self.wind.y, -self.wind.x))
+            said.append(d.MAVLink_wind_message(from_deg, hypot(self.wind.x, self.wind.y), self.wind.z))
         for name in self._asked:
-            value = LIMIT / 2 if "MIN" in name else LIMIT
+            value = self.parameters.get(name, LIMIT / 2 if "MIN" in name else LIMIT)
             said.append(d.MAVLink_param_value_message(name.encode(), value, d.MAV_PARAM_TYPE_REAL32, 1, 0))
         self._asked.clear()
         return [bytes(m.pack(self._mav)) for m in said]

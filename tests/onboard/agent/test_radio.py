@@ -51,6 +51,17 @@ def test_answers_go_to_the_autopilots_peer_and_to_nobody_elses() -> None:
     assert [send.peer for send in air.sent()] == [AUTOPILOT]
 
 
+def test_before_the_autopilot_is_heard_the_one_peer_there_is_gets_what_is_said_and_of_two_nobody() -> None:
+    """A telemetry radio or a ground station may speak first on a line on which the autopilot waits for us."""
+    air = Air()
+    assert [send.peer for send in air.sent()] == [ANY_PEER]
+    air.hear(beat(system=51, component=68), STRANGER)
+    assert [send.peer for send in air.sent()] == [ANY_PEER]
+    air.hear(beat(system=255, component=190), AUTOPILOT)
+    assert air.sent() == []
+    assert air.radio.causes["no_peer"] == 1
+
+
 def test_the_lock_of_the_links_tells_silent_signed_and_refused() -> None:
     assert Air().radio.lock is LinkLock.OPEN
     air = Air(signing=Signing(KEY, MemoryStore()))
