@@ -1,0 +1,68 @@
+"""The committed figures: what makes each, and what each measures."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from tests.support.paths import RESULTS, ROOT
+
+CAMPAIGN = ("-m", "sim_bridge.campaign")
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A page of `benchmarks/results/` that a command writes."""
+
+    page: str
+    """Name of the page."""
+
+    command: tuple[str, ...]
+    """Arguments of the Python that writes the page into `benchmarks/results/` of the current folder."""
+
+    modules: tuple[str, ...]
+    """Modules that are measured; what they import is measured too."""
+
+    files: tuple[str, ...] = ()
+    """Other files that are measured, as patterns from the project's root."""
+
+    def text(self) -> str:
+        """The committed page."""
+        return (RESULTS / self.page).read_text(encoding="utf-8")
+
+
+FIGURES = (
+    Figure(
+        "encircled.md",
+        (*CAMPAIGN, "encircled", "--games", "400", "--seed", "1"),
+        ("sim_bridge.campaign.encircled",),
+    ),
+    Figure(
+        "games.md",
+        (*CAMPAIGN, "games", "--seeds", "200", "--figures", "docs/pictures"),
+        ("sim_bridge.campaign.spatial_campaign", "sim_bridge.campaign.figures"),
+        ("configs/scenarios/spatial/five.toml", "configs/scenarios/spatial/six.toml"),
+    ),
+    Figure(
+        "tracking.md",
+        (*CAMPAIGN, "tracking", "--seeds", "50"),
+        ("sim_bridge.campaign.tracking",),
+        ("configs/routes/twenty_km.toml",),
+    ),
+    Figure(
+        "predictor.md",
+        ("-m", "tests.benchmarks.predictor"),
+        ("onboard.pilot.predictor", "onboard.core.game.advance", "onboard.core.strategy"),
+        ("tests/benchmarks/predictor/*.py",),
+    ),
+    Figure(
+        "predictor-by-family.md",
+        ("-m", "tests.benchmarks.predictor.by_family"),
+        ("onboard.pilot.predictor", "onboard.core.game.advance", "onboard.core.strategy"),
+        ("tests/benchmarks/predictor/by_family.py", "tests/benchmarks/predictor/families.py"),
+    ),
+)
+
+
+def missing(figure: Figure) -> list[str]:
+    """Patterns of `figure` that name no file: they would measure nothing."""
+    return [pattern for pattern in figure.files if not any(ROOT.glob(pattern))]
