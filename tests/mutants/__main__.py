@@ -20,7 +20,9 @@ from tests.mutants.trial import Bench, Ledger, Mutant, changed, mutants
 from tests.support import benchmark_record
 from tests.support.paths import ROOT
 
-QUICK = ["core_parts", "lone_agent", "orders", "radio", "bus_view", "floods"]  # on virtual time, in seconds
+QUICK = [  # on virtual time, in seconds
+    "core_parts", "lone_agent", "lone_agent_limits", "orders", "radio", "bus_view", "floods",
+]  # fmt: skip
 FIELD = ["clocks_and_masters", "who_sent_it", "unknown_is_no_default"]
 AGENT = [
     *(f"tests/onboard/agent/test_{name}.py" for name in QUICK),

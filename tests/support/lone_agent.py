@@ -58,7 +58,11 @@ RADIUS = 80.0  # of a plane's circles [m]
 LIMIT = 20.0  # what every parameter says; half of it where it is a least value
 SQUARE = ((-300.0, -300.0), (300.0, -300.0), (300.0, 300.0), (-300.0, 300.0))
 ORIGIN = Origin(47.0, 8.0, 400.0)
-KINDS = {Kind.ARDUCOPTER: (2, 3), Kind.ARDUPLANE: (1, 3), Kind.PX4_MULTICOPTER: (2, 12)}
+KINDS = {
+    Kind.ARDUCOPTER: (2, 3), Kind.ARDUPLANE: (1, 3), Kind.PX4_MULTICOPTER: (2, 12), Kind.PX4_PLANE: (1, 12),
+}  # fmt: skip
+PLANES = (Kind.ARDUPLANE, Kind.PX4_PLANE)
+PX4 = (Kind.PX4_MULTICOPTER, Kind.PX4_PLANE)
 SETPOINTS = ("SET_POSITION_TARGET_LOCAL_NED", "SET_ATTITUDE_TARGET")
 
 
@@ -68,18 +72,18 @@ class FakeAutopilot:
     def __init__(self, kind: Kind) -> None:
         self.kind = kind
         self.names = {number: name for name, number in MODES[kind].items()}
-        self.mode = MODES[kind]["LOITER" if kind is not Kind.PX4_MULTICOPTER else "HOLD"]
+        self.mode = MODES[kind]["HOLD" if kind in PX4 else "LOITER"]
         self.battery, self.fix, self.ekf = 95, 3, 0x33F
         self.armed, self.status, self.landed = True, 4, dialect.MAV_LANDED_STATE_IN_AIR
         self.parameters: dict[str, float] = {}  # that say something else than `LIMIT`
         self.wind: Vec | None = None  # [m/s; NED] where the air moves to, as a plane reports it
         self.booted = 0.0  # when it was last started [s]
-        self.place, self.speed = Vec(0.0, 0.0, -50.0), 15.0 if kind is Kind.ARDUPLANE else 0.0
+        self.place, self.speed = Vec(0.0, 0.0, -50.0), 15.0 if kind in PLANES else 0.0
         self.drift = 0.0  # [m/s; north] reported over that
         self._asked: list[str] = []  # parameters
         self.talks = True
         self.setpoints: list[float] = []  # when each arrived
-        self.orders: list[tuple[float, int, float]] = []  # when, MAV_CMD and second parameter of each
+        self.orders: list[tuple[float, int, float]] = []  # when, MAV_CMD and seventh parameter of each
         self._mav: Any = dialect.MAVLink(None, srcSystem=VEHICLE, srcComponent=1)
         self._ears: Any = dialect.MAVLink(None)
         self._frame = Frame(ORIGIN.latitude_deg, ORIGIN.longitude_deg, ORIGIN.altitude_m)
@@ -103,10 +107,10 @@ class FakeAutopilot:
             elif name == "PARAM_REQUEST_READ":
                 self._asked.append(m.param_id)
             if name == "COMMAND_LONG":
-                self.orders.append((now, m.command, m.param2))
+                self.orders.append((now, m.command, m.param7))
             if name == "COMMAND_LONG" and m.command == dialect.MAV_CMD_DO_SET_MODE:
-                px4 = self.kind is Kind.PX4_MULTICOPTER
-                self.mode = int(m.param2) << 16 | int(m.param3) << 24 if px4 else int(m.param2)
+                px4 = int(m.param2) << 16 | int(m.param3) << 24
+                self.mode = px4 if self.kind in PX4 else int(m.param2)
             return name
         return ""
 
@@ -130,7 +134,7 @@ class FakeAutopilot:
             d.MAVLink_attitude_message(boot, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
             d.MAVLink_extended_sys_state_message(0, self.landed),
         ]  # fmt: skip
-        if self.kind is Kind.PX4_MULTICOPTER:
+        if self.kind in PX4:
             said.append(
                 d.MAVLink_estimator_status_message(boot * 1000, self.ekf, *([0.1] * 6), 0.5, 0.5)
             )

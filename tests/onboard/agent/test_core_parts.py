@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from math import asin, isnan, pi
+from math import asin, isnan, pi, radians, tan
 
 import pytest
 
-from onboard.agent.config import AgentConfig, EnvelopeConfig
+from onboard.agent.config import AgentConfig, EnvelopeConfig, SafetyConfig
 from onboard.agent.core.child_courier import LINES_MAX, ChildCourier
 from onboard.agent.core.clip_spells import ClipSpells
 from onboard.agent.core.clocks import JumpWatch, MasterClock
@@ -132,6 +132,22 @@ def test_the_tighter_limit_counts_and_a_multicopters_least_speed_is_none() -> No
     loose = envelope_of(COPTER, member, False, FlightLimits(speed_max=40.0, climb_max=90.0, sink_max=90.0))
     assert (loose.speed_max, loose.climb_max, loose.sink_max) == pytest.approx((15.0, 15.0, 15.0))
     assert envelope_of(COPTER, setup(0.0).roster[1], True).speed_max == 10.0  # none declared: caution
+
+
+def test_a_turn_is_as_wide_as_bank_and_turn_rate_let_it_whichever_is_less() -> None:
+    member, level = setup(20.0).roster[1], 9.80665 * tan(radians(30.0))
+    for turn_deg, radius in ((90.0, 20.0**2 / level), (5.0, 20.0 / radians(5.0))):
+        own = EnvelopeConfig(bank_max_deg=30.0, turn_rate_deg=turn_deg)
+        found = envelope_of(AgentConfig(id=2, game="g", envelope=own), member, False)
+        assert found.turn_radius == pytest.approx(radius)
+
+
+@pytest.mark.parametrize(("age", "alone", "counts"), [(2.0, 5.0, 5.0), (6.0, 5.0, 6.0)])
+def test_heartbeats_alone_may_be_missed_for_no_less_than_all_telemetry(
+    age: float, alone: float, counts: float
+) -> None:
+    config = AgentConfig(id=2, game="g", safety=SafetyConfig(heartbeat_age_s=age, heartbeat_alone_s=alone))
+    assert policy_of(config, None, True).heartbeat_alone == counts
 
 
 def test_a_dead_multicopter_coasts_as_long_as_its_autopilot_says_and_a_plane_is_no_such_case() -> None:
