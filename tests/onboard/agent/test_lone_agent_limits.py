@@ -126,6 +126,19 @@ def test_a_step_is_made_by_the_timer_a_third_of_a_period_after_a_position_that_d
         assert agent.core.steps == steps + made
 
 
+def test_after_one_position_that_did_not_come_steps_go_with_the_positions_again() -> None:
+    """The timer's step is 65 ms after the last one, the next position 35 ms after that."""
+    agent = playing()
+    steps, by_timer = agent.core.steps, agent.core.timer_steps
+    for passed in (0.065, 0.035):
+        agent.s += passed
+        agent.wall_ns += round(passed * 1e9)
+        for frame in agent.autopilot.says(agent.s) if passed == 0.035 else ():
+            agent.do(LinkBytes(0, 1, frame))
+        agent.do(Tick())
+    assert (agent.core.steps, agent.core.timer_steps) == (steps + 2, by_timer + 1)
+
+
 def test_who_was_not_told_that_the_game_runs_flies_to_its_place_for_a_second_after_the_start() -> None:
     agent = LoneAgent()
     agent.run(1.0)
