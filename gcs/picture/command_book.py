@@ -32,7 +32,7 @@ LEGS_MAX = 256  # who may join a command by answering a call: MAVLink knows no m
 
 ENDS_A_FLIGHT = frozenset({CommandKind.RETURN, CommandKind.LAND})  # these ask twice; abort never does
 SETS_OFF = frozenset({CommandKind.START, CommandKind.RESUME})
-FINAL = frozenset({LegState.CONFIRMED, LegState.REFUSED, LegState.SUPERSEDED})
+FINAL = frozenset({LegState.CONFIRMED, LegState.REFUSED, LegState.SUPERSEDED, LegState.EXPIRED})
 
 
 class _Leg:
@@ -59,7 +59,8 @@ class _Order:
         self.legs: dict[int, _Leg] = {}
 
     def calls(self, now_ns: int) -> bool:
-        return self.everybody and (now_ns - self.issued_ns < CALL_NS or not self.legs)
+        wanted = now_ns - self.issued_ns < CALL_NS or not self.legs
+        return self.everybody and wanted and not self.expired(now_ns)
 
     def open(self, leg: _Leg, now_ns: int) -> bool:
         return leg.state not in FINAL and not self.expired(now_ns)

@@ -177,6 +177,10 @@ class Adapter(Protocol):
         """End the setpoints and ask for a mode that the autopilot flies alone, until it reports it."""
         ...
 
+    def forget(self, now: float) -> None:
+        """Ask for the guided mode, and for arming, no more: nobody wants them now. It changes no mode."""
+        ...
+
     def end(self, now: float) -> None:
         """End the stream of setpoints for want of a decision. It changes no mode."""
         ...

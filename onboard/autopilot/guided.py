@@ -132,6 +132,10 @@ class GuidedAdapter:
         if self.stage is Stage.LEAVING and (told or not positioned(telemetry)):
             self._machine.choose_among(chain(self._machine.leaving_by, now, telemetry, self._release))
 
+    def forget(self, now: float) -> None:
+        """Ask for the guided mode, and for arming, no more."""
+        self._machine.give_up()
+
     def end(self, now: float) -> None:
         """End the stream: the next setpoint begins a new one."""
         self._encoder.restart()

@@ -80,11 +80,14 @@ class ModeMachine:
         self._mode_heard = ""
         self._silent_at = self._stepped_at = NEVER
         self._since = NEVER  # of the stage
+        self._entered_from = Stage.IDLE  # the stage in which the guided mode was asked for
         self._reboots = 0
         self._taken_at = NEVER
 
     def enter(self) -> None:
         """Ask for the guided mode; nothing to do where the vehicle is in it already."""
+        if self.stage is not Stage.ENTERING:
+            self._entered_from = self.stage
         self._happened(ModeEvent.ENTER, "")
 
     def leave(self, mode: ReleaseMode, chain: Sequence[str]) -> None:
@@ -102,8 +105,9 @@ class ModeMachine:
             self._ask()
 
     def give_up(self) -> None:
-        """Give up control: what flew by this machine's leave has ended."""
-        self._happened(ModeEvent.GIVE_UP, "")
+        """Give up control, and the wish for it; nothing to do where it is left or taken."""
+        taken = self.stage is Stage.ENTERING and self._entered_from is Stage.TAKEN
+        self._happened(ModeEvent.GIVE_BACK if taken else ModeEvent.GIVE_UP, "")
 
     def arm(self) -> bool:
         """Ask for arming until the heartbeat reports it; return whether that is allowed at all."""
@@ -228,7 +232,7 @@ class ModeMachine:
 
     def _guided_heard(self, now: float, *, echo: bool) -> ModeEvent:
         """What the guided mode means: whose it is depends on who asked for it."""
-        if echo and self.stage in (Stage.LEFT, Stage.TAKEN):
+        if echo and self.stage in (Stage.IDLE, Stage.LEFT, Stage.TAKEN):
             self._crossed = self._foreign_told = True
             return ModeEvent.ECHO
         if self.stage is Stage.IDLE and not self._elsewhere:

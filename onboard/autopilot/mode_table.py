@@ -32,7 +32,8 @@ class ModeEvent(Enum):
     ENTER = "enter"
     LEAVE = "leave"  # to another mode than last time
     LEAVE_AGAIN = "leave again"  # to the same mode
-    GIVE_UP = "child process ended"  # the one that flies, by MAVSDK
+    GIVE_UP = "given up"  # the child that flies by MAVSDK has ended, or nobody wants the guided mode now
+    GIVE_BACK = "given up, asked for after a take-over"
     REBOOT = "autopilot restarted"
     REBOOT_AFTER_TAKING = "autopilot restarted within 3 s of a take-over"
 
@@ -64,7 +65,7 @@ class Transition(NamedTuple):
 
 S, E, A = Stage, ModeEvent, ModeAction
 _ENTER = Transition(S.ENTERING, (A.ASK_GUIDED,))
-_LEAVE = Transition(S.LEAVING, (A.ASK_RELEASE,))
+_LEAVE = Transition(S.LEAVING, (A.ASK_RELEASE, A.STOP_ARMING))
 _CONFIRMED = Transition(S.ACTIVE, (A.TELL_CONTROL,))
 _FOUND = Transition(S.ACTIVE, (A.TELL_FOUND,))
 _BACK = Transition(S.ACTIVE, (A.TELL_HANDED_BACK,))
@@ -83,11 +84,15 @@ TABLE: dict[tuple[Stage, ModeEvent], Transition] = {
     (S.IDLE, E.FOUND): _FOUND,
     (S.IDLE, E.GUIDED_AGAIN): _BACK,
     (S.IDLE, E.FOREIGN): Transition(S.IDLE, (A.TELL_FOREIGN,)),
+    (S.IDLE, E.ECHO): Transition(S.IDLE, (A.TELL_CROSSED,)),
+    (S.IDLE, E.GIVE_UP): _GIVE_UP,
     (S.ENTERING, E.GUIDED): _CONFIRMED,
     (S.ENTERING, E.GUIDED_AGAIN): _CONFIRMED,
     (S.ENTERING, E.RELEASED): _TAKEN,
     (S.ENTERING, E.OTHER): _TAKEN,
     (S.ENTERING, E.LEAVE): _LEAVE,
+    (S.ENTERING, E.GIVE_UP): _GIVE_UP,
+    (S.ENTERING, E.GIVE_BACK): Transition(S.TAKEN, (A.FORGET, A.STOP_ARMING)),
     (S.ENTERING, E.LEAVE_AGAIN): _LEAVE,
     (S.ACTIVE, E.RELEASED): _TAKEN,
     (S.ACTIVE, E.UNCHANGED): _TAKEN,

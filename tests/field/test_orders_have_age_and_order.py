@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from typing import Any
 
+import pytest
 from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, rule
 
 from onboard.agent.core.command_book import SETS_OFF
 from onboard.wire.bus.messages import AgentStage, Command, CommandKind, CommandState, Phase, Quote
+from onboard.wire.mavlink.dialect import dialect
+from onboard.wire.mavlink.modes import MODES, Kind
 from tests.support.lone_agent import LoneAgent, playing
 
 
@@ -112,6 +115,84 @@ def test_an_abort_from_before_the_agent_had_control_blocks_the_start_and_moves_n
     agent.order(order(agent, CommandKind.RESUME, "clear"))
     agent.run(1.5)
     assert agent.rate(0.5) > 15.0
+
+
+@pytest.mark.parametrize("kind", [Kind.ARDUCOPTER, Kind.ARDUPLANE, Kind.PX4_MULTICOPTER])
+@pytest.mark.parametrize("what", [CommandKind.START, CommandKind.RESUME])
+@pytest.mark.parametrize("take_control", [False, True])
+def test_what_set_off_and_expired_never_acts_afterwards(
+    kind: Kind, what: CommandKind, take_control: bool
+) -> None:
+    """The autopilot answers nobody for a while; the game is staged long after the order has expired."""
+    agent = LoneAgent(kind, take_control=take_control)
+    agent.run(2.0)
+    held = Command("h", CommandKind.HOLD, "A", 0, quote=heard_now(agent))
+    agent.order(held)
+    agent.autopilot.obeys = False
+    agent.run(1.0)
+    given = order(agent, what, "late")
+    reply = agent.order(given)
+    assert reply.state is CommandState.PENDING
+    assert "is not reported" in reply.reason
+    agent.run(5.2)
+    reply = agent.order(given)
+    assert reply.state is CommandState.EXPIRED
+    assert "is not reported" in reply.reason
+    asked = agent.autopilot.asked_modes
+    asked.clear()
+    agent.autopilot.obeys = True
+    agent.run(13.0)
+    agent.master.setup()
+    agent.master.phase(Phase.STAGING)
+    agent.run(2.0)
+    agent.master.phase(Phase.READY, 2.0)
+    agent.run(2.0)
+    agent.master.phase(Phase.RUNNING)
+    agent.run(3.0)
+    assert agent.autopilot.setpoints == []
+    assert not {"GUIDED", "OFFBOARD"} & set(asked)
+    assert agent.order(given).state is CommandState.EXPIRED
+    assert agent.order(order(agent, CommandKind.RESUME, "anew")).state is not CommandState.REFUSED
+    agent.run(2.0)
+    assert agent.rate(0.5) > 3.0
+
+
+def test_an_expired_start_takes_nothing_off_and_arms_nothing() -> None:
+    """A ground start that the autopilot refused to arm for: nothing of it is left when it would arm."""
+    agent = LoneAgent(Kind.ARDUPLANE, take_control=False, may_arm=True)
+    agent.autopilot.armed, agent.autopilot.landed, agent.autopilot.obeys = False, 1, False
+    agent.run(2.0)
+    agent.master.setup()
+    agent.master.phase(Phase.STAGING)
+    agent.run(1.0)
+    assert agent.order(order(agent, CommandKind.START, "s")).state is CommandState.PENDING
+    agent.run(6.0)
+    agent.autopilot.obeys = True
+    agent.autopilot.asked_modes.clear()
+    agent.autopilot.orders.clear()
+    agent.run(1.0)
+    agent.master.phase(Phase.READY, 5.0)
+    agent.run(4.0)
+    assert agent.autopilot.asked_modes == []
+    goes_up = (dialect.MAV_CMD_COMPONENT_ARM_DISARM, dialect.MAV_CMD_NAV_TAKEOFF)
+    assert [number for _, number, _ in agent.autopilot.orders if number in goes_up] == []
+
+
+def test_a_pilot_who_was_asked_in_vain_keeps_his_vehicle() -> None:
+    """Taken over, then resumed without an answer: the configuration alone takes nothing back either."""
+    agent = playing(take_control=True)
+    agent.autopilot.mode = MODES[Kind.ARDUCOPTER]["LOITER"]
+    agent.run(2.0)
+    agent.autopilot.obeys = False
+    given = order(agent, CommandKind.RESUME, "r")
+    assert agent.order(given).state is CommandState.PENDING
+    agent.run(5.5)
+    assert agent.order(given).state is CommandState.EXPIRED
+    agent.autopilot.obeys = True
+    agent.autopilot.asked_modes.clear()
+    agent.run(5.0)
+    assert agent.autopilot.asked_modes == []
+    assert agent.autopilot.mode_name == "LOITER"
 
 
 class TwoStations(RuleBasedStateMachine):

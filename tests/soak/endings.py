@@ -39,7 +39,7 @@ from onboard.runtime.loop import run_virtual  # noqa: E402
 from onboard.wire.bus.messages import CommandKind, Phase  # noqa: E402
 from tests.soak.faults import PILOTS, Rng, battery, ekf, gps  # noqa: E402
 from tests.support import benchmark_record  # noqa: E402
-from tests.support.flown_autopilot import FLOWN  # noqa: E402
+from tests.support.flown_autopilot import ENDED  # noqa: E402
 from tests.support.small_scenarios import PURSUER  # noqa: E402
 from tests.support.whole_games import (  # noqa: E402
     WholeGame,
@@ -170,7 +170,7 @@ async def end_one(number: int, seed: int, how: str, kind: Kind, watch_s: float) 
     async with game_of(scenario(kind, rng), seed=seed + number, any_error=True) as game:
         game.expects_abort()
         after = float(rng.uniform(1.0, 8.0))
-        await game.forward(90.0, until=lambda: game.phase is Phase.RUNNING and game.now >= after)
+        await game.forward(240.0, until=lambda: game.phase is Phase.RUNNING and game.now >= after)
         await game.forward(30.0, until=lambda: flies(game.agents[PURSUER]))
         ending, struck_ns = Ending(game, rng), game.clock.wall_ns()
         said, logged = len(game.events), len(game.told)
@@ -234,7 +234,7 @@ def explanation(game: WholeGame, before: tuple[int, int], struck_ns: int, how: s
 
 def play(number: int, seed: int, how: str = "", watch_s: float = WATCH_S) -> Ended:
     """Game `number` of a seed; `how` in place of the way that is drawn."""
-    kind = FLOWN[number % len(FLOWN)]
+    kind = ENDED[number % len(ENDED)]
     names = list(WAYS)
     drawn = names[int(np.random.default_rng((seed, number, 7)).integers(len(names)))]
     return run_virtual(end_one(number, seed, how or drawn, kind, watch_s))

@@ -19,8 +19,8 @@ Rng = np.random.Generator
 Undo = Callable[[], None]
 Strike = Callable[[Rehearsal, int, Rng], Undo]
 STORM, STORM_S = 100, 0.1  # messages and datagrams at a time, as often [s]
-GIVES = {Kind.PX4: "HOLD", Kind.ARDUCOPTER: "GUIDED", Kind.ARDUPLANE: "GUIDED"}
-PILOTS = {Kind.PX4: "POSCTL", Kind.ARDUCOPTER: "LOITER", Kind.ARDUPLANE: "LOITER"}
+GIVES = {Kind.PX4: "HOLD", Kind.PX4_PLANE: "HOLD", Kind.ARDUCOPTER: "GUIDED", Kind.ARDUPLANE: "GUIDED"}
+PILOTS = {Kind.PX4: "POSCTL", Kind.PX4_PLANE: "POSCTL", Kind.ARDUCOPTER: "LOITER", Kind.ARDUPLANE: "LOITER"}
 
 
 def rough(rng: Rng) -> Impairment:

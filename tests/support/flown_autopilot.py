@@ -31,7 +31,8 @@ PLANE = VehicleSpec(
     pitch_max_deg=25.0,
 )
 COMPANION = 191
-FLOWN = (Kind.PX4, Kind.ARDUCOPTER, Kind.ARDUPLANE)  # by agents; PX4 planes have no adapter yet
+FLOWN = (Kind.PX4, Kind.ARDUCOPTER, Kind.ARDUPLANE)  # by agents, in the stories of every kind
+ENDED = (*FLOWN, Kind.PX4_PLANE)  # in those of endings
 PX4 = (Kind.PX4, Kind.PX4_PLANE)
 LAST = 20  # texts and answers in the text of a failure
 

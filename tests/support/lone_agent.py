@@ -83,6 +83,8 @@ class FakeAutopilot:
         self._asked: list[str] = []  # parameters
         self.talks = True
         self.setpoints: list[float] = []  # when each arrived
+        self.obeys = True
+        self.asked_modes: list[str] = []  # that it was asked for, obeyed or not
         self.orders: list[tuple[float, int, float]] = []  # when, MAV_CMD and seventh parameter of each
         self._mav: Any = dialect.MAVLink(None, srcSystem=VEHICLE, srcComponent=1)
         self._ears: Any = dialect.MAVLink(None)
@@ -110,7 +112,9 @@ class FakeAutopilot:
                 self.orders.append((now, m.command, m.param7))
             if name == "COMMAND_LONG" and m.command == dialect.MAV_CMD_DO_SET_MODE:
                 px4 = int(m.param2) << 16 | int(m.param3) << 24
-                self.mode = px4 if self.kind in PX4 else int(m.param2)
+                asked = px4 if self.kind in PX4 else int(m.param2)
+                self.asked_modes.append(self.names[asked])
+                self.mode = asked if self.obeys else self.mode
             return name
         return ""
 

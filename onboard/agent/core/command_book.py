@@ -6,6 +6,8 @@ docs/commands.md is the specification.
 from __future__ import annotations
 
 from collections import OrderedDict
+from math import inf
+from typing import NamedTuple
 
 from onboard.autopilot.base import Stage
 from onboard.core.safety.policy import Action
@@ -21,10 +23,19 @@ Key = tuple[str, str, CommandKind]  # id, sender, kind: nobody's order hides beh
 class Entry:
     """One command, once."""
 
-    def __init__(self, command: Command, state: CommandState, reason: str) -> None:
+    def __init__(self, command: Command, state: CommandState, reason: str, until: float = inf) -> None:
         self.command = command
         self.state = state
         self.reason = reason
+        self.until = until  # [s; the agent's own clock] what sets off expires then, if it is pending still
+
+
+class Standing(NamedTuple):
+    """What was in force before an order that sets off: in force again where that comes to nothing."""
+
+    order: Action = Action.PASS
+    granted: bool = False
+    blocked: str = ""
 
 
 class Orders:
@@ -40,6 +51,7 @@ class Orders:
         self._known: OrderedDict[Key, Entry] = OrderedDict()
         self._ids: OrderedDict[Key, None] = OrderedDict()
         self._open: Entry | None = None
+        self._before = Standing()
 
     def unfit(self, command: Command, nonce: int, *, fresh: bool) -> str:
         """Why a command that sets off does not count for this process (`nonce`); '' if it does.
@@ -56,10 +68,13 @@ class Orders:
             return f"given before {self.stopped_by} stopped this vehicle: look, and give it again"
         return ""
 
-    def give(self, command: Command, refusal: str, *, historic: bool = False) -> tuple[Entry, bool]:
+    def give(
+        self, command: Command, refusal: str, *, historic: bool = False, until: float = inf
+    ) -> tuple[Entry, bool]:
         """Take a command; `refusal` says why it cannot be obeyed now ('' if it can). True for a new one.
 
-        `historic`: a stop from before the agent had control. It moves nothing; it blocks the start."""
+        `historic`: a stop from before the agent had control. It moves nothing; it blocks the start.
+        `until` [s]: when it expires, if it sets off."""
         key = (command.command_id, command.sender, command.kind)
         known = self._known.get(key)
         if known is not None:
@@ -69,19 +84,24 @@ class Orders:
         self._ids[key] = None
         if len(self._ids) > KNOWN:
             self._ids.popitem(last=False)
-        entry = Entry(command, CommandState.REFUSED if refusal else CommandState.PENDING, refusal)
+        entry = Entry(command, CommandState.REFUSED if refusal else CommandState.PENDING, refusal, until)
         self._known[key] = entry
         if len(self._known) > KEPT:
             self._known.popitem(last=False)
         if refusal:
             return entry, True
+        sets_off_still = self._sets_off
         if self._open is not None and self._open.state is CommandState.PENDING:
             self._open.state = CommandState.SUPERSEDED
             self._open.reason = f"by {command.kind.value} from {command.sender}"
+            if sets_off_still and command.kind not in SETS_OFF:
+                self._withdraw()
         self._open = entry
         self.obeyed = command.sender
         kind = command.kind
         if kind in SETS_OFF:
+            if not sets_off_still:
+                self._before = Standing(self.order, self.granted, self.blocked)
             self.order = Action.PASS
             self.granted, self.blocked = True, ""
             return entry, True
@@ -98,15 +118,40 @@ class Orders:
             }[kind]
         return entry, True
 
-    def review(self, stage: Stage) -> Entry | None:
-        """Compare the open command with what the autopilot reports; the entry if that settled it."""
+    @property
+    def _sets_off(self) -> bool:
+        """Whether the open command sets off, and is not reported yet."""
+        entry = self._open
+        return entry is not None and entry.state is CommandState.PENDING and entry.command.kind in SETS_OFF
+
+    def _withdraw(self) -> None:
+        """What set off has come to nothing: all is as it was before."""
+        self.order, self.granted, self.blocked = self._before
+
+    def due(self, now: float) -> bool:
+        """Whether the open command sets off, was not reported yet, and its time is over."""
+        return self._open is not None and now > self._open.until and self._sets_off
+
+    def expire(self, now: float) -> Entry | None:
+        """End what set off and was not reported in time; the entry if it ended now."""
+        entry = self._open
+        if entry is None or not self.due(now):
+            return None
+        entry.state = CommandState.EXPIRED
+        self._withdraw()
+        return entry
+
+    def review(self, stage: Stage, *, climbs: bool = False) -> Entry | None:
+        """Compare the open command with what the autopilot reports; the entry if that settled it.
+
+        `climbs`: armed, it takes off by this agent's wish."""
         entry = self._open
         if entry is None or entry.state is not CommandState.PENDING:
             return None
         sets_off = entry.command.kind in SETS_OFF
-        if stage is (Stage.ACTIVE if sets_off else Stage.LEFT):
+        if stage is (Stage.ACTIVE if sets_off else Stage.LEFT) or (sets_off and climbs):
             entry.state = CommandState.CONFIRMED
-        elif stage is Stage.TAKEN:
+        elif stage is Stage.TAKEN and not (sets_off and self.granted):  # taken since, not before
             entry.state = CommandState.REFUSED
             entry.reason = "a pilot has taken over"
         else:
@@ -115,6 +160,8 @@ class Orders:
 
     def taken(self) -> None:
         """A pilot took over: no order is in force any more, and control must be granted anew."""
+        if self._sets_off:
+            self.blocked = self._before.blocked
         self.order = Action.PASS
         self.granted = False
 

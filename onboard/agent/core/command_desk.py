@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from onboard.agent.config import AgentConfig
-from onboard.agent.core.command_book import SETS_OFF, Orders
+from onboard.agent.core.command_book import SETS_OFF, Entry, Orders
 from onboard.agent.core.events import Count, Instant, Outbox, Reply
 from onboard.agent.core.flight import Flight
 from onboard.agent.core.journal import Journal
@@ -39,10 +39,11 @@ class CommandDesk:
             bad = CommandReply("", self.config.id, CommandState.REFUSED, "undecodable", "", now.wall_ns)
             self._out.put(Reply(token, COMMAND.encode_reply(bad)))
             return
-        fresh = self._fresh(command, now.s)
+        until = self._until(command, now.s)
+        fresh = now.s <= until
         historic = command.kind not in SETS_OFF and not fresh and not self._vehicle.flown
         refusal = self._refusal(command, now.s, fresh=fresh, historic=historic)
-        entry, new = self._orders.give(command, refusal, historic=historic)
+        entry, new = self._orders.give(command, refusal, historic=historic, until=until)
         if new:
             text = f"{command.kind.value} from {command.sender}"
             if entry.state is CommandState.REFUSED:
@@ -59,7 +60,7 @@ class CommandDesk:
             command_id=command.command_id,
             id=self.config.id,
             state=entry.state,
-            reason=entry.reason,
+            reason=self._waits(entry) if entry.state is CommandState.PENDING else entry.reason,
             obeyed=self._orders.obeyed,
             stamp_ns=now.wall_ns,
             mode=self._vehicle.telemetry.mode,
@@ -68,16 +69,36 @@ class CommandDesk:
 
     def review(self) -> None:
         """Tell of the open order where the autopilot's report has settled it."""
-        entry = self._orders.review(self._vehicle.stage)
+        climbs = self._flight.take_off.climbing and self._vehicle.telemetry.armed
+        entry = self._orders.review(self._vehicle.stage, climbs=climbs)
         if entry is not None:
             text = f"{entry.command.kind.value} from {entry.command.sender}"
             self._journal.info(f"command_{entry.state.value}", text)
 
-    def _fresh(self, command: Command, now: float) -> bool:
-        """Whether it quotes the master's word of the last seconds; without a master, this agent's own."""
+    def expire(self, now: float) -> None:
+        """End what set off and was not reported in time: from now on it never acts."""
+        if not self._orders.due(now):
+            return
+        self.review()  # what is reported is no longer open
+        entry = self._orders.expire(now)
+        if entry is not None:
+            entry.reason = self._waits(entry)
+            text = f"{entry.command.kind.value} from {entry.command.sender}"
+            self._journal.warning("command_expired", f"{text}: {entry.reason}; it will not act any more")
+            self._flight.withdraw(now)
+
+    def _waits(self, entry: Entry) -> str:
+        """What an order waits for that sets off; "" for others."""
+        vehicle = self._vehicle
+        if entry.command.kind not in SETS_OFF or vehicle.adapter is None:
+            return ""
+        return f"{vehicle.adapter.guided_mode} is not reported, {vehicle.telemetry.mode} is"
+
+    def _until(self, command: Command, now: float) -> float:
+        """Until when what it quotes counts: the master's word or, without a master, this agent's own."""
         quote, masters = command.quote, self._bus.masters
-        words = masters.quoted if masters.holds(now) else self._said.fresh
-        return words(quote.nonce, quote.number, now)
+        until = masters.quoted_until if masters.holds(now) else self._said.until
+        return until(quote.nonce, quote.number)
 
     def _refusal(self, command: Command, now: float, *, fresh: bool, historic: bool) -> str:
         """Why a command cannot be obeyed; '' if it can."""

@@ -83,12 +83,12 @@ class Flight:
         self.ending = False  # the process ends: the vehicle is left in the autopilot's mode to hold
         self.vehicle, self.bus, self._orders, self._journal = vehicle, bus, orders, journal
         self._state = SupervisorState()
+        self._latched = (Action.PASS, Cause.NONE)  # as an order that sets off found it
         self._policy = part.policy
         self._jumps = JumpWatch(config.safety.clock_jump_s)
         self.hands = Hands(config, vehicle, orders)
         self.hold = HoldAlert(journal)
-        self._number = 0
-        self._failing = False
+        self._number, self._failing = 0, False
         self._alive_at = NEVER  # the strategy's last sign of life [s]
         self._silent_at = NEVER  # when the link was last found silent [s]
         self._ran_at = NEVER  # the last control step [s]
@@ -131,9 +131,7 @@ class Flight:
         if step is None or step.number != answer.number:
             return False
         self.open = None
-        error = answer.error
-        if answer.decision is None and not error:
-            error = "no decision"
+        error = answer.error or ("no decision" if answer.decision is None else "")
         if answer.decision is not None and step.question is not None:
             try:
                 self.decision = self.part.conclude(step.question, answer.decision)
@@ -187,11 +185,12 @@ class Flight:
 
     def obey(self, now: float) -> None:
         """Follow at once what the ground has ordered, or what it gives back."""
-        adapter = self.vehicle.adapter
-        if adapter is None:
+        if self.vehicle.adapter is None:
             return
         telemetry = self.vehicle.look(now)
         if self._orders.order is Action.PASS:
+            if not self.hands.given(now):
+                self._latched = (self._state.floor, self._state.floor_cause)
             self.hands.give(now)
             self.part.let_in()
             self.resumed()
@@ -200,6 +199,15 @@ class Flight:
             self.hands.entered()
             self._state = reordered(self._state)
             self._judge(ZERO, self._input(now, telemetry))
+
+    def withdraw(self, now: float) -> None:
+        """What had set off came to nothing: what was in force before is again, and nothing is asked for."""
+        self.hands.entered()
+        self.part.withdraw()
+        self._state = reordered(self._state)._replace(floor=self._latched[0], floor_cause=self._latched[1])
+        self.take_off.climbing = False
+        if self.vehicle.adapter is not None:
+            self.vehicle.adapter.forget(now)
 
     def leave(self, now: float) -> None:
         """The process ends: leave the vehicle in a mode that the autopilot holds alone, or going home."""

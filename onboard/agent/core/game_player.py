@@ -141,6 +141,10 @@ class GamePlayer:
         """A person lets this process act, also in a game that it has not seen begin."""
         self._participation.let_in()
 
+    def withdraw(self) -> None:
+        """What let this process in came to nothing."""
+        self._participation.withdraw()
+
     def approach(self, now: Instant, own: Own) -> Way | None:
         """How to fly to its place, from ready to t₀."""
         flying, left = self.flying, self._to_start(now.wall_ns)

@@ -135,6 +135,7 @@ class AgentCore:
 
     def handle(self, event: AnyEvent, now: Instant) -> list[AnyEffect]:
         """Take an event; the effects are to be done in their order, at once."""
+        self.desk.expire(now.s)
         self._handlers[type(event)](event, now)
         self.radio.flush(now)
         self.journal.stamp(now)

@@ -46,9 +46,9 @@ class Words:
         """Nonce and number of the newest word; None where there is none."""
         return next(reversed(self._at), None)
 
-    def fresh(self, nonce: int, number: int, now: float) -> bool:
-        """Whether that word is at most `QUOTED_S` old."""
-        return now - self._at.get((nonce, number), NEVER) <= QUOTED_S
+    def until(self, nonce: int, number: int) -> float:
+        """Until when that word may be quoted [s, monotonic]: `QUOTED_S` after it was heard (or said)."""
+        return self._at.get((nonce, number), NEVER) + QUOTED_S
 
 
 def certified(name: str, member: str) -> bool:
@@ -103,6 +103,6 @@ class Masters:
         self._words.add(master.nonce, master.number, now)
         return Hearing.LEADS
 
-    def quoted(self, nonce: int, number: int, now: float) -> bool:
-        """Whether that is a word of the leader which this agent heard at most `QUOTED_S` ago."""
-        return self._words.fresh(nonce, number, now)
+    def quoted_until(self, nonce: int, number: int) -> float:
+        """Until when that word of the leader may be quoted [s, monotonic]."""
+        return self._words.until(nonce, number)

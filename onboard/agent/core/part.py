@@ -45,6 +45,10 @@ class Part(Protocol):
         """A person lets this process act."""
         ...
 
+    def withdraw(self) -> None:
+        """The person's word that let it in came to nothing: all is as it was before."""
+        ...
+
     def state(self, wall_ns: int) -> PartState:
         """Where the part stands."""
         ...

@@ -15,7 +15,7 @@ class Participation:
         self.joined = False
         self.resumed = False  # by the master, not by a person or from the beginning
         self._id = id
-        self._t0_ns = 0
+        self._before = (False, False)  # `joined` and `resumed`, before a person's last word
 
     def follow(self, phase: PhaseChange, wall_ns: int) -> None:
         """Take a phase change (or the cached one) in."""
@@ -30,7 +30,12 @@ class Participation:
 
     def let_in(self) -> None:
         """A person lets this agent act."""
+        self._before = (self.joined, self.resumed)
         self.joined, self.resumed = True, False
+
+    def withdraw(self) -> None:
+        """The person's word came to nothing."""
+        self.joined, self.resumed = self._before
 
     def leave(self) -> None:
         """Another game's setup came: what was joined is over."""

@@ -75,6 +75,9 @@ class RoutePlayer:
     def let_in(self) -> None:
         """Nothing to do: a route has no beginning to be missed."""
 
+    def withdraw(self) -> None:
+        """Nothing to do."""
+
     def approach(self, now: Instant, own: Own) -> Way | None:
         """A route begins where the vehicle is."""
         return None

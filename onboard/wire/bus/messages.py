@@ -346,6 +346,7 @@ class CommandState(Enum):
     CONFIRMED = "confirmed"  # the autopilot reports the state ordered
     REFUSED = "refused"
     SUPERSEDED = "superseded"  # by a later command
+    EXPIRED = "expired"  # it set off, and the autopilot did not report it in time: it never acts any more
 
 
 class CommandReply(Message, frozen=True):

@@ -46,17 +46,18 @@ def test_no_row_breaks_a_rule_of_flight(stage: Stage, event: ModeEvent) -> None:
     if to is Stage.LEFT and stage is not Stage.LEFT:
         assert event is ModeEvent.RELEASED
     if to is Stage.TAKEN and stage is not Stage.TAKEN:
-        assert event in {ModeEvent.RELEASED, ModeEvent.UNCHANGED, ModeEvent.OTHER, ModeEvent.FOREIGN}
+        others = {ModeEvent.RELEASED, ModeEvent.UNCHANGED, ModeEvent.OTHER, ModeEvent.FOREIGN}
+        assert event in others | {ModeEvent.GIVE_BACK}
         assert ModeAction.STOP_ARMING in actions
-    if stage is Stage.ACTIVE:  # whatever ends control is heard
-        mine = GUIDED_HEARD | {ModeEvent.ENTER, ModeEvent.FOREIGN}  # no foreign one is heard in ACTIVE
+    if stage is Stage.ACTIVE:  # whatever ends control is heard; the last two never are
+        mine = GUIDED_HEARD | {ModeEvent.ENTER, ModeEvent.FOREIGN, ModeEvent.GIVE_BACK}
         assert (to is Stage.ACTIVE) == (event in mine)
     asks = event is ModeEvent.ENTER and stage not in (Stage.ENTERING, Stage.ACTIVE)
     asks |= event is ModeEvent.ECHO and stage is Stage.ACTIVE  # what undid it was an old wish of our own
     assert (ModeAction.ASK_GUIDED in actions) == asks
     if to is not stage:  # a person hears of each change that nobody on board asked for
         told = any(action.name.startswith("TELL") for action in actions)
-        assert told or event in {ModeEvent.ENTER, ModeEvent.GIVE_UP, *LEAVING}
+        assert told or event in {ModeEvent.ENTER, ModeEvent.GIVE_UP, ModeEvent.GIVE_BACK, *LEAVING}
     if to is stage and (stage, event) not in TABLE:
         assert actions == ()
 
@@ -132,6 +133,11 @@ def taken(f: Flight) -> None:
     f.beat("FBWA")
 
 
+def asked_back(f: Flight) -> None:
+    taken(f)
+    f.enter()
+
+
 def again(f: Flight, *, turned: bool) -> None:
     f.beat("GUIDED", turned=turned)
     f.beat("GUIDED")
@@ -162,6 +168,8 @@ STORIES: list[tuple[Callable[[Flight], None], Callable[[Flight], None], Stage, M
     (entering, lambda f: f.beat("RTL"), Stage.ENTERING, ModeEvent.OTHER),
     (entering, lambda f: f.leave(), Stage.ENTERING, ModeEvent.LEAVE),
     (entering, lambda f: f.enter(), Stage.ENTERING, ModeEvent.ENTER),
+    (entering, lambda f: f.machine.give_up(), Stage.ENTERING, ModeEvent.GIVE_UP),
+    (asked_back, lambda f: f.machine.give_up(), Stage.ENTERING, ModeEvent.GIVE_BACK),
     (active, lambda f: f.beat("GUIDED"), Stage.ACTIVE, ModeEvent.GUIDED_AGAIN),
     (active, lambda f: f.beat("AUTO"), Stage.ACTIVE, ModeEvent.UNCHANGED),
     (active, lambda f: f.beat("RTL"), Stage.ACTIVE, ModeEvent.OTHER),
