@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from math import radians
+from math import atan2, radians
 
 import pytest
 
+from onboard.core.math.constants import STANDARD_GRAVITY
 from onboard.core.math.vectors import ZERO, Vec, norm, sub
 from onboard.game.scenario import Kind, VehicleSpec
 from onboard.wire.mavlink.dialect import DialectSender, dialect
+from sim_bridge.vehicle.flight.multicopter_wind import DRAG, wind_held
+from sim_bridge.vehicle.motion import Air
 from tests.support.flown_autopilot import ORIGIN, FlownAutopilot
 
 GCS = dialect.MAVLink_heartbeat_message(6, 8, 0, 0, 4, 3)
@@ -229,7 +232,29 @@ def test_return_climbs_first_and_home_may_be_moved() -> None:
     assert abs(flown.position.x) < 1.5
 
 
-def test_a_wind_does_not_move_it() -> None:
-    flown = chase(guided(wind=Vec(0.0, 8.0, 0.0)), Vec(4.0, 0.0, 0.0), 5.0)
-    assert norm(sub(flown.velocity, Vec(4.0, 0.0, 0.0))) < 1e-6
-    assert flown.last("ATTITUDE").yaw == pytest.approx(radians(0.0), abs=0.05)
+def test_a_steady_wind_within_the_tilt_limit_moves_it_only_until_it_leans() -> None:
+    """8 m/s across begin at once: it is pushed off, leans against it, and from then on flies as in still air.
+
+    The lean is that at which gravity balances the rotors' drag: tan θ = k w / g, 17° of 30°."""
+    flown = chase(guided(), ZERO, 2.0)
+    before = flown.position
+    flown.air = Air(Vec(0.0, 8.0, 0.0), ZERO)
+    chase(flown, ZERO, 1.0)
+    assert flown.velocity.y > 0.5  # nobody stands still in a gust
+    chase(flown, ZERO, 9.0)
+    flown.assert_near(before, 5.0)
+    held = flown.position
+    chase(flown, ZERO, 20.0)
+    flown.assert_near(held, 0.3)
+    assert norm(flown.velocity) < 0.01
+    lean = -atan2(DRAG * 8.0, STANDARD_GRAVITY)
+    assert flown.last("ATTITUDE").roll == pytest.approx(lean, abs=radians(0.5))
+    assert flown.last("ATTITUDE").yaw == pytest.approx(0.0, abs=0.05)
+    chase(flown, Vec(4.0, 0.0, 0.0), 15.0)
+    assert norm(sub(flown.velocity, Vec(4.0, 0.0, 0.0))) < 0.02
+
+
+def test_a_wind_beyond_the_tilt_limit_carries_it_off() -> None:
+    flown = chase(guided(wind=Vec(0.0, 1.2 * wind_held(radians(30.0)), 0.0)), ZERO, 20.0)
+    assert flown.position.y > 20.0
+    assert abs(flown.last("ATTITUDE").roll) <= radians(30.0) + 1e-6
