@@ -161,13 +161,20 @@ def heights(run: Run) -> Drawing | None:
         return None
     figure, (axes,) = timed(run, ("height [m]",), 3.8)
     series = tuple(curve(axes, run, i, (f.t, -f.position[:, 2])) for i, f in sorted(run.flown.items()))
+    low, high = (f([f(-g.position[:, 2]) for g in run.flown.values()]) for f in (np.nanmin, np.nanmax))
+    margin = max(2.0, 0.15 * (high - low))
+    note = "Above the origin of the game frame."
     if run.fence is not None:
         for level, name in ((run.fence.altitude_min, "floor"), (run.fence.altitude_max, "ceiling")):
+            if not low - (high - low) - 20.0 <= level <= high + (high - low) + 20.0:
+                note += f" The geofence's {name}, {level:g} m, is far outside."  # it would flatten the curves
+                continue
             dash = "--" if name == "ceiling" else ":"
             label = f"geofence {name} {level:g} m"
             axes.axhline(level, color=palette.FENCE.light, ls=dash, lw=1, label=label)
+            low, high = min(low, level), max(high, level)
+    axes.set_ylim(low - margin, high + margin)
     legend_below(figure, axes)
-    note = "Above the origin of the game frame."
     return Drawing("heights", "Heights", note, figure, (Panel(axes, "time", "m", series),))
 
 
@@ -221,7 +228,7 @@ def links(run: Run) -> Drawing | None:
     _name_rows(axes, run, sorted(run.links))
     axes.set_ylim(count - 0.45, -0.55)
     battery = axes.plot([], [], color=INK, lw=1.1, ls="--", label="battery")[0]
-    quality = Patch(color=FAINT, alpha=0.45, label="link quality")
+    quality = Patch(color=FAINT, alpha=0.45, label="link quality (a row: 0 to 100 %)")
     figure.legend(handles=[quality, battery], loc="outside lower center", ncols=2)
     note = (
         "Each row reaches from 0 to 100 %. Link quality: the share of the telemetry expected from the "
@@ -247,6 +254,7 @@ def latencies(run: Run) -> Drawing | None:
         most = np.array([values.max(initial=-np.inf) for values in found])
         series.append(curve(axes, run, vehicle, (middle, median)))
         axes.plot(middle, most, color=run.colour(vehicle), lw=0.7, alpha=0.6)
+    axes.plot([], [], color=FAINT, lw=0.7, label=f"thin: the oldest of each {width:.2g} s")
     axes.set_ylim(bottom=0)
     legend_below(figure, axes)
     note = (

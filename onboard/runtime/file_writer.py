@@ -43,12 +43,18 @@ class WrittenFile:
         self.written = 0  # records on the disk, the mark included
         self.beyond = 0  # records left out because the file had reached `size_max`
         self.fault = ""  # why the disk refused, in words; "" = it did not
+        self.fault_number = 0  # the same as an `errno`
         self._writer = writer
         self._room = None if size_max is None else size_max - len(full_mark)
         self._full_mark = full_mark
         self._closed = False
         self._refused = 0  # records that were not taken; counted by the caller's thread
         self._failed = 0  # records that the disk refused; counted by the writer's thread
+
+    def refused_by(self, error: OSError) -> None:
+        """Keep why nothing more is written. For the writer's thread."""
+        self.fault_number = error.errno or 0  # before the words: they are what others look at
+        self.fault = (error.strerror or str(error)).lower()
 
     @property
     def lost(self) -> int:
@@ -207,7 +213,7 @@ class FileWriter:
                     sink = self._sinks[file] = self._opener(file.path)
                 _write_all(sink, data)
             except OSError as error:
-                file.fault = (error.strerror or str(error)).lower()
+                file.refused_by(error)
             else:
                 file.written += records
                 return
@@ -219,7 +225,7 @@ class FileWriter:
             try:
                 sink.close()
             except OSError as error:
-                file.fault = (error.strerror or str(error)).lower()
+                file.refused_by(error)
 
 
 def _open_new(path: Path) -> Sink:

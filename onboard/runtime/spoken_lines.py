@@ -41,9 +41,9 @@ class SpokenLines:
         return self._file.lost
 
     def say(self, line: str) -> None:
-        """Say a line. Raises BrokenPipeError once the reader has left."""
+        """Say a line. Raises OSError once none can be written: BrokenPipeError where the reader has left."""
         if self._file.fault:
-            raise BrokenPipeError(self._file.fault)
+            raise OSError(self._file.fault_number, self._file.fault)
         self._file.write(printable(line).encode("utf-8", errors="backslashreplace") + b"\n")
 
     def close(self, seconds: float = 0.5) -> bool:

@@ -47,7 +47,7 @@ horizon = 100.0                # not captured until then: escaped
 separation = 0.0               # pursuers keep this apart (Figure 8b); 0 = off
 
 [flight]                       # only for serve and fly
-autopilot = "arducopter"       # px4, arducopter or arduplane
+autopilot = "arducopter"       # px4, px4-plane, arducopter or arduplane
 airframe = "kinematic"         # nose, slip or coordinated need arduplane
 height = 50.0                  # at which a plane game is flown
 ready_s = 5.0                  # from ready to the start

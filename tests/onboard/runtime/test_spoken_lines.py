@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import fcntl
 import os
 import signal
@@ -9,6 +10,7 @@ import subprocess
 import sys
 import threading
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -50,17 +52,28 @@ def test_who_speaks_waits_for_nobody_and_what_is_lost_is_counted() -> None:
     assert len(said) == 1000 - lines.lost
 
 
-def test_a_reader_that_has_left_is_told_to_who_speaks() -> None:
+def _reader_who_left() -> int:
     out, end = os.pipe()
     os.close(out)
-    with os.fdopen(end, "wb", buffering=0) as pipe:
-        lines = SpokenLines(sink=pipe)
+    return end
+
+
+def _full_disk() -> int:
+    return os.open("/dev/full", os.O_WRONLY)
+
+
+@pytest.mark.parametrize(("stream", "number"), [(_reader_who_left, errno.EPIPE), (_full_disk, errno.ENOSPC)])
+def test_why_a_line_cannot_be_written_is_told_to_who_speaks(stream: Callable[[], int], number: int) -> None:
+    """A reader who left ends a program quietly, a full disk with a line and another exit code."""
+    with os.fdopen(stream(), "wb", buffering=0) as refusing:
+        lines = SpokenLines(sink=refusing)
         lines.say("anybody?")
         deadline = time.monotonic() + patience(5.0)
         while not lines.lost and time.monotonic() < deadline:
             time.sleep(0.005)
-        with pytest.raises(BrokenPipeError):
+        with pytest.raises(OSError) as told:
             lines.say("anybody?")
+        assert told.value.errno == number
 
 
 @pytest.mark.real
