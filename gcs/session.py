@@ -64,7 +64,7 @@ class Session:
         return (
             f"game {game}: {self.bus.status()}",
             f"a game in software: sim-bridge serve demo{named}, and agents beside it:",
-            f"onboard-agent --id 2 --role pursuer{named}",
+            f"onboard-agent --id 2 --role pursuer --take-control{named}",
             "with another endpoint than the default: --bus ENDPOINT, the same for all",
         )
 

@@ -58,7 +58,7 @@ def _last(known: VehicleView, now: VehicleView) -> list[Line]:
     if known.state is not None and now.state is None:
         north, east, down = known.state.position
         ago = f"{age(known.state_age_s)} s ago"
-        lines.append((f"last at N {north:.1f} E {east:.1f} up {-down:.1f} m, {ago}", "bold"))
+        lines.append((f"last at N {north:z.1f} E {east:z.1f} up {-down:z.1f} m, {ago}", "bold"))
     if known.mode and not now.mode:
         lines.append((f"last mode {known.mode}, {age(_mode_age(known))} s ago", ""))
     battery_told = now.health is not None and now.health.battery >= 0
@@ -83,7 +83,7 @@ def _decision(vehicle: VehicleView) -> list[Line]:
     lines = [
         (f"rule {decision.rule.replace('_', ' ')}", "bold"),
         (f"{decision.level.value}, {decision.module.value}, {decision.strategy}", ""),
-        (f"aim N {north:.0f} E {east:.0f} up {-down:.0f} m", ""),
+        (f"aim N {north:z.0f} E {east:z.0f} up {-down:z.0f} m", ""),
         (f"in {decision.time_to_aim:.1f} s, predicted miss {decision.miss:.1f} m", ""),
     ]
     if decision.supervisor is not SupervisorAction.OK:
@@ -103,7 +103,7 @@ def _distances(picture: Picture, vehicle: VehicleView) -> list[Line]:
         line = sub(evader, here)
         away = norm(line)
         closing = dot(Vec(*vehicle.state.velocity), scale(line, 1.0 / away)) if away > 0.0 else 0.0
-        lines.append((f"evader {away:.1f} m, closing {closing:+.1f} m/s", ""))
+        lines.append((f"evader {away:.1f} m, closing {closing:+z.1f} m/s", ""))
     others = [
         (distance(here, Vec(*o.position)), o)
         for o in picture.vehicles
@@ -144,8 +144,8 @@ def _motion(vehicle: VehicleView) -> list[Line]:
     course = degrees(atan2(v_east, v_north)) % 360
     speed = f"{hypot(v_north, v_east):.1f} m/s to {course:.0f}°"
     lines = [
-        (f"at N {north:.1f} E {east:.1f} up {-down:.1f} m", ""),
-        (f"{speed}, climb {-v_down:+.1f}, air {state.airspeed:.1f}", ""),
+        (f"at N {north:z.1f} E {east:z.1f} up {-down:z.1f} m", ""),
+        (f"{speed}, climb {-v_down:+z.1f}, air {state.airspeed:.1f}", ""),
     ]
     wind = hypot(state.wind[0], state.wind[1])
     if wind > 0.05:
@@ -162,7 +162,7 @@ def _health(vehicle: VehicleView) -> list[Line]:
     lines = [
         (f"battery {battery}, link {health.link_quality:.0%}, GPS fix {health.gps_fix}", ""),
         (f"telemetry {health.telemetry_rate_hz:.0f} Hz, setpoints {health.setpoint_rate_hz:.0f} Hz", ""),
-        (f"state here {vehicle.state_rate_hz:.0f} Hz, clock {health.clock_offset_s * 1e3:+.0f} ms", ""),
+        (f"state here {vehicle.state_rate_hz:.0f} Hz, clock {health.clock_offset_s * 1e3:+z.0f} ms", ""),
         LOCKS[health.link_lock],
         (f"version {health.version}", ""),
     ]

@@ -39,7 +39,7 @@ class HoldAlert:
             return
         airspeed = None if t.airspeed_at == NEVER or envelope.hovers else t.airspeed
         if self._watch.look(now, t.position, t.velocity, airspeed):
-            here = f"{t.above_home_m:.1f} m above home, climbing {round(-t.velocity.z, 1) + 0.0:.1f} m/s"
+            here = f"{t.above_home_m:.1f} m above home, climbing {-t.velocity.z:z.1f} m/s"
             if self._watch.state is HoldState.HELD:
                 self._journal.info("held", f"{t.mode} holds, {here}")
             else:
