@@ -97,7 +97,7 @@ class RunData(NamedTuple):
         known = sorted({id for each in self.tables for id in each.ids})
         for id in ids:
             if id not in known:
-                raise ConfigError(f"vehicle: found {id}, expected one of {', '.join(map(str, known))}")
+                raise ConfigError(f"--id: found vehicle {id}, expected one of {', '.join(map(str, known))}")
         kept: dict[str, Any] = {each.name: each.of(*ids) for each in self.tables}
         return self._replace(**kept)
 

@@ -89,7 +89,8 @@ def _called_by_typer(app: Callable[..., Any], name: str, typer: Any) -> Any:
         if text.startswith("Usage:"):  # no arguments at all: the help
             print(text, file=sys.stderr)
             sys.exit(MISTAKE)
-        fail(name, f"{text} (see {name} --help)")
+        context = getattr(error, "ctx", None)  # of the subcommand that was meant
+        fail(name, f"{text} (see {context.command_path if context else name} --help)")
     except typer.Abort:
         raise KeyboardInterrupt from None
 

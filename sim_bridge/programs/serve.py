@@ -105,7 +105,7 @@ async def serve_scenario(
         bridge = Bridge(scenario, clock, bus, links, bridge_options, say)
         _introduce(scenario, options, ports, radios, bus, say)
         if started is None:  # else somebody brings the agents
-            say("agents: onboard-agent --role ROLE --id N --take-control; without the last they wait for a start")
+            say("agents: onboard-agent --id N --role ROLE --take-control; without it they wait for a start")
         _tell_of_doubles(bus, options.game, say)
         if started is not None:
             started(bridge, bus, ports)
