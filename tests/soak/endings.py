@@ -240,10 +240,14 @@ def play(number: int, seed: int, how: str = "", watch_s: float = WATCH_S) -> End
     return run_virtual(end_one(number, seed, how or drawn, kind, watch_s))
 
 
-def run(count: int, seed: int, first: int, say: Callable[[str], None]) -> list[Ended]:
-    """`count` games from number `first` on."""
+def run(
+    count: int, seed: int, first: int, say: Callable[[str], None], only: Kind | None = None
+) -> list[Ended]:
+    """`count` games from number `first` on; of these those of one kind alone, where one is given."""
     found = []
     for number in range(first, first + count):
+        if only not in (None, ENDED[number % len(ENDED)]):
+            continue
         began = perf_counter()
         ended = play(number, seed)
         found.append(ended)
@@ -278,6 +282,7 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--first", type=int, default=0, help="number of the first game")
     parser.add_argument("--game", type=int, default=None, help="play this one game again, and no other")
+    parser.add_argument("--kind", type=Kind, default=None, help="of the games those of one kind: px4-plane")
     parser.add_argument("--write", action="store_true", help="write benchmarks/results/endings.md")
     options = parser.parse_args()
 
@@ -285,11 +290,12 @@ def main() -> int:
         print(line, file=sys.stderr, flush=True)
 
     count, first = (options.games, options.first) if options.game is None else (1, options.game)
-    found = run(count, options.seed, first, say)
+    found = run(count, options.seed, first, say, options.kind)
     lines = table(found)
     say("\n".join(lines))
     if options.write:
-        argv = f"python -m tests.soak.endings --games {count} --seed {options.seed} --write"
+        only = "" if options.kind is None else f" --kind {options.kind.value}"
+        argv = f"python -m tests.soak.endings --games {count} --seed {options.seed}{only} --write"
         benchmark_record.write("endings.md", "Games that end in every way", argv, lines)
     return 1 if any(ended.problem for ended in found) else 0
 
