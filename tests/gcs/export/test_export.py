@@ -241,7 +241,7 @@ def test_of_a_run_without_recording_the_logs_are_exported(data: RunData, tmp_pat
 def test_what_cannot_be_exported_is_said_in_one_line(run: Path, tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match="nothing: no such run"):
         export(tmp_path / "nothing", [Format.CSV], None, ())
-    with pytest.raises(ConfigError, match="vehicle: found 9, expected one of 1, 2, 3"):
+    with pytest.raises(ConfigError, match="--id: found vehicle 9, expected one of 1, 2, 3"):
         export(run, [Format.CSV], None, (9,))
     (tmp_path / "file").write_text("")
     with pytest.raises(ConfigError, match="file"):
