@@ -93,6 +93,8 @@ class ZenohBus:
         self._how = ""
         self._trouble = ""
         self._stop = threading.Event()
+        self._gone = False  # closed: a session that opens after all is nobody's
+        self._closing: deque[threading.Thread] = deque(maxlen=4)  # that close what was given up
         self._attempted = asyncio.Event()
         self._slots = 0
         self._thread = threading.Thread(target=self._open_in_thread, name="zenoh-open", daemon=True)
@@ -296,7 +298,7 @@ class ZenohBus:
         self._publishers.clear()
         for declared in self._declared:
             declared.forget()
-        threading.Thread(target=self._close_in_thread, args=(session,), daemon=True).start()
+        self._give_up(session)
         self._thread = threading.Thread(target=self._open_in_thread, name="zenoh-open", daemon=True)
         self._thread.start()
 
@@ -308,15 +310,13 @@ class ZenohBus:
         for declared in self._declared:
             declared.active = False
         self._declared.clear()
-        if self._thread.is_alive():  # a process that ends inside Zenoh's code dies by SIGABRT
-            await off_loop(partial(self._thread.join, CLOSE_S))
-        session, self._session = self._session, None
+        for thread in (self._thread, *self._closing):  # whoever ends inside Zenoh's code dies by SIGABRT
+            if thread.is_alive():
+                await off_loop(partial(thread.join, CLOSE_S))
+        session, self._session = self._session, None  # one that opened meanwhile is here, too
+        self._gone = True
         if session is not None:
-            closed = asyncio.Event()
-            thread = threading.Thread(
-                target=self._close_in_thread, args=(session, closed), name="zenoh-close", daemon=True
-            )
-            thread.start()
+            self._give_up(session, closed := asyncio.Event())
             try:
                 async with asyncio.timeout(CLOSE_S):
                     await closed.wait()
@@ -363,6 +363,11 @@ class ZenohBus:
         if closed is not None:
             self._inbox.queue(closed.set)
 
+    def _give_up(self, session: Any, closed: asyncio.Event | None = None) -> None:
+        thread = threading.Thread(target=self._close_in_thread, args=(session, closed), daemon=True)
+        self._closing.append(thread)
+        thread.start()
+
     def _failed(self, trouble: str) -> None:
         self._trouble = trouble
         self._inbox.counts["open_failed"] += 1
@@ -370,9 +375,9 @@ class ZenohBus:
             self._attempted.set()
 
     def _opened(self, session: Any, how: str) -> None:
-        if self._stop.is_set():
-            threading.Thread(target=self._close_in_thread, args=(session,), daemon=True).start()
-            return
+        if self._stop.is_set():  # `close` is under way and closes this, too; or it is over
+            self._session = None if self._gone else session
+            return self._give_up(session) if self._gone else None
         self._session, self._how = session, how
         for declared in self._declared:
             declared.open(session)

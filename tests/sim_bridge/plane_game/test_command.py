@@ -18,6 +18,7 @@ from onboard.runtime.program import run
 from sim_bridge.cli import app
 from sim_bridge.plane_game.program import table1
 from tests.support.paths import ROOT
+from tests.support.progress_lines import without_progress
 from tests.support.real_time import patience
 
 pytestmark = pytest.mark.timeout(300)  # twenty games at 0.01 s are 200,000 steps
@@ -41,7 +42,7 @@ def command(*words: object) -> Ended:
             run(app, "sim-bridge")
     finally:
         sys.argv = before
-    return Ended(int(end.value.code or 0), out.getvalue(), err.getvalue())
+    return Ended(int(end.value.code or 0), out.getvalue(), without_progress(err.getvalue()))
 
 
 def process(*words: object, folder: Path) -> Ended:
@@ -51,7 +52,7 @@ def process(*words: object, folder: Path) -> Ended:
         timeout=patience(40.0), check=False, capture_output=True, text=True,
         env={**os.environ, "PYTHONPATH": str(ROOT)},
     )  # fmt: skip
-    return Ended(done.returncode, done.stdout, done.stderr)
+    return Ended(done.returncode, done.stdout, without_progress(done.stderr))
 
 
 def scenario(folder: Path, text: str = ROW, *changes: tuple[str, str]) -> Path:
@@ -148,7 +149,7 @@ BAD = {
     "not a number": (("speed = 5", "speed = nan"), "evader.speed: found nan, expected a finite number"),
     "infinity": (("horizon = 100.0", "horizon = inf"), "parameters.horizon: found inf, expected a finite"),
     "infinity in a place": (("position = [0, 0]", "position = [-inf, 0]"), "evader.position[0]: found -inf"),
-    "three numbers": (("position = [0, 0]", "position = [0, 0, 9]"), "position: found three numbers"),
+    "three numbers": (("position = [0, 0]", "position = [0, 0, 9]"), "found 2 numbers, expected 3 as in"),
     "one number": (("position = [0, 0]", "position = [0]"), "evader.position: found [0], expected a list"),
     "no TOML": (("[evader]", "[evader"), "not valid TOML"),
     "a step of nothing": (("dt = 0.05", "dt = 0.0"), "parameters.dt: found 0.0, expected a time step"),
