@@ -30,6 +30,8 @@ class Table(Mapping[str, NDArray[Any]]):
         self._columns = dict(columns)
 
     def __getitem__(self, column: str) -> NDArray[Any]:
+        if column not in self._columns:
+            raise KeyError(f"{self.name}: found no column '{column}', expected one of {', '.join(self)}")
         return self._columns[column]
 
     def __iter__(self) -> Iterator[str]:

@@ -282,9 +282,17 @@ def _flat(value: Any, key: str) -> list[tuple[str, str | list[dict[str, Any]]]]:
 
 
 def _records(records: list[dict[str, Any]]) -> str:
-    heads = list(dict.fromkeys(str(key) for record in records for key in record))
+    """A table of records; records within them have a table of their own below, with the same first column."""
+    keys = list(dict.fromkeys(str(key) for record in records for key in record))
+    within = [key for key in keys[1:] if all(isinstance(record.get(key), dict) for record in records)]
+    heads = [key for key in keys if key not in within]
     rows = [[escape(_text(record[key])) if key in record else "" for key in heads] for record in records]
-    return _table([escape(theme.words(head)) for head in heads], rows)
+    tables = [_table([escape(theme.words(head)) for head in heads], rows)]
+    for key in within:
+        inner = [{keys[0]: record[keys[0]], **record[key]} for record in records]
+        if any(len(record) > 1 for record in inner):
+            tables.append(f"<p class='sub'>{escape(theme.words(key))}</p>{_records(inner)}")
+    return "".join(tables)
 
 
 def _count(what: str, things: tuple[Any, ...]) -> str:

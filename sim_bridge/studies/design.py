@@ -163,7 +163,7 @@ def report(aircraft: Aircraft) -> str:
     for title, step in rows:
         lines.append(
             f"{title:34} {step.settling_s:10.2f} s {100.0 * step.overshoot:8.1f} %"
-            f" {step.final_error:8.4f} deg {np.max(np.abs(step.surface)):5.1f} deg"
+            f" {step.final_error:z8.4f} deg {np.max(np.abs(step.surface)):5.1f} deg"
         )
     return "\n".join(lines)
 

@@ -252,6 +252,11 @@ def test_what_cannot_be_exported_is_said_in_one_line(run: Path, tmp_path: Path) 
         gcs.load(tmp_path / "cut")
 
 
+def test_a_column_that_is_not_there_is_told_with_those_that_are(run: Path) -> None:
+    with pytest.raises(KeyError, match="states: found no column 'nort_m', expected one of t_s, stamp_ns"):
+        gcs.load(run).states["nort_m"]
+
+
 def test_a_truth_cut_while_it_was_written_is_read_up_to_the_cut(run: Path, tmp_path: Path) -> None:
     shutil.copytree(run, tmp_path / "cut")
     line = ",".join(["1760000000000000000", "1", *["1.5"] * 10])

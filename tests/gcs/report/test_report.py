@@ -20,7 +20,8 @@ from gcs.recording.recorder import Recorder
 from gcs.report import theme
 from gcs.report.data import Run
 from gcs.report.drawing import Drawing, svg
-from gcs.report.figures import NAMES, figures
+from gcs.report.figures import NAMES, figures, heights
+from gcs.report.page import facts_table
 from gcs.report.program import read_run, write_report
 from onboard.config.strict import ConfigError
 from onboard.core.route.choice import TrackRule
@@ -364,3 +365,32 @@ def test_a_long_flight_is_thinned(tmp_path: Path) -> None:
     flown = read_run(tmp_path).flown[1]
     assert len(flown.t) == 4000
     assert flown.position[-1, 0] == 8999.0
+
+
+def test_records_within_records_have_a_table_of_their_own() -> None:
+    """Counters in one cell stood one word a line in a narrow window, and pushed the last column out."""
+    records = [{"id": n, "counters": {"bus_received": 7 * n}, "events": 5} for n in (1, 2)]
+    first, second = facts_table({"vehicles": records}).split("<table>")[1:]
+    assert "<th>id</th><th>events</th>" in first
+    assert "bus" not in first
+    assert "<th>id</th><th>bus received</th>" in second
+    assert ">14<" in second
+
+
+def test_a_fence_far_away_does_not_flatten_the_heights(values: Run) -> None:
+    """The curves fill the figure; a ceiling a kilometre above is told in words."""
+    climbed = {
+        i: f._replace(position=f.position + np.outer(np.linspace(0.0, 30.0, len(f.t)), (0.0, 0.0, -1.0)))
+        for i, f in values.flown.items()
+    }
+    assert values.setup is not None
+    fence = msgspec.structs.replace(values.setup.fence, altitude_min=0.0, altitude_max=1500.0)
+    run = values._replace(flown=climbed, setup=msgspec.structs.replace(values.setup, fence=fence))
+    drawn = heights(run)
+    assert drawn is not None
+    low, high = drawn.panels[0].axes.get_ylim()
+    flown = np.concatenate([-f.position[:, 2] for f in climbed.values()])
+    assert low < flown.min()
+    assert high > flown.max()
+    assert np.ptp(flown) > 0.3 * (high - low)
+    assert "ceiling, 1500 m, is far outside" in drawn.note
