@@ -41,15 +41,19 @@ def is_stale(figure: Figure) -> bool:
 
 
 def make(figure: Figure) -> int:
-    """Run the command of a page and stamp what it wrote; gives the command's exit code."""
+    """Run the command of a page and stamp what it wrote; gives its exit code (1: a target missed)."""
     print(f"{figure.page}: python {' '.join(figure.command)}", flush=True)
+    page = RESULTS / figure.page
+    before = page.stat().st_mtime_ns if page.exists() else 0
     code = subprocess.run([sys.executable, *figure.command], cwd=ROOT, check=False).returncode
     if code:
-        print(f"{figure.page}: the command ended with {code}; the page bears no stamp")
-        return code
+        print(f"{figure.page}: the command ended with {code}: a target was missed, or it failed")
+    if not page.exists() or page.stat().st_mtime_ns == before:
+        print(f"{figure.page}: nothing was written")
+        return code or 1
     line = stamp(figure, datetime.now(UTC).date().isoformat())
-    (RESULTS / figure.page).write_text(f"{figure.text().rstrip()}\n\n{line}\n", encoding="utf-8")
-    return 0
+    page.write_text(f"{figure.text().rstrip()}\n\n{line}\n", encoding="utf-8")
+    return code
 
 
 if __name__ == "__main__":
