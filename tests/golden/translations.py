@@ -23,14 +23,7 @@ class Translation(NamedTuple):
 
 
 # Topics as in `bus` (without the game's name), in `viewers`, and "summary" for a game's summary.json.
-TRANSLATIONS: tuple[Translation, ...] = (
-    Translation(
-        "summary",
-        lambda summary: {key: "" if value is None and key in ("reason", "expected") else value
-                         for key, value in summary.items()},
-        "what is not known is null in a summary, and no longer an empty string",
-    ),
-)  # fmt: skip
+TRANSLATIONS: tuple[Translation, ...] = ()
 
 
 def without_version(message: Any) -> Any:
