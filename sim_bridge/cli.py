@@ -88,7 +88,7 @@ def planar(
         raise typer.Exit(1)
 
 
-@app.command(epilog="Example: sim-bridge serve demo; elsewhere: onboard-agent --id 2 --take-control; gcs")
+@app.command(epilog="Example: sim-bridge serve demo, and then: onboard-agent --id 2 --take-control; gcs")
 def serve(
     scenario: ScenarioArgument,
     bus: BusOption = "",

@@ -390,10 +390,9 @@ def test_a_word_is_quoted_for_five_seconds_from_when_it_was_first_heard() -> Non
     words = Words()
     words.add(5, 1, 10.0)
     words.add(5, 1, 14.0)  # again, on its way for long: no newer
-    assert words.fresh(5, 1, 15.0)
-    assert not words.fresh(5, 1, 15.01)
-    assert not words.fresh(5, 2, 10.0)
+    assert words.until(5, 1) == 15.0
+    assert words.until(5, 2) < 0.0  # never heard: never
     for number in range(2, WORDS_KEPT + 2):
         words.add(5, number, 10.0)
-    assert not words.fresh(5, 1, 10.0)
-    assert words.fresh(5, 2, 10.0)
+    assert words.until(5, 1) < 0.0
+    assert words.until(5, 2) == 15.0

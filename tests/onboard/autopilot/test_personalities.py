@@ -166,7 +166,7 @@ def test_a_pilot_takes_over_in_flight(kind: Kind) -> None:
     assert [note.kind for note in flight.notes][-1] == "take_over"
 
 
-@pytest.mark.parametrize("kind", [Kind.ARDUCOPTER, Kind.ARDUPLANE], ids=lambda kind: kind.value)
+@pytest.mark.parametrize("kind", [pytest.param(Kind.ARDUCOPTER, marks=pytest.mark.long), Kind.ARDUPLANE])
 def test_half_an_hour_at_a_fifth_of_loss_has_no_gap_above_half_a_second(kind: Kind) -> None:
     """At the autopilot: ten losses in a row come once in five days."""
     flight = Flight(kind, 0.2)
