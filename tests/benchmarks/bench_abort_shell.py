@@ -103,7 +103,7 @@ def run(count: int = ROUNDS) -> list[tuple[float, float, float, float]]:
         f"Ratio of the processor's times: {median(columns[1]) / median(columns[3]):.1f}; {count} rounds.",
     ]  # fmt: skip
     benchmark_record.write(
-        "abort.md", "An abort from a shell", "python -m tests.benchmarks.bench_abort_shell", lines
+        "abort-shell.md", "An abort from a shell", "python -m tests.benchmarks.bench_abort_shell", lines
     )
     print("\n".join(lines))
     return found
