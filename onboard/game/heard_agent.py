@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from onboard.core.math.constants import NS_PER_S
 from onboard.wire.autopilot_kind import GUIDED_MODE
-from onboard.wire.bus.messages import Health
+from onboard.wire.bus.messages import AgentStage, Health
 
 CONTROL_NS = 10 * NS_PER_S  # a process started later than this after the last one flew needs a person's word
 
@@ -20,7 +20,21 @@ class HeardAgent:
         self.nonces: dict[int, int] = {}  # nonce of a process → last heard [ns, monotonic]
         self.silent = False  # as last told to the people
 
+    def hear(self, health: Health, now_ns: int) -> None:
+        """Take a heartbeat, which arrived at `now_ns` [monotonic].
+
+        Who is ready and guided flies already, to its place: what stands in a guided mode of another hand is
+        not ready, for it needs a person's word.
+        """
+        self.health, self.heard_ns = health, now_ns
+        if health.stage is AgentStage.ACTING or (health.stage is AgentStage.READY and guided(health)):
+            self.in_control_ns = now_ns
+
     def never_left(self, health: Health, now_ns: int) -> bool:
         """Whether a restarted agent finds its vehicle as the last process left it: guided."""
-        guided = health.autopilot is not None and GUIDED_MODE.get(health.autopilot) == health.mode
-        return guided and now_ns - self.in_control_ns <= CONTROL_NS
+        return guided(health) and now_ns - self.in_control_ns <= CONTROL_NS
+
+
+def guided(health: Health) -> bool:
+    """Whether the autopilot is in the mode that an agent flies in."""
+    return health.autopilot is not None and GUIDED_MODE.get(health.autopilot) == health.mode

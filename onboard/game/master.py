@@ -145,9 +145,7 @@ class GameMaster:
             if nonce != health.nonce and now_ns - heard > SUPERSEDED_NS:
                 del agent.nonces[nonce]
         agent.nonces[health.nonce] = now_ns
-        agent.health, agent.heard_ns = health, now_ns
-        if health.stage is AgentStage.ACTING:
-            agent.in_control_ns = now_ns
+        agent.hear(health, now_ns)
         if len(agent.nonces) > 1 and health.nonce == agent.acting_nonce:
             self._say_once(
                 ("double", health.id, max(agent.nonces)), f"two agents speak as vehicle {health.id}: stop one"

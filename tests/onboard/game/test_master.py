@@ -281,7 +281,11 @@ def test_a_restarted_agent_that_finds_its_vehicle_otherwise_needs_a_person(
     flew: bool, dead_s: float, changes: dict[str, object]
 ) -> None:
     field = Range()
-    field.begin()
+    field.crew()
+    if not flew:
+        field.agents[3] = msgspec.structs.replace(health(3), mode="LOITER")
+    field.fly(5.0)
+    assert field.master.phase is Phase.RUNNING
     if flew:
         acting(field, 3)
     del field.agents[3]
@@ -312,6 +316,17 @@ def test_a_restarted_agent_acts_again_only_with_the_masters_word() -> None:
     field.fly(1.0)
     assert field.phases()[-1].resume == ()  # said once: a third process must ask again
     assert len([p for p in field.phases() if p.resume]) == 1
+
+
+def test_who_was_killed_at_t0_before_it_could_say_that_it_plays_acts_again() -> None:
+    """It flew to its place, guided and ready: the master saw it in control."""
+    field = Range()
+    field.begin()
+    del field.agents[3]  # its last heartbeat said: ready, in GUIDED
+    field.fly(3.0)
+    field.agents[3] = health(3, AgentStage.WAITING, nonce=999, lacks=("the master's word",))
+    field.fly(1.0)
+    assert field.phases()[-1].resume == (3,)
 
 
 def test_a_restart_within_one_heartbeat_is_a_restart_and_not_a_double() -> None:
