@@ -123,8 +123,8 @@ mavproxy: .venv-mavproxy/bin/mavproxy.py
 	@touch $@
 
 lock:
-	uv pip compile pyproject.toml --all-extras --group dev --group build --universal --generate-hashes --no-emit-index-url --no-header --python-version 3.11 -q -o locks/all.lock
-	uv pip compile pyproject.toml -c locks/all.lock --universal --generate-hashes --no-emit-index-url --no-header --python-version 3.11 -q -o locks/base.lock
+	uv pip compile pyproject.toml --all-extras --group dev --group build --universal --generate-hashes --no-emit-index-url --no-header --no-annotate --python-version 3.11 -q -o locks/all.lock
+	uv pip compile pyproject.toml -c locks/all.lock --universal --generate-hashes --no-emit-index-url --no-header --no-annotate --python-version 3.11 -q -o locks/base.lock
 	uv run --no-project --with packaging python locks/closed.py --write
 
 clean:
