@@ -88,6 +88,15 @@ def _register_parts(function: FunctionType) -> None:
             _register(cell.cell_contents)
 
 
+def register_strategies(functions: Iterable[Callable[..., Any]]) -> None:
+    """Register functions of any module, plug-ins' too, with those of their closures; idempotent."""
+    for function in functions:
+        if isinstance(function, FunctionType) and id(function) not in _registered:
+            _registered.add(id(function))
+            _register_parts(function)
+            register_jitable(forceinline=True)(function)
+
+
 @cache
 def _overload_each() -> None:
     def compiled_each(function, items, shared):  # type: ignore[no-untyped-def]
@@ -240,11 +249,7 @@ def _player(
     if not compiled:
         return play
     register((*KERNELS, __name__))
-    for strategy in (decide_evader, decide_pursuer):
-        if isinstance(strategy, FunctionType) and id(strategy) not in _registered:
-            _registered.add(id(strategy))
-            _register_parts(strategy)
-            register_jitable(forceinline=True)(strategy)
+    register_strategies((decide_evader, decide_pursuer))
     machine: Callable[[Starts, Conditions, Ends, int, int], None] = numba.njit(nogil=True)(play)
     return machine
 

@@ -17,8 +17,8 @@ from onboard.core.game.referee import GameResult
 from onboard.game.scenario import Scenario
 from onboard.runtime.progress import Tell, over, part, silent
 from onboard.runtime.run_folder import made
-from sim_bridge.campaign.spatial_draw import T0, Draw, compiled_kernel, draw, typed
-from sim_bridge.campaign.spatial_game import Evasion, SpatialPlay, play
+from sim_bridge.campaign.spatial_draw import T0, Draw, draw, kernel_of, typed
+from sim_bridge.campaign.spatial_game import Evasion, SpatialPlay
 
 REVERSAL = radians(10.0)  # a turn one way, then the other
 WITHIN = 2.0  # [s]
@@ -48,8 +48,10 @@ def play_seed(
 def play_drawn(d: Draw, evasion: Evasion, compiled: bool = True) -> Played:
     """Play a drawn game out. It uses up the draw's tracks."""
     log = np.zeros((d.steps, len(d.players), 5))
-    found = (compiled_kernel(play) if compiled else play)(
-        d.start, evasion, typed(d.players, compiled), typed(d.crew, compiled), d.tracks, log
+    sides = d.sides
+    chosen = sides.chosen._replace(evader=int(evasion))
+    found = kernel_of(sides.evaders, sides.pursuers, compiled)(
+        d.start, chosen, typed(d.players, compiled), typed(d.crew, compiled), d.tracks, log
     )
     log = log[: found.steps]
     span = round(WITHIN / d.start.conditions.control.dt)

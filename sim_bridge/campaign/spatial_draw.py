@@ -14,8 +14,11 @@ from typing import Any, NamedTuple
 import msgspec
 
 from onboard.config.strict import ConfigError
+from onboard.core.game.advance import EvaderStrategy, PursuerStrategy
 from onboard.core.math.vectors import sub, yaw_of
 from onboard.core.safety.policy import Fence
+from onboard.core.strategy.registry import DEFAULT, EVADERS
+from onboard.game.plugins import evader_strategy, pursuer_strategy
 from onboard.game.scenario import AirframeKind, Kind, Scenario, load
 from onboard.game.staging import places_of, start_headings
 from onboard.pilot.kalman import Learning
@@ -23,9 +26,10 @@ from onboard.pilot.track_filter import FilterSettings
 from onboard.runtime.resources import configs
 from sim_bridge.campaign.aboard import Aboard, autopilot_of, boarded, policy_of
 from sim_bridge.campaign.compiled import KERNELS as CORE
-from sim_bridge.campaign.compiled import register
+from sim_bridge.campaign.compiled import register, register_strategies
+from sim_bridge.campaign.machine import machine
 from sim_bridge.campaign.plane_in_wind import Flown, climate_of, drawn_wind, launched, wind_at
-from sim_bridge.campaign.spatial_game import Fleet, Pace, Start, approach
+from sim_bridge.campaign.spatial_game import Chosen, Fleet, Pace, Start, approach
 from sim_bridge.campaign.tracks import Eye, Tracks, no_tracks
 from sim_bridge.draws import Purpose, Stream, key_of
 from sim_bridge.plane_game.setup import conditions_of, game_of
@@ -58,6 +62,14 @@ PLACE_SIGMA = 300.0  # [m] by which a seed moves each pursuer's start, level
 HEIGHT_SIGMA = 60.0  # [m] and in height
 
 
+class Sides(NamedTuple):
+    """The strategies of a game: those that its kernel holds, and who flies by which."""
+
+    evaders: tuple[EvaderStrategy, ...]
+    pursuers: tuple[PursuerStrategy, ...]
+    chosen: Chosen
+
+
 class Draw(NamedTuple):
     """Everything a seed fixes, at t₀."""
 
@@ -66,6 +78,7 @@ class Draw(NamedTuple):
     crew: list[Aboard]
     tracks: Tracks
     steps: int  # control steps at most
+    sides: Sides
 
 
 def spatial(name: str) -> Scenario:
@@ -133,7 +146,21 @@ def draw(scenario: Scenario, seed: int, t0: float = T0, compiled: bool = True) -
     (compiled_kernel(approach) if compiled else approach)(start, flown, tracks, typed(level, compiled))
     crew = [aboard_of(flown[i].plane, start, specs[i].speed) for i in range(len(players))]
     steps = int(conditions.rules.horizon / (control * dt)) + 8
-    return Draw(start, list(flown), crew, tracks, steps)
+    return Draw(start, list(flown), crew, tracks, steps, sides_of(scenario))
+
+
+def sides_of(scenario: Scenario) -> Sides:
+    """The scenario's strategies by name, and for the evader flying straight besides (number 1).
+
+    Raises ConfigError for an unknown name.
+    """
+    names = [spec.strategy or DEFAULT for spec in scenario.pursuers]
+    different = list(dict.fromkeys(names))
+    return Sides(
+        (evader_strategy(scenario.evader.strategy), EVADERS["straight"].decide),
+        tuple(pursuer_strategy(name) for name in different),
+        Chosen(0, tuple(different.index(name) for name in names)),
+    )
 
 
 def demand_spatial(scenario: Scenario) -> None:
@@ -182,8 +209,21 @@ def compiled_kernel(kernel: Callable[..., Any]) -> Callable[..., Any]:
     import numba
 
     register(KERNELS)
+    for cell in kernel.__closure__ or ():
+        register_strategies((cell.cell_contents,))
     found: Callable[..., Any] = numba.njit(nogil=True)(kernel)
     return found
+
+
+@cache
+def kernel_of(
+    evaders: tuple[EvaderStrategy, ...], pursuers: tuple[PursuerStrategy, ...], compiled: bool
+) -> Callable[..., Any]:
+    """The whole game of these strategies (`machine`), compiled or not; once for each number of pursuers."""
+    if not compiled:
+        return machine(evaders, pursuers)
+    register_strategies((*evaders, *pursuers))
+    return compiled_kernel(machine(evaders, pursuers))
 
 
 def typed(items: list[Any], compiled: bool) -> Any:

@@ -8,6 +8,7 @@ safety distance are judged on ground positions.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from enum import IntEnum
 from typing import NamedTuple
 
@@ -19,6 +20,7 @@ from onboard.core.game.referee import GameResult
 from onboard.core.game.views import (
     EvaderView,
     Nearest,
+    PursuerView,
     evader_view,
     heading_at,
     nearest_mate,
@@ -29,9 +31,7 @@ from onboard.core.math.each import each
 from onboard.core.math.states import Mate, Vehicle
 from onboard.core.math.vectors import ZERO, Vec, pitch_of, scale, yaw_of
 from onboard.core.safety.policy import Policy
-from onboard.core.strategy.evasion import evader, straight
 from onboard.core.strategy.knowledge import Decision
-from onboard.core.strategy.pursuit import pursuer
 from sim_bridge.campaign.aboard import NOBODY, Aboard, Autopilot, Instant, commanded, ordered
 from sim_bridge.campaign.plane_in_wind import Climate, Flown, blown, fly, gust_tick, wind_at
 from sim_bridge.campaign.tracks import Eye, Tracks, track_of, watched
@@ -45,8 +45,23 @@ Array = NDArray[np.float64]
 class Evasion(IntEnum):
     """How the evader flies."""
 
-    STRATEGY = 0  # by the strategy of 3.4.1
+    STRATEGY = 0  # by the scenario's strategy
     STRAIGHT = 1  # straight at its target, whoever is in the way
+
+
+class Chosen(NamedTuple):
+    """Who flies by which strategy: numbers into the tuples that a kernel was made of (`machine`)."""
+
+    evader: int
+    pursuers: tuple[int, ...]
+
+
+class Ways(NamedTuple):
+    """The strategies of a kernel, each side's as one function of a view and a number; who flies by which."""
+
+    evader: Callable[[EvaderView, int], Decision]
+    pursuer: Callable[[PursuerView, int], Decision]
+    chosen: Chosen
 
 
 class Fleet(NamedTuple):
@@ -111,6 +126,7 @@ class Team(NamedTuple):
     )
     seen: Tracks
     now: int  # sample
+    ways: Ways
 
 
 def known(states: Array, index: int) -> Vehicle:
@@ -123,13 +139,6 @@ def in_air(vehicle: Vehicle, wind: Vec, speed: float) -> Vehicle:
     """A vehicle over ground as one in moving air."""
     v = vehicle.velocity
     return Vehicle(vehicle.position, Vec(v.x - wind.x, v.y - wind.y, v.z - wind.z), speed)
-
-
-def decide_evader(view: EvaderView, evasion: Evasion) -> Decision:
-    """The evader's decision."""
-    if evasion == Evasion.STRAIGHT:
-        return straight(view)
-    return evader(view)
 
 
 class Watch(NamedTuple):
@@ -171,7 +180,8 @@ def decide_pursuer(vehicle: Vehicle, index: int, team: Team) -> Decision:
         places = each(place_of, each(mate_of, game.pursuers, team.states), 0.0)
         mate = nearest_mate(own.position, places, index)
     me = in_air(own, wind, vehicle.speed)
-    return pursuer(pursuer_view(me, game.pursuer_limits[index], sighting, mate, control, rules))
+    view = pursuer_view(me, game.pursuer_limits[index], sighting, mate, control, rules)
+    return team.ways.pursuer(view, team.ways.chosen.pursuers[index])
 
 
 def order(start: Start, aboard: Aboard, decision: Decision, states: Array, place: tuple[int, int]) -> Aboard:
@@ -197,7 +207,7 @@ def nobody(_vehicle: Vehicle, _index: int, _shared: float) -> Mate:
 
 
 def decide_all(
-    start: Start, evasion: Evasion, crew: list[Aboard], seen: Tracks, states: Array, decided: Array
+    start: Start, ways: Ways, crew: list[Aboard], seen: Tracks, states: Array, decided: Array
 ) -> None:
     """Everybody's decision into `crew`, evader first, and its course and pitch [rad] into `decided`."""
     game, conditions = start.game, start.conditions
@@ -207,11 +217,11 @@ def decide_all(
     others = each(opponent, game.pursuers, Watch(seen, now, wind, dt))
     me = in_air(own, wind, game.evader.speed)
     view = evader_view(me, game.evader_limits, others, conditions.target, wind, conditions.rules)
-    decision = decide_evader(view, evasion)
+    decision = ways.evader(view, ways.chosen.evader)
     crew[0] = order(start, crew[0], decision, states, (0, now))
     decided[0, 0] = yaw_of(decision.direction)
     decided[0, 1] = pitch_of(decision.direction)
-    decisions = each(decide_pursuer, game.pursuers, Team(start, states, seen, now))
+    decisions = each(decide_pursuer, game.pursuers, Team(start, states, seen, now, ways))
     for i in range(len(decisions)):
         crew[i + 1] = order(start, crew[i + 1], decisions[i], states, (i + 1, now))
         decided[i + 1, 0] = yaw_of(decisions[i].direction)
@@ -294,7 +304,7 @@ def approach(start: Start, players: list[Flown], seen: Tracks, level: list[Comma
 
 
 def play(
-    start: Start, evasion: Evasion, players: list[Flown], crew: list[Aboard], seen: Tracks, log: Array
+    start: Start, ways: Ways, players: list[Flown], crew: list[Aboard], seen: Tracks, log: Array
 ) -> SpatialPlay:
     """Play a game out from t₀. Kernel style but for the lists and arrays, which it changes in place.
 
@@ -318,7 +328,7 @@ def play(
             watched(seen, eye, sample, here, dt)
             if sample % pace.control == pace.decides:
                 decided[0, 2] = sample
-                decide_all(start, evasion, crew, seen, before, decided)
+                decide_all(start, ways, crew, seen, before, decided)
                 for i in range(count):
                     log[steps, i, 0] = here[i, 0]
                     log[steps, i, 1] = here[i, 1]

@@ -15,8 +15,7 @@ from onboard.core.geometry.cones import blocked_cones
 from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import ZERO, Vec
 from onboard.core.strategy.evasion import evader
-from sim_bridge.campaign.spatial_draw import compiled_kernel, draw, spatial, typed
-from sim_bridge.campaign.spatial_game import Evasion, play
+from sim_bridge.campaign.spatial_draw import draw, kernel_of, spatial, typed
 from sim_bridge.vehicle.flight.aircraft import named
 from sim_bridge.vehicle.flight.plane import Command, Steer, start_state, step_plane, trimmed
 from tests.benchmarks import plain_aircraft
@@ -68,7 +67,8 @@ def flat(value: Any) -> list[float]:
 
 def test_the_compiled_game_of_six_aircraft_beside_a_plain_kernel() -> None:
     scenario = spatial("five")
-    compiled = compiled_kernel(play)
+    sides = draw(scenario, 1).sides
+    compiled = kernel_of(sides.evaders, sides.pursuers, True)
     count = 2000  # control steps of both
 
     def ours() -> float:
@@ -79,7 +79,7 @@ def test_the_compiled_game_of_six_aircraft_beside_a_plain_kernel() -> None:
         log = np.zeros((d.steps, 6, 5))
         players, crew = typed(d.players, True), typed(d.crew, True)
         start = process_time()
-        found = compiled(endless, Evasion.STRATEGY, players, crew, d.tracks, log)
+        found = compiled(endless, d.sides.chosen, players, crew, d.tracks, log)
         spent = process_time() - start
         assert found.steps == count
         return spent

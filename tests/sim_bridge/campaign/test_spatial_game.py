@@ -96,6 +96,20 @@ def test_interpreted_and_compiled_games_are_the_same(five: Scenario) -> None:
     assert float(np.ptp(ours.log[:, 0, 0])) > 500.0
 
 
+def test_everybody_flies_by_the_strategy_that_the_scenario_names(five: Scenario) -> None:
+    replace = msgspec.structs.replace
+    short = shorten(five, 8.0)
+    named = replace(short, evader=replace(short.evader, strategy="straight"))
+    as_straight = play_seed(named, 1, Evasion.STRATEGY, compiled=False)
+    straight = play_seed(short, 1, Evasion.STRAIGHT, compiled=False)
+    assert np.array_equal(as_straight.log, straight.log)
+    last = replace(short.pursuers[-1], strategy="pure-pursuit")
+    mixed = play_seed(replace(short, pursuers=(*short.pursuers[:-1], last)), 1, Evasion.STRAIGHT, False)
+    # Before anybody has turned, only the last one decides otherwise.
+    assert np.array_equal(mixed.log[0, :-1, 4], straight.log[0, :-1, 4])
+    assert mixed.log[0, -1, 4] != straight.log[0, -1, 4]
+
+
 def shorten(scenario: Scenario, horizon: float) -> Scenario:
     return msgspec.structs.replace(
         scenario, parameters=msgspec.structs.replace(scenario.parameters, horizon=horizon)

@@ -1,0 +1,58 @@
+"""The spatial game for strategies at hand: several of each side in one kernel."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+from onboard.core.game.advance import EvaderStrategy, PursuerStrategy
+from onboard.core.strategy.knowledge import Decision
+from sim_bridge.campaign.aboard import Aboard
+from sim_bridge.campaign.plane_in_wind import Flown
+from sim_bridge.campaign.spatial_game import Array, Chosen, SpatialPlay, Start, Ways, play
+from sim_bridge.campaign.tracks import Tracks
+
+
+def among(strategies: tuple[Callable[[Any], Decision], ...]) -> Callable[[Any, int], Decision]:
+    """Strategies of one side as one function, of a view and the number of the strategy that decides."""
+    decide = _last(strategies[-1])
+    for number in range(len(strategies) - 2, -1, -1):
+        decide = _either(number, strategies[number], decide)
+    return decide
+
+
+def _last(strategy: Callable[[Any], Decision]) -> Callable[[Any, int], Decision]:
+    def only(view: Any, _number: int) -> Decision:
+        return strategy(view)
+
+    return only
+
+
+def _either(
+    mine: int, strategy: Callable[[Any], Decision], rest: Callable[[Any, int], Decision]
+) -> Callable[[Any, int], Decision]:
+    def either(view: Any, number: int) -> Decision:
+        if number == mine:
+            return strategy(view)
+        return rest(view, number)
+
+    return either
+
+
+@cache
+def machine(
+    evaders: tuple[EvaderStrategy, ...], pursuers: tuple[PursuerStrategy, ...]
+) -> Callable[..., SpatialPlay]:
+    """The game of these strategies: `play` of a start, `Chosen`, players, crew, tracks and log.
+
+    One compiled kernel holds all of them, so that a matrix of strategies is compiled once.
+    """
+    evade, pursue = among(evaders), among(pursuers)
+
+    def played(
+        start: Start, chosen: Chosen, players: list[Flown], crew: list[Aboard], seen: Tracks, log: Array
+    ) -> SpatialPlay:
+        return play(start, Ways(evade, pursue, chosen), players, crew, seen, log)
+
+    return played
