@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import msgspec
 
-from onboard.config.strict import ConfigError
+from onboard.config.strict import ConfigError, FieldError
 from onboard.core.game.advance import EvaderStrategy, PursuerStrategy
 from onboard.core.math.vectors import sub, yaw_of
 from onboard.core.safety.policy import Fence
@@ -60,6 +60,7 @@ T0 = 6.5  # [s] from the beginning of the world to that of the game, as `fly --f
 DECIDES = 2  # samples after a multiple of 50 ms at which positions come and everybody decides
 PLACE_SIGMA = 300.0  # [m] by which a seed moves each pursuer's start, level
 HEIGHT_SIGMA = 60.0  # [m] and in height
+TURNS = 100  # draws of places within a fence
 
 
 class Sides(NamedTuple):
@@ -86,21 +87,39 @@ def spatial(name: str) -> Scenario:
     return load(configs() / "scenarios" / "spatial" / f"{name}.toml")
 
 
-def drawn_scenario(scenario: Scenario, seed: int) -> Scenario:
+class Spread(NamedTuple):
+    """By how much a seed moves each pursuer's start: one sigma an axis [m]."""
+
+    level: float = PLACE_SIGMA
+    height: float = HEIGHT_SIGMA
+
+
+def drawn_scenario(scenario: Scenario, seed: int, spread: Spread = Spread()) -> Scenario:  # noqa: B008
     """The scenario of a seed: its places, its wind's direction and its world's seed drawn. Seed 0 is the
-    scenario itself."""
+    scenario itself.
+
+    Places outside its fence are drawn again. Raises ConfigError where none was inside.
+    """
     if seed == 0:
         return scenario
     replace = msgspec.structs.replace
     world = scenario.seed + seed
-    pursuers = []
-    for spec, id in zip(scenario.pursuers, scenario.ids[1:], strict=True):
-        x, y, z, _spare = Stream(key_of(world, id, Purpose.PLACE), 4).at(0)
-        north, east, up = spec.position
-        place = (north + PLACE_SIGMA * x, east + PLACE_SIGMA * y, up + HEIGHT_SIGMA * z)
-        pursuers.append(replace(spec, position=place))
+    streams = [Stream(key_of(world, id, Purpose.PLACE), 4) for id in scenario.ids[1:]]
     wind = replace(scenario.flight.wind, from_deg=drawn_wind(world))
-    return replace(scenario, seed=world, pursuers=tuple(pursuers), flight=replace(scenario.flight, wind=wind))
+    flight = replace(scenario.flight, wind=wind)
+    fault: FieldError | None = None
+    for turn in range(TURNS):
+        pursuers = []
+        for spec, stream in zip(scenario.pursuers, streams, strict=True):
+            x, y, z, _spare = stream.at(turn)
+            moves = (spread.level * x, spread.level * y, spread.height * z)
+            place = tuple(a + move for a, move in zip(spec.position, moves, strict=False))
+            pursuers.append(replace(spec, position=place))
+        try:
+            return replace(scenario, seed=world, pursuers=tuple(pursuers), flight=flight)
+        except FieldError as error:
+            fault = error
+    raise ConfigError(f"{scenario.name}, seed {seed}: {fault}; so in {TURNS} draws")
 
 
 def draw(scenario: Scenario, seed: int, t0: float = T0, compiled: bool = True) -> Draw:
