@@ -1,0 +1,117 @@
+"""What a team's planner is given, and what it answers.
+
+Places in the game frame [m; NED], velocities through the air [m/s], times in seconds of the game's clock.
+A member is known by its place in the tuple, which is the pursuers' order in the roster.
+"""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from math import inf, pi
+from typing import NamedTuple
+
+from onboard.core.game.rules import Rules, Target
+from onboard.core.math.states import Vehicle, VehicleLimits
+from onboard.core.math.vectors import ZERO, Vec
+
+NOBODY = -1  # where a member is asked for and there is none
+
+
+class Role(IntEnum):
+    """What a pursuer is there for."""
+
+    CHASER = 1  # pursues by its own strategy
+    RING = 2  # takes its slot of the ring that closes the evader's band
+    GOALKEEPER = 3  # is at the target before the evader
+    BLOCKER = 4  # stands between evader and target, its cone closing the corridor with its neighbour's
+    RESERVE = 5  # has no part now
+
+
+class Reason(IntEnum):
+    """Why a pursuer has its role."""
+
+    NONE = 0
+    ENCLOSED = 1  # the band is closed: nobody leaves the ring
+    SLOT = 2  # it reaches this slot in time
+    SLOT_LATE = 3  # no slot is reached in time; this one soonest
+    FIRST_AT_TARGET = 4  # it is at the target before the evader
+    CLOSES_CORRIDOR = 5  # it is in time for its place across the corridor
+    NO_GAP_IN_REACH = 6  # the band stays open, and nothing better than the chase is known
+    LOST = 7  # nothing is heard of it, or it cannot fly on
+
+
+class Member(NamedTuple):
+    """One pursuer of the team."""
+
+    vehicle: Vehicle
+    limits: VehicleLimits
+    fit: bool  # False: lost, silent or flown by its pilot; it counts for nothing
+
+
+class Heights(NamedTuple):
+    """Between which heights above the origin the game may be flown [m]."""
+
+    floor: float = -1e9
+    ceiling: float = 1e9
+
+
+class Margin(NamedTuple):
+    """What the planner does not trust."""
+
+    delay: float = 0.0  # [s] from a measurement to the pursuer's answer to it
+    sigma: float = 0.0  # [m] of the evader's track, one sigma
+
+
+class Situation(NamedTuple):
+    """Everything that a plan follows from."""
+
+    now: float  # [s]
+    t0: float  # [s] when the evader sets out (or is expected to notice); in the past once it has
+    evader: Vehicle
+    evader_limits: VehicleLimits
+    team: tuple[Member, ...]
+    target: Target  # on the ground; does not exist where the pursuers do not know it
+    wind: Vec  # where the air moves to [m/s]
+    rules: Rules
+    heights: Heights
+    margin: Margin
+    expected: Vec  # [m; NED] where the evader is at t0; until then it is taken to stay about there
+    nearest: float  # [m] no pursuer stages nearer to that place than this
+
+
+class Band(NamedTuple):
+    """The directions in which the evader can go: all closed, or the largest way out."""
+
+    closed: bool  # no free ray, with the margin
+    gap: float  # [rad of heading] of the widest way out; negative: the smallest overlap
+    bearing: float  # [rad, north to east] of its middle, as seen from the evader
+    pitch: float  # [rad, up] where it is widest
+    closer: int  # who goes farthest to close it while the evader stands; NOBODY: none can
+    closes: float  # [s] when it is closed then; inf: it cannot be
+
+
+class Assignment(NamedTuple):
+    """One pursuer's part."""
+
+    role: Role
+    aim: Vec  # where it goes [m; NED]
+    heading: float  # [rad, north to east] of its nose there
+    due: float  # [s] when it has to be there
+    reason: Reason
+
+
+class Plan(NamedTuple):
+    """What the whole team does."""
+
+    time: float  # [s] for which it was made
+    assignments: tuple[Assignment, ...]  # one a member, in the members' order
+    band: Band
+
+
+OPEN = Band(False, 2.0 * pi, 0.0, 0.0, NOBODY, inf)
+IDLE = Assignment(Role.RESERVE, ZERO, 0.0, inf, Reason.NONE)
+
+
+def idle(_member: Member, _index: int, _shared: float) -> Assignment:
+    """A member without a part (for `each`)."""
+    return IDLE

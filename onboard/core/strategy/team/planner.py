@@ -1,0 +1,65 @@
+"""The plan of a team: from everybody's place to a part for each pursuer, with its reason.
+
+Before the evader sets out: a ring that closes its band when it does. After that nobody leaves a closed
+ring; while the band is open and the target is known, who is there before the evader guards it, and the others
+chase. A plan follows from the situation and the plan before, and from nothing else. Kernel style but for
+local lists.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from onboard.core.math.each import each
+from onboard.core.strategy.team.closure import way_out
+from onboard.core.strategy.team.guarding import guarded
+from onboard.core.strategy.team.parts import chasing, lost
+from onboard.core.strategy.team.plan_types import (
+    NOBODY,
+    OPEN,
+    Assignment,
+    Band,
+    Member,
+    Plan,
+    Reason,
+    Situation,
+    idle,
+)
+from onboard.core.strategy.team.ring import closing, staged
+
+KEEP = 0.09  # [rad] a ring that was closed counts as closed until it is open by this
+
+
+def no_plan(team: tuple[Member, ...], now: float) -> Plan:
+    """The plan before the first: nobody has a part."""
+    return Plan(now, each(idle, team, 0.0), OPEN)
+
+
+def plan(s: Situation, previous: Plan) -> Plan:
+    """What the team does from now on. `previous` is what it does now (`no_plan` where there is none)."""
+    way = way_out(s)
+    if s.now < s.t0:
+        return Plan(s.now, staged(s, previous), closing(s, way))
+    was = previous.band.closed and previous.time >= s.t0
+    if way.closed or (was and way.gap <= KEEP):
+        band = Band(True, way.gap, way.bearing, way.pitch, NOBODY, s.now)
+        return Plan(s.now, each(_chase, s.team, _Shared(s, Reason.ENCLOSED)), band)
+    band = closing(s, way)
+    if s.target.exists:
+        return Plan(s.now, guarded(s, previous), band)
+    return Plan(s.now, each(_chase, s.team, _Shared(s, Reason.NO_GAP_IN_REACH)), band)
+
+
+class _Shared(NamedTuple):
+    """What a chase is given with (for `each`)."""
+
+    situation: Situation
+    reason: Reason
+
+
+def _chase(member: Member, _index: int, shared: _Shared) -> Assignment:
+    """The chase as a part, or none for who is lost (for `each`)."""
+    s = shared.situation
+    if not member.fit:
+        return lost(member, s.now)
+    return chasing(member, s, shared.reason)
