@@ -5,8 +5,7 @@ compilable (`register_jitable`), functions found in closures included, and gives
 compiled form: a tuple written out in full for the length at hand. `campaign()` plays many games
 of one size, in the plane or in space, from arrays of starts.
 
-Nothing is cached on disk: numba's cache does not notice a change in a called function, and would
-answer with yesterday's strategy. Compiling takes some ten seconds a number of pursuers.
+Compiling takes some ten seconds a number of pursuers; what is compiled is kept on disk (`kernel_cache`).
 """
 
 from __future__ import annotations
@@ -19,7 +18,6 @@ from itertools import pairwise
 from types import FunctionType, ModuleType
 from typing import Any, NamedTuple
 
-import numba
 import numpy as np
 from numba.core import types
 from numba.extending import overload, register_jitable
@@ -39,6 +37,7 @@ from onboard.core.math import each as each_module
 from onboard.core.math.each import each
 from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import Vec
+from sim_bridge.campaign.kernel_cache import kernel
 
 KERNELS = (
     "onboard.core.math.vectors",
@@ -250,8 +249,7 @@ def _player(
         return play
     register((*KERNELS, __name__))
     register_strategies((decide_evader, decide_pursuer))
-    machine: Callable[[Starts, Conditions, Ends, int, int], None] = numba.njit(nogil=True)(play)
-    return machine
+    return kernel(play)
 
 
 def campaign(

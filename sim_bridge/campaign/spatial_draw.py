@@ -27,6 +27,7 @@ from onboard.runtime.resources import configs
 from sim_bridge.campaign.aboard import Aboard, autopilot_of, boarded, policy_of
 from sim_bridge.campaign.compiled import KERNELS as CORE
 from sim_bridge.campaign.compiled import register, register_strategies
+from sim_bridge.campaign.kernel_cache import kernel
 from sim_bridge.campaign.machine import machine
 from sim_bridge.campaign.plane_in_wind import Flown, climate_of, drawn_wind, launched, wind_at
 from sim_bridge.campaign.spatial_game import Chosen, Fleet, Pace, Start, approach
@@ -223,15 +224,12 @@ def aboard_of(plane: PlaneState, start: Start, speed: float) -> Aboard:
 
 
 @cache
-def compiled_kernel(kernel: Callable[..., Any]) -> Callable[..., Any]:
+def compiled_kernel(function: Callable[..., Any]) -> Callable[..., Any]:
     """A kernel of the game compiled; once for each number of pursuers."""
-    import numba
-
     register(KERNELS)
-    for cell in kernel.__closure__ or ():
+    for cell in function.__closure__ or ():
         register_strategies((cell.cell_contents,))
-    found: Callable[..., Any] = numba.njit(nogil=True)(kernel)
-    return found
+    return kernel(function)
 
 
 @cache

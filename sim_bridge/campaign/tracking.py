@@ -22,6 +22,7 @@ from onboard.game.route_file import Route
 from onboard.game.scenario import WindSpec
 from onboard.runtime.progress import Tell, over, part, silent
 from sim_bridge.campaign.compiled import register
+from sim_bridge.campaign.kernel_cache import kernel
 from sim_bridge.campaign.plane_in_wind import (
     Climate,
     blown,
@@ -139,11 +140,8 @@ def fly_route(
 @cache
 def compiled_route() -> Callable[..., Tracked]:
     """`fly_route` compiled; once for each number of waypoints."""
-    import numba
-
     register(KERNELS)
-    compiled: Callable[..., Tracked] = numba.njit(nogil=True)(fly_route)
-    return compiled
+    return kernel(fly_route)
 
 
 class Flight(NamedTuple):

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-import numba
 import numpy as np
 import pytest
 
 from onboard.core.math.vectors import ZERO, Vec
 from sim_bridge.campaign.compiled import register
+from sim_bridge.campaign.kernel_cache import kernel
 from sim_bridge.vehicle.flight import KERNELS
 from sim_bridge.vehicle.flight.aircraft import named
 from sim_bridge.vehicle.flight.plane import Command, PlaneModel, PlaneState, start_state, step_plane, trimmed
@@ -36,7 +36,7 @@ def fly_still(state: PlaneState, model: PlaneModel, count: int) -> PlaneState:
 @pytest.fixture(scope="module")
 def compiled() -> tuple[Flight, Any]:
     register(KERNELS)
-    return numba.njit(fly), numba.njit(fly_still)
+    return kernel(fly), kernel(fly_still)
 
 
 def flat(value: Any) -> list[float]:
