@@ -28,6 +28,7 @@ class Purpose(IntEnum):
     SENSOR = 2  # one uniform and six normal a measurement
     PLACE = 3  # where a campaign's vehicle starts
     WIND = 4  # where a campaign's wind comes from (vehicle 0)
+    ESTIMATE = 5  # what is wrong with an autopilot's estimate of the wind: five, once
 
 
 class Key(NamedTuple):

@@ -27,6 +27,7 @@ from onboard.core.safety.policy import Envelope, Fence, Policy
 from onboard.core.safety.supervisor import Before, Flying, allow
 from sim_bridge.vehicle.autopilot.winged import ALTITUDE_S
 from sim_bridge.vehicle.flight.plane import Command, PlaneModel, PlaneState, Steer, pitch_for_climb
+from sim_bridge.vehicle.wind.estimate import Estimate
 
 BANK_MAX = pi / 4  # [rad] that an agent asks of a plane, unless its configuration says otherwise
 NOBODY = Mate(0, ZERO, ZERO, 1e9)  # a mate unheard for so long does not count
@@ -49,6 +50,7 @@ class Aboard(NamedTuple):
     altitude: Said  # to the autopilot [m]
     airspeed: Said  # to the autopilot [m/s]
     bank: float  # the autopilot's now [rad]
+    wind: Estimate  # the autopilot's
 
 
 class Instant(NamedTuple):
@@ -86,10 +88,15 @@ def autopilot_of(limits: VehicleLimits, speed: float, turn_rate: float) -> Autop
     )
 
 
-def boarded(velocity: Vec, stamp: float, height: float, speed: float) -> Aboard:
+def boarded(velocity: Vec, stamp: float, height: float, speed: float, wind: Estimate) -> Aboard:
     """Before the first order: in flight at `velocity` through the air [m/s], demanded at `stamp` [s], at
     `height` [m] and `speed` [m/s]."""
-    return Aboard(velocity, stamp, Reference(), Said(height, NEVER), Said(speed, NEVER), 0.0)
+    return Aboard(velocity, stamp, Reference(), Said(height, NEVER), Said(speed, NEVER), 0.0, wind)
+
+
+def aware(a: Aboard, wind: Estimate) -> Aboard:
+    """The same with another estimate of the wind."""
+    return Aboard(a.demand, a.stamp, a.reference, a.altitude, a.airspeed, a.bank, wind)
 
 
 def ordered(aboard: Aboard, wanted: Vec, at: Instant, policy: Policy, mates: tuple[Mate, ...]) -> Aboard:
@@ -111,7 +118,7 @@ def ordered(aboard: Aboard, wanted: Vec, at: Instant, policy: Policy, mates: tup
     airspeed = aboard.airspeed
     if due(airspeed, at.now, speed, SPEED_STEP, False):
         airspeed = Said(speed, at.now)
-    return Aboard(air, at.now, reference, said, airspeed, bank)
+    return Aboard(air, at.now, reference, said, airspeed, bank, aboard.wind)
 
 
 def commanded(

@@ -39,6 +39,7 @@ from sim_bridge.vehicle.flight.aircraft import named, within
 from sim_bridge.vehicle.flight.plane import Command, PlaneState, Steer, start_state, trimmed
 from sim_bridge.vehicle.wind import KERNELS as WIND
 from sim_bridge.vehicle.wind.dryden import gust_noise
+from sim_bridge.vehicle.wind.estimate import begun, drawn_errors
 
 KERNELS = (
     *CORE,
@@ -151,6 +152,7 @@ def draw(scenario: Scenario, seed: int, t0: float = T0, compiled: bool = True) -
         tuple(policy_of(spec.limits(), fences, conditions.rules.separation) for spec in specs),
         tuple(autopilot_of(spec.limits(), spec.speed, radians(spec.turn_rate_deg)) for spec in specs),
         keys,
+        tuple(drawn_errors(key_of(scenario.seed, id, Purpose.ESTIMATE)) for id in scenario.ids),
     )
     players: list[Flown] = []
     level: list[Command] = []
@@ -164,7 +166,7 @@ def draw(scenario: Scenario, seed: int, t0: float = T0, compiled: bool = True) -
     tracks = no_tracks(len(players), start.eye)
     flown = typed(players, compiled)
     (compiled_kernel(approach) if compiled else approach)(start, flown, tracks, typed(level, compiled))
-    crew = [aboard_of(flown[i].plane, start, specs[i].speed) for i in range(len(players))]
+    crew = [aboard_of(flown[i].plane, start, specs[i].speed, i) for i in range(len(players))]
     steps = int(conditions.rules.horizon / (control * dt)) + 8
     return Draw(start, list(flown), crew, tracks, steps, sides_of(scenario))
 
@@ -215,12 +217,13 @@ def eye_of(scenario: Scenario, dt: float) -> Eye:
     )
 
 
-def aboard_of(plane: PlaneState, start: Start, speed: float) -> Aboard:
+def aboard_of(plane: PlaneState, start: Start, speed: float, index: int) -> Aboard:
     """An agent and its autopilot at t₀, the last order given a control step before the first of the game."""
     wind = wind_at(start.climate, plane.position)
     pace, dt = start.pace, start.fleet.evader.dt
     last = (pace.t0 - (pace.t0 - pace.decides) % pace.control) * dt
-    return boarded(sub(plane.velocity, wind), last, -plane.position.z, speed)
+    estimate = begun(wind, start.errors[index])
+    return boarded(sub(plane.velocity, wind), last, -plane.position.z, speed, estimate)
 
 
 @cache

@@ -32,14 +32,16 @@ from onboard.core.math.states import Mate, Vehicle
 from onboard.core.math.vectors import ZERO, Vec, pitch_of, scale, yaw_of
 from onboard.core.safety.policy import Policy
 from onboard.core.strategy.knowledge import Decision
-from sim_bridge.campaign.aboard import NOBODY, Aboard, Autopilot, Instant, commanded, ordered
-from sim_bridge.campaign.plane_in_wind import Climate, Flown, blown, fly, gust_tick, wind_at
+from sim_bridge.campaign.aboard import NOBODY, Aboard, Autopilot, Instant, aware, commanded, ordered
+from sim_bridge.campaign.plane_in_wind import Climate, Flown, blown, fly, gust_at, gust_tick, wind_at
 from sim_bridge.campaign.tracks import Eye, Tracks, track_of, watched
 from sim_bridge.draws import Key
-from sim_bridge.vehicle.flight.plane import Command, PlaneModel, placed
+from sim_bridge.vehicle.flight.plane import Command, PlaneModel, nose_yaw, placed, true_airspeed
 from sim_bridge.vehicle.wind.dryden import gust_noise
+from sim_bridge.vehicle.wind.estimate import ARDUPILOT, Errors, Estimate, Sensed, estimated
 
 Array = NDArray[np.float64]
+WIND_EVERY = 10  # samples between two updates of an estimate of the wind: `EVERY` of it
 
 
 class Evasion(IntEnum):
@@ -115,15 +117,14 @@ class Start(NamedTuple):
     policies: tuple[Policy, ...]  # of the supervisors, evader first
     autopilots: tuple[Autopilot, ...]
     gusts: tuple[Key, ...]  # of everybody's random numbers
+    errors: tuple[Errors, ...]  # of everybody's estimate of the wind
 
 
 class Team(NamedTuple):
     """The pursuers when they decide (for `each`)."""
 
     start: Start
-    states: (
-        Array  # (players, 6): positions [m; NED] and velocities over ground [m/s] as their agents know them
-    )
+    states: Array  # (players, 8), as their agents know: position [m; NED], ground velocity and wind [m/s]
     seen: Tracks
     now: int  # sample
     ways: Ways
@@ -133,6 +134,11 @@ def known(states: Array, index: int) -> Vehicle:
     """Player `index` as its agent knows it: place and velocity over ground (its speed is nobody's)."""
     s = states[index]
     return Vehicle(Vec(s[0], s[1], s[2]), Vec(s[3], s[4], s[5]), 0.0)
+
+
+def known_wind(states: Array, index: int) -> Vec:
+    """The wind as player `index`'s autopilot estimates it [m/s; NED]."""
+    return Vec(states[index, 6], states[index, 7], 0.0)
 
 
 def in_air(vehicle: Vehicle, wind: Vec, speed: float) -> Vehicle:
@@ -172,7 +178,7 @@ def decide_pursuer(vehicle: Vehicle, index: int, team: Team) -> Decision:
     game = start.game
     rules, control = start.conditions.rules, start.conditions.control
     own = known(team.states, index + 1)
-    wind = wind_at(start.climate, own.position)
+    wind = known_wind(team.states, index + 1)
     spotted = in_air(track_of(team.seen, 0, team.now, start.fleet.evader.dt), wind, game.evader.speed)
     sighting = sighted(spotted, heading_at(spotted), control.lookahead)
     mate = Nearest(False, own.position)
@@ -192,7 +198,7 @@ def order(start: Start, aboard: Aboard, decision: Decision, states: Array, place
         now * start.fleet.evader.dt,
         own.position,
         own.velocity,
-        wind_at(start.climate, own.position),
+        known_wind(states, index),
         index + 1,
     )
     mates = each(mate_of, start.game.pursuers, states)
@@ -213,7 +219,7 @@ def decide_all(
     game, conditions = start.game, start.conditions
     now, dt = int(decided[0, 2]), start.fleet.evader.dt
     own = known(states, 0)
-    wind = wind_at(start.climate, own.position)
+    wind = known_wind(states, 0)
     others = each(opponent, game.pursuers, Watch(seen, now, wind, dt))
     me = in_air(own, wind, game.evader.speed)
     view = evader_view(me, game.evader_limits, others, conditions.target, wind, conditions.rules)
@@ -237,6 +243,21 @@ def note(states: Array, index: int, flown: Flown) -> None:
     states[index, 3] = plane.velocity.x
     states[index, 4] = plane.velocity.y
     states[index, 5] = plane.velocity.z
+
+
+def note_wind(states: Array, index: int, wind: Estimate) -> None:
+    """Write down the wind as the autopilot of aircraft `index` estimates it."""
+    states[index, 6] = wind.north
+    states[index, 7] = wind.east
+
+
+def weathered(start: Start, index: int, aboard: Aboard, flown: Flown) -> Aboard:
+    """The autopilot of aircraft `index` with one more update of its estimate of the wind."""
+    model = start.fleet.pursuer if index else start.fleet.evader
+    plane, climate = flown.plane, start.climate
+    speed = true_airspeed(plane, wind_at(climate, plane.position), gust_at(climate, flown, model))
+    sensed = Sensed(plane.velocity, speed, nose_yaw(plane, model))
+    return aware(aboard, estimated(aboard.wind, ARDUPILOT, start.errors[index], sensed))
 
 
 def widened(e: Envelope, flown: Flown, model: PlaneModel, declared: float) -> Envelope:
@@ -315,11 +336,12 @@ def play(
     dt = start.fleet.evader.dt
     reach = Envelope(0.0, 0.0, 1.0, 1.0, 1e300, 0.0)
     count = len(players)
-    here = np.empty((count, 6))
-    before = np.empty((count, 6))
+    here = np.empty((count, 8))
+    before = np.empty((count, 8))
     decided = np.zeros((count, 3))
     for i in range(count):
         note(here, i, players[i])
+        note_wind(here, i, crew[i].wind)
         before[i] = here[i]
     steps = 0
     sample = pace.t0
@@ -336,6 +358,9 @@ def play(
                     log[steps, i, 3] = players[i].plane.course
                     log[steps, i, 4] = decided[i, 0]
             for i in range(count):
+                if sample % WIND_EVERY == 0:
+                    crew[i] = weathered(start, i, crew[i], players[i])
+                    note_wind(here, i, crew[i].wind)
                 before[i] = here[i]
                 players[i] = commanded_on(start, i, crew[i], players[i], sample)
                 note(here, i, players[i])

@@ -13,12 +13,14 @@ from msgspec.structs import replace
 from numpy.random import Generator, SeedSequence
 
 from onboard.core.math.vectors import yaw_of
-from onboard.game.scenario import AirframeKind, Kind, Scenario, VehicleSpec
+from onboard.game.scenario import AirframeKind, Kind, Scenario, VehicleSpec, WindSpec
 from onboard.game.staging import staging_place, start_headings
 from onboard.runtime.impairment import Impairment
 from onboard.wire.geodesy import Frame
+from sim_bridge.draws import Purpose, key_of
 from sim_bridge.vehicle.flight.kinematic import kinematic, start_motion
 from sim_bridge.vehicle.motion import CALM, Air, Airframe, Motion
+from sim_bridge.vehicle.wind.estimate import Errors, drawn_errors
 from sim_bridge.vehicle.wind.field import WindField
 
 Wind = Callable[[int, Motion, float], Air]  # (vehicle id, its motion, time since the start [s]) → its air
@@ -37,7 +39,7 @@ def generator(seed: int, concern: str) -> Generator:
 def wind_of(scenario: Scenario, seed: int, folder: Path | None = None) -> Wind:
     """The scenario's wind; a recording's path is relative to `folder`. Raises ConfigError."""
     spec = scenario.flight.wind
-    if spec.speed <= 0.0 and spec.gust_sigma <= 0.0 and not spec.recorded:
+    if not blows(spec):
         return calm
     field = WindField(spec, seed, scenario.ids, folder)
     numbers = {id: number for number, id in enumerate(scenario.ids)}
@@ -46,6 +48,16 @@ def wind_of(scenario: Scenario, seed: int, folder: Path | None = None) -> Wind:
         return field.air(numbers[id], motion, t)
 
     return air
+
+
+def blows(spec: WindSpec) -> bool:
+    """Whether a wind moves the air at all."""
+    return spec.speed > 0.0 or spec.gust_sigma > 0.0 or bool(spec.recorded)
+
+
+def wind_errors_of(scenario: Scenario, seed: int, id: int) -> Errors | None:
+    """What is wrong with a vehicle's estimate of the wind; None in still air, which everybody knows."""
+    return drawn_errors(key_of(seed, id, Purpose.ESTIMATE)) if blows(scenario.flight.wind) else None
 
 
 def impairment_of(scenario: Scenario) -> Impairment:

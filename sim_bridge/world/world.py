@@ -15,7 +15,17 @@ from onboard.runtime.protocols import Clock, Link
 from sim_bridge.vehicle.autopilot.autopilot import Autopilot
 from sim_bridge.vehicle.autopilot.make import autopilot_for, options_of, parameter_names
 from sim_bridge.vehicle.motion import CALM, Airframe, Motion
-from sim_bridge.world.staging import Wind, airframe_of, calm, frame_of, generator, holding, kind_of, starts
+from sim_bridge.world.staging import (
+    Wind,
+    airframe_of,
+    calm,
+    frame_of,
+    generator,
+    holding,
+    kind_of,
+    starts,
+    wind_errors_of,
+)
 
 RATE_HZ = 100.0
 BEHIND_MAX = 50  # physics steps made up for in one call; beyond them time is lost, and counted
@@ -68,7 +78,9 @@ class World:
             air = wind(id, start, 0.0)
             kind = kind_of(scenario, spec)
             options = options_of(scenario, generator(seed, f"answers-{id}"), asked[kind])._replace(
-                epoch_ns=self._epoch_ns, battery_s=battery_s
+                epoch_ns=self._epoch_ns,
+                battery_s=battery_s,
+                wind_errors=wind_errors_of(scenario, seed, id),
             )
             airframe = airframe_of(scenario, spec, start, air)
             autopilot = autopilot_for(holding(spec, airframe), kind, id, frame, start, options)

@@ -31,6 +31,7 @@ from sim_bridge.rehearsal import Options, Rehearsal
 from sim_bridge.vehicle.autopilot.arduplane import ArduPlane
 from sim_bridge.vehicle.flight.airframe import Plane
 from sim_bridge.vehicle.flight.plane import PlaneState
+from sim_bridge.vehicle.wind.estimate import Estimate
 
 VERDICTS, ARRIVALS, CORRELATION = 0.95, 0.02, 0.95  # what is promised
 
@@ -42,6 +43,7 @@ class Began(NamedTuple):
     bank: float  # [rad]
     height: float  # sought [m]
     airspeed: float  # [m/s]
+    wind: Estimate  # its own
 
 
 class Flight(NamedTuple):
@@ -89,7 +91,8 @@ def _begins(vehicle: Any) -> Began:
     airframe, autopilot = vehicle.airframe, vehicle.autopilot
     assert isinstance(airframe, Plane)
     assert isinstance(autopilot, ArduPlane)
-    return Began(airframe.state, autopilot._roll, -autopilot._altitude_z, autopilot._airspeed_target)
+    wind = autopilot.wind_filter.estimate
+    return Began(airframe.state, autopilot._roll, -autopilot._altitude_z, autopilot._airspeed_target, wind)
 
 
 def compute(scenario: Scenario, seed: int, evasion: Evasion, flight: Flight, compiled: bool = True) -> Played:
@@ -101,8 +104,9 @@ def compute(scenario: Scenario, seed: int, evasion: Evasion, flight: Flight, com
         d.tracks.filters[i, (0, 5, 10)] += off
         d.tracks.waiting[:, i, :3] += off
         players.append(Flown(began.plane, d.players[i].gusts))
-        told = aboard_of(began.plane, d.start, began.airspeed)
-        crew.append(told._replace(bank=began.bank, altitude=told.altitude._replace(value=began.height)))
+        told = aboard_of(began.plane, d.start, began.airspeed, i)
+        altitude = told.altitude._replace(value=began.height)
+        crew.append(told._replace(bank=began.bank, altitude=altitude, wind=began.wind))
     return play_drawn(d._replace(players=players, crew=crew), evasion, compiled)
 
 

@@ -72,6 +72,7 @@ class Autopilot(AutopilotState):
         self._last_step_ns = now_ns
         self.motion = Motion(motion.position, ZERO, 0.0, 0.0, 0.0, motion.yaw) if self.landed else motion
         self.air = air
+        self.wind_filter.step(now_ns, self.motion, air, self.landed)
         self._place = None
         self.health.drain(dt, self.armed and not self.landed)
         if not self.home_known and self.positioned(now_ns):

@@ -11,6 +11,7 @@ from onboard.game.scenario import Firmware, Kind
 from onboard.wire.geodesy import Frame, Geodetic
 from onboard.wire.mavlink.signing import Signing
 from sim_bridge.vehicle.motion import Motion
+from sim_bridge.vehicle.wind.estimate import Errors
 
 
 class Options(NamedTuple):
@@ -30,6 +31,7 @@ class Options(NamedTuple):
     gimbal: bool = False  # whether component 154 of the vehicle's own system sends heartbeats
     other_station_hz: float = 0.0  # rate of all streams that a second ground station asks for [Hz]; 0: none
     full_streams: bool = False  # whether PX4 streams all that a real one does by default: 22 kB/s
+    wind_errors: Errors | None = None  # of its estimate of the wind; None: it knows the mean wind
     healthy_share: float = 0.6  # of `ready_s`, after which the pre-arm bit is set: before arming is accepted
 
     @property

@@ -19,6 +19,7 @@ from sim_bridge.vehicle.autopilot.parameters import Parameters
 from sim_bridge.vehicle.autopilot.setup import Setup
 from sim_bridge.vehicle.autopilot.streams import Streams
 from sim_bridge.vehicle.autopilot.transmitter import Transmitter
+from sim_bridge.vehicle.autopilot.wind_filter import WindFilter
 from sim_bridge.vehicle.motion import CALM
 
 COMPONENT = 1  # MAV_COMP_ID_AUTOPILOT1
@@ -44,6 +45,7 @@ class AutopilotState(ABC):
         self.system = setup.system
         self.motion = setup.start
         self.air = CALM
+        self.wind_filter = WindFilter(setup.kind, setup.options.wind_errors)
         self.home = setup.home
         self.local = Frame(*setup.origin)
         self.health = Health(setup.options.battery_s, setup.options.batteries)

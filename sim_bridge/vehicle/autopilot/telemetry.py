@@ -211,7 +211,7 @@ def estimator_status(ap: AutopilotState, now_ns: int) -> MavMessage:
 
 def wind(ap: AutopilotState, now_ns: int) -> MavMessage:
     """WIND of ArduPilot: the direction that the wind comes from [deg] and its speed [m/s]."""
-    w = ap.air.wind
+    w = ap.wind_filter.wind
     message: MavMessage = dialect.MAVLink_wind_message(
         degrees(atan2(-w.y, -w.x)) % 360.0, sqrt(w.x * w.x + w.y * w.y), w.z
     )
@@ -220,7 +220,7 @@ def wind(ap: AutopilotState, now_ns: int) -> MavMessage:
 
 def wind_cov(ap: AutopilotState, now_ns: int) -> MavMessage:
     """WIND_COV of PX4: the velocity with which the air moves [m/s; NED]."""
-    w = ap.air.wind
+    w = ap.wind_filter.wind
     message: MavMessage = dialect.MAVLink_wind_cov_message(
         ap.boot_ms(now_ns) * 1000, w.x, w.y, w.z, 0.1, 0.1, ap.place.altitude_m, 0.5, 0.5
     )
