@@ -21,6 +21,7 @@ from sim_bridge.vehicle.wind.field import WindField
 DT = 0.02
 G = 9.80665
 SPEC = VehicleSpec(position=(0.0, 0.0, 50.0), speed=10.0, acceleration=4.0)
+PUBLISHED = 0.1  # [m] hover accuracy of a DJI Phantom 4 RTK (1391 g) whose position is exact (RTK): its sheet
 COPTERS = (Kind.PX4, Kind.ARDUCOPTER)
 
 
@@ -128,5 +129,5 @@ def test_gusts_move_it_by_what_its_loops_let_through(kind: Kind) -> None:
     expected = expected_rms(LOOPS[kind], 1.5, length / float(np.mean(speeds)))
     print(f"\n{kind.value}: {np.std(places[500:]):.3f} m, expected {expected:.3f} m")
     assert float(np.std(places[500:])) == pytest.approx(expected, rel=0.25)
-    assert 0.01 < expected < 0.5
+    assert 0.01 < expected < PUBLISHED
     assert radians(5.0) < float(np.max(np.abs([c.motion.pitch for c in copters]))) < LOOPS[kind].tilt_max

@@ -1,20 +1,21 @@
 """The kinematic airframes: (7)–(8) with limited turn rate, climb angle and acceleration.
 
 Multicopters follow a ground velocity under an acceleration limit; wind and gusts push them off it. Planes fly
-relative to the air: a roll, heading or course, a climb rate and an airspeed in; the mean wind carries them,
-and gusts are for the aircraft of transfer functions.
+relative to the air: a roll, heading or course, a climb rate and an airspeed in; the mean wind carries them at
+once, gusts through the lags of (33)–(35), as they do the aircraft of transfer functions. They have no nose
+of their own that a gust could turn.
 
 Deterministic: the same demands give the same motion to the last bit.
 """
 
 from __future__ import annotations
 
-from math import asin, atan, cos, radians, sin, sqrt, tan
+from math import asin, atan, cos, exp, radians, sin, sqrt, tan
 from typing import NamedTuple
 
 from onboard.core.math.angles import wrap
 from onboard.core.math.constants import STANDARD_GRAVITY
-from onboard.core.math.vectors import ZERO, Vec, add, clamp, norm, scale, sub, yaw_of
+from onboard.core.math.vectors import ZERO, Vec, add, along, clamp, norm, scale, sub, yaw_of
 from onboard.game.scenario import WINGED, Kind, VehicleSpec
 from sim_bridge.vehicle.flight.multicopter_wind import (
     DRAG,
@@ -25,12 +26,14 @@ from sim_bridge.vehicle.flight.multicopter_wind import (
     settled,
     wind_estimate,
 )
+from sim_bridge.vehicle.flight.plane import carried
 from sim_bridge.vehicle.motion import CALM, Air, Airframe, Demand, Lateral, Motion
 
 ROLL_RATE = radians(180.0)  # [rad/s] how fast a plane banks
 HEADING_GAIN = 2.0  # [1/s] turn rate per heading error, below the limit
 MOVING = 0.3  # [m/s] a multicopter turns its nose along its course above this
 STALL_SHARE = 0.4  # of the speed the game reckons with
+CARRY = Vec(0.05, 1.0 / 6.0, 1.213 / 0.753)  # [1/s] a_x, k_β and b_y: how gusts come to carry a plane
 WIND_FROM_COURSE = 0.999  # of the airspeed: a stronger crosswind cannot be crabbed against
 
 
@@ -136,6 +139,7 @@ class KinematicPlane:
         self._heading = motion.yaw
         self._climb = -(motion.velocity.z - air.wind.z)
         self._roll = motion.roll
+        self._drift = ZERO  # [m/s; NED] how gusts carry it
 
     @property
     def motion(self) -> Motion:
@@ -161,14 +165,17 @@ class KinematicPlane:
         climb = 0.0 if rolling else toward(self._climb, clamp(demand.climb, low, high), most)
         climb = clamp(climb, min(low, 0.0), max(high, 0.0))
         level = sqrt(max(0.0, speed * speed - climb * climb))
+        before, drift = self._drifted(air.gust, middle, dt, rolling)
         velocity = Vec(
-            level * cos(heading) + air.wind.x, level * sin(heading) + air.wind.y, air.wind.z - climb
+            level * cos(heading) + air.wind.x + drift.x,
+            level * sin(heading) + air.wind.y + drift.y,
+            air.wind.z + drift.z - climb,
         )
         if rolling:
             velocity = Vec(level * cos(heading), level * sin(heading), 0.0)
         # Over the step: along the middle heading, exact for a circle to third order.
         half = 0.5 * (level + sqrt(max(0.0, self._speed * self._speed - self._climb * self._climb)))
-        wx, wy, wz = (0.0, 0.0, 0.0) if rolling else air.wind
+        wx, wy, wz = (0.0, 0.0, 0.0) if rolling else along(air.wind, add(before, drift), 0.5)
         position = Vec(
             old.position.x + (half * cos(middle) + wx) * dt,
             old.position.y + (half * sin(middle) + wy) * dt,
@@ -177,8 +184,21 @@ class KinematicPlane:
         pitch = asin(clamp(climb / flying, -1.0, 1.0))
         rates = Vec((roll - self._roll) / dt, (pitch - old.pitch) / dt, turn)
         self._speed, self._heading, self._climb, self._roll = speed, heading, climb, roll
-        self._motion = Motion(position, velocity, speed, roll, pitch, heading, rates)
+        felt = speed  # by the pitot tube, which feels gusts
+        if air.gust != ZERO and not rolling:
+            felt = norm(sub(velocity, add(air.wind, air.gust)))
+        self._motion = Motion(position, velocity, felt, roll, pitch, heading, rates)
         return self._motion
+
+    def _drifted(self, gust: Vec, heading: float, dt: float, rolling: bool) -> tuple[Vec, Vec]:
+        """The drift before the step and after it; none on the ground."""
+        before = self._drift
+        if rolling or (gust == ZERO and before == ZERO):
+            self._drift = ZERO
+            return ZERO, ZERO
+        shares = Vec(*(1.0 - exp(-rate * dt) for rate in CARRY))
+        self._drift = carried(before, gust, shares, cos(heading), sin(heading))
+        return before, self._drift
 
     def _bank(self, demand: Demand, air: Air, speed: float) -> float:
         """The bank angle a demand asks for [rad]."""
@@ -186,7 +206,7 @@ class KinematicPlane:
             return demand.angle
         heading = demand.angle
         if demand.lateral == Lateral.COURSE:
-            heading = crab(demand.angle, speed, air.wind)
+            heading = crab(demand.angle, speed, add(air.wind, self._drift))
         elif demand.lateral == Lateral.VELOCITY:
             heading = self._heading
         rate = clamp(

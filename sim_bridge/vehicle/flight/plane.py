@@ -207,6 +207,23 @@ def step_turn(
     return yaw, yaw.angle, 0.0, 0.0
 
 
+def carried(old: Vec, gust: Vec, shares: Vec, c: float, s: float) -> Vec:
+    """The drift [m/s; NED] one sample on: (33)–(35) let gusts carry an aircraft through the path's own lags.
+
+    `shares` of what is missing, along, across and down, in heading axes; `c`, `s`: cosine and sine of the
+    heading.
+    """
+    along = gust.x * c + gust.y * s
+    across = gust.y * c - gust.x * s
+    behind_along = shares.x * (along - (old.x * c + old.y * s))
+    behind_across = shares.y * (across - (old.y * c - old.x * s))
+    return Vec(
+        old.x + behind_along * c - behind_across * s,
+        old.y + behind_along * s + behind_across * c,
+        old.z + shares.z * (gust.z - old.z),
+    )
+
+
 def step_plane(state: PlaneState, model: PlaneModel, command: Command, wind: Vec, gust: Vec) -> PlaneState:
     """One sample in air that moves with `wind` (mean and shear) and gusts [m/s; NED]."""
     follow = model.follow
@@ -229,15 +246,8 @@ def step_plane(state: PlaneState, model: PlaneModel, command: Command, wind: Vec
     climb = pitch.angle
     if model.path != PathModel.NOSE:
         climb = state.climb + follow.climb * (pitch.angle - state.climb)
-    # (33)–(35): gusts come to carry the aircraft through the path's own lags, in heading axes
-    old = state.drift
-    behind_along = follow.carry_along * (along - (old.x * c + old.y * s))
-    behind_across = follow.carry_across * (across - (old.y * c - old.x * s))
-    drift = Vec(
-        old.x + behind_along * c - behind_across * s,
-        old.y + behind_along * s + behind_across * c,
-        old.z + follow.carry_up * (gust.z - old.z),
-    )
+    shares = Vec(follow.carry_along, follow.carry_across, follow.carry_up)
+    drift = carried(state.drift, gust, shares, c, s)
     level = speed * cos(climb)
     velocity = Vec(
         level * cos(course) + wind.x + drift.x,
