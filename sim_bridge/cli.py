@@ -133,7 +133,7 @@ def fly(
     path, chosen = shipped_file(scenario, SCENARIOS), room.Options(fast, seed, runs, bus, report, quiet)
     flown = room.fly(path, chosen, lambda line: print(printable(line), flush=True))
     print(room.story(flown))
-    if flown.summary.verdict not in ("captured", "arrived", "escaped"):
+    if flown.summary.verdict not in ("captured", "arrived", "denied", "escaped"):
         raise typer.Exit(1)
 
 

@@ -51,6 +51,7 @@ _RESULTS = {
     GameResult.CAPTURED: OutcomeResult.CAPTURED,
     GameResult.ARRIVED: OutcomeResult.ARRIVED,
     GameResult.ESCAPED: OutcomeResult.ESCAPED,
+    GameResult.DENIED: OutcomeResult.DENIED,
 }
 
 
@@ -106,6 +107,7 @@ class GameMaster:
         self._tracks = TrackWatch()
         self._seen_ns = 0  # when the evader's position was last known [ns, monotonic]
         self._evader = next(member.id for member in setup.roster if member.role is Role.EVADER)
+        self._speeds = {member.id: member.speed for member in setup.roster}  # declared [m/s]; 0 = not
         self._pursuers = tuple(member.id for member in setup.roster if member.role is Role.PURSUER)
         self._resume: tuple[int, ...] = ()
         self._began_ns = -1
@@ -317,13 +319,15 @@ class GameMaster:
         before = tuple(self._before[id] for id in ids)
         after = tuple(here[id] for id in ids)
         target = ZERO if self._target is None else self._judged(self._target)
-        step = Step(start, dt, self._before[evader], here[evader], before, after)
+        speeds = tuple(self._speeds[id] for id in ids)
+        e0, e1 = self._before[evader], here[evader]
+        step = Step(start, dt, e0, e1, before, after, self._speeds[evader], speeds)
         goal = Target(self._target is not None, target)
         self.score = score = judge(self.score, step, self._rules, goal)
         played = min(1.0, (score.time - start) / dt)  # a game ends within a step
-        end = _part(self._before[evader], here[evader], played)
+        end = _part(e0, e1, played)
         for id, p0, p1 in zip(ids, before, after, strict=True):
-            seen = passage(p0, _part(p0, p1, played), self._before[evader], end, 0.0).smallest
+            seen = passage(p0, _part(p0, p1, played), e0, end, 0.0).smallest
             self.nearest[id] = min(self.nearest.get(id, seen), seen)
         if score.verdict != GameResult.RUNNING:
             captor = ids[score.captor] if score.captor >= 0 else 0

@@ -17,7 +17,7 @@ class PhaseEvent(Enum):
     NOT_READY = "somebody is not ready any more"
     PATIENCE_OVER = "not ready in time"
     BEGINNING = "t₀ has come"
-    RESULT = "captured, arrived or escaped"
+    RESULT = "captured, arrived, denied or escaped"
     ABORT = "abort"
     RECOVERY_DUE = "the time after the end is over"
 

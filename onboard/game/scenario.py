@@ -281,6 +281,9 @@ class Scenario(StrictConfig, frozen=True):
 
     def __post_init__(self) -> None:
         demand(self.evader.speed > 0, "evader.speed", self.evader.speed, "a positive speed [m/s]")
+        known = self.parameters.target_known
+        demand(self.evader.target is not None or not known, "parameters.target_known", "true",
+               "false: this evader has no target that the pursuers could know")  # fmt: skip
         for index, v in enumerate(self.pursuers):
             demand(v.target is None, f"pursuers[{index}].target", v.target,
                    "no target: only the evader has one")  # fmt: skip

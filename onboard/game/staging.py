@@ -52,8 +52,9 @@ def target_of(scenario: Scenario) -> Vec | None:
 
 
 def setup_of(scenario: Scenario, game: str, master: str) -> Setup:
-    """`game/setup`: everything but the evader's target."""
+    """`game/setup`: everything but the evader's target, unless the rules say that the pursuers know it."""
     flight = scenario.flight
+    target = target_of(scenario) if scenario.rules.target_known else None
     roster = []
     everybody = zip(scenario.ids, scenario.vehicles, start_headings(scenario), strict=True)
     for index, (id, spec, heading) in enumerate(everybody):
@@ -83,4 +84,5 @@ def setup_of(scenario: Scenario, game: str, master: str) -> Setup:
         track_sigma=flight.sensor.sigma,
         seed=scenario.seed,
         field_profile=flight.field_profile,
+        target=None if target is None else (target.x, target.y, target.z),
     )

@@ -16,11 +16,13 @@ from onboard.core.game.views import (
     EvaderView,
     PursuerView,
     Sighting,
+    Team,
     evader_view,
     heading_at,
     level,
     nearest_mate,
     pursuer_view,
+    told,
 )
 from onboard.core.geometry.apollonius import apollonius_sphere
 from onboard.core.geometry.assessment import half_angle
@@ -135,12 +137,27 @@ class Viewpoint:
             view = evader_view(seen, me.limits, others, goal, wind, setup.rules)
         else:
             later = memory.predict(known[0][0].id, now + setup.control.lookahead)
-            places = tuple(level(mate.position, planar) for mate in mates if mate.id != self.id)
-            mate = nearest_mate(seen.position, places, -1)
             sighting = _sighting(others[0], later, wind, setup)
-            view = pursuer_view(seen, me.limits, sighting, mate, setup.control, setup.rules)
+            team = self._team(seen, mates, wind, setup)
+            view = pursuer_view(seen, me.limits, sighting, team, setup.control, setup.rules)
         sigma = inf if lacks else worst.sigma
         return Question(view, own, me, seen, others, wind, sigma, worst.source.name.lower(), tuple(lacks))
+
+    def _team(self, seen: Vehicle, mates: tuple[Mate, ...], wind: Vec, setup: GameSetup) -> Team:
+        """The own side in the moving air; who declares no speed counts as fast as this vehicle."""
+        planar = setup.rules.planar
+        members = [seen]
+        for mate in mates:
+            player = setup.player(mate.id)
+            if mate.id != self.id:
+                speed = player.speed if player is not None and player.speed > 0.0 else seen.speed
+                velocity = sub(level(mate.velocity, planar), wind)
+                members.append(Vehicle(level(mate.position, planar), velocity, speed))
+        places = tuple(member.position for member in members)
+        target = setup.target._replace(position=level(setup.target.position, planar))
+        return Team(
+            nearest_mate(seen.position, places, 0), tuple(members), 0, told(target, setup.rules)
+        )
 
     def conclude(self, question: Question, decision: Decision, setup: GameSetup) -> PilotDecision:
         """The strategy's answer to a question, with everything a person needs to see why."""

@@ -29,7 +29,7 @@ class Player(NamedTuple):
 
 
 class GameSetup(NamedTuple):
-    """The game as one pilot knows it; the target only where it is the evader."""
+    """The game as one pilot knows it; a pursuer knows the target only where the rules say so."""
 
     roster: tuple[Player, ...]
     rules: Rules

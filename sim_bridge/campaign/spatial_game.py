@@ -15,17 +15,19 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from onboard.core.game.advance import Conditions, Game, judged
+from onboard.core.game.advance import Conditions, Game, judged, positions
 from onboard.core.game.referee import GameResult
 from onboard.core.game.views import (
     EvaderView,
     Nearest,
     PursuerView,
+    Team,
     evader_view,
     heading_at,
     nearest_mate,
     pursuer_view,
     sighted,
+    told,
 )
 from onboard.core.math.each import each
 from onboard.core.math.states import Mate, Vehicle
@@ -120,7 +122,7 @@ class Start(NamedTuple):
     errors: tuple[Errors, ...]  # of everybody's estimate of the wind
 
 
-class Team(NamedTuple):
+class Deciding(NamedTuple):
     """The pursuers when they decide (for `each`)."""
 
     start: Start
@@ -167,12 +169,13 @@ def mate_of(_vehicle: Vehicle, index: int, states: Array) -> Mate:
     return Mate(index + 2, here.position, here.velocity, 0.0)
 
 
-def place_of(mate: Mate, _index: int, _shared: float) -> Vec:
-    """Where a mate is (for `each`)."""
-    return mate.position
+def member_of(vehicle: Vehicle, index: int, deciding: Deciding) -> Vehicle:
+    """Pursuer `index` in the air as its team mates know it (for `each`)."""
+    here = known(deciding.states, index + 1)
+    return in_air(here, wind_at(deciding.start.climate, here.position), vehicle.speed)
 
 
-def decide_pursuer(vehicle: Vehicle, index: int, team: Team) -> Decision:
+def decide_pursuer(vehicle: Vehicle, index: int, team: Deciding) -> Decision:
     """Pursuer `index`'s decision (for `each`)."""
     start = team.start
     game = start.game
@@ -182,11 +185,12 @@ def decide_pursuer(vehicle: Vehicle, index: int, team: Team) -> Decision:
     spotted = in_air(track_of(team.seen, 0, team.now, start.fleet.evader.dt), wind, game.evader.speed)
     sighting = sighted(spotted, heading_at(spotted), control.lookahead)
     mate = Nearest(False, own.position)
+    members = each(member_of, game.pursuers, team)
     if rules.separation > 0.0:
-        places = each(place_of, each(mate_of, game.pursuers, team.states), 0.0)
-        mate = nearest_mate(own.position, places, index)
+        mate = nearest_mate(own.position, positions(members), index)
     me = in_air(own, wind, vehicle.speed)
-    view = pursuer_view(me, game.pursuer_limits[index], sighting, mate, control, rules)
+    side = Team(mate, members, index, told(start.conditions.target, rules))
+    view = pursuer_view(me, game.pursuer_limits[index], sighting, side, control, rules)
     return team.ways.pursuer(view, team.ways.chosen.pursuers[index])
 
 
@@ -227,7 +231,7 @@ def decide_all(
     crew[0] = order(start, crew[0], decision, states, (0, now))
     decided[0, 0] = yaw_of(decision.direction)
     decided[0, 1] = pitch_of(decision.direction)
-    decisions = each(decide_pursuer, game.pursuers, Team(start, states, seen, now, ways))
+    decisions = each(decide_pursuer, game.pursuers, Deciding(start, states, seen, now, ways))
     for i in range(len(decisions)):
         crew[i + 1] = order(start, crew[i + 1], decisions[i], states, (i + 1, now))
         decided[i + 1, 0] = yaw_of(decisions[i].direction)

@@ -146,6 +146,7 @@ def verdict_line(summary: Summary) -> str:
         "captured": f"captured by pursuer {summary.captor} after {summary.time:.1f} s",
         "arrived": f"the evader reached its target after {summary.time:.1f} s",
         "escaped": f"the evader escaped: not captured within {summary.time:.0f} s",
+        "denied": f"the target was denied: neither arrived nor captured within {summary.time:.0f} s",
         "aborted": f"aborted: {summary.reason}",
     }.get(summary.verdict, "no outcome")
     expected = f"; the paper's verdict: {summary.expected}" if summary.expected else ""

@@ -43,7 +43,7 @@ lambda = 100.0                 # of (21)-(22)
 beta = 1.0                     # of (22)
 epsilon_min = 2.0              # the target counts as reached within this (5)
 dt = 0.05                      # time step of plane and compiled games
-horizon = 100.0                # not captured until then: escaped
+horizon = 100.0                # not captured until then: escaped, or denied its target
 separation = 0.0               # pursuers keep this apart (Figure 8b); 0 = off
 
 [flight]                       # only for serve and fly

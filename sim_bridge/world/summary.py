@@ -30,7 +30,7 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
     scenario_hash: str
     seed: int
     mode: str  # fast | real
-    verdict: str  # captured | arrived | escaped | aborted | none
+    verdict: str  # captured | arrived | denied | escaped | aborted | none
     reason: str
     time: float  # of the verdict, since t₀ [s]
     captor: int  # id, 0 = nobody

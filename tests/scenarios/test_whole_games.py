@@ -118,4 +118,4 @@ async def test_no_agent_is_ever_handed_what_it_must_not_know_and_a_late_comer_le
         late.subscribe(OUTCOME.key(game.game), lambda sample: heard.append(sample.payload))
         await game.forward(1.0, until=lambda: bool(heard))
         assert OUTCOME.decode(heard[0], game.observer.drops) == outcome
-        assert (outcome.verdict, outcome.time) == (OutcomeResult.ESCAPED, 2.0)
+        assert (outcome.verdict, outcome.time) == (OutcomeResult.DENIED, 2.0)

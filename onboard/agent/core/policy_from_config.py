@@ -165,7 +165,12 @@ def contradiction(
 def game_setup(
     config: AgentConfig, setup: Setup, target: Vec | None, hovers: bool, own: FlightLimits = UNKNOWN_LIMITS
 ) -> GameSetup:
-    """The game as the pilot is told it. Climb limits of the own vehicle narrow its pitch band."""
+    """The game as the pilot is told it. Climb limits of the own vehicle narrow its pitch band.
+
+    `target` is the evader's brief; a pursuer knows the target from the setup, where the rules say so.
+    """
+    if config.role is Role.PURSUER:
+        target = Vec(*setup.target) if setup.rules.target_known and setup.target is not None else None
     envelope = envelope_of(config, member_of(setup, config.id), hovers, own)
     players: list[Player] = []
     for member in setup.roster:

@@ -16,10 +16,12 @@ from onboard.core.game.views import (
     Nearest,
     PursuerView,
     Sighting,
+    Team,
     evader_view,
     nearest_mate,
     pursuer_view,
     sighted,
+    told,
 )
 from onboard.core.math.each import each, each_pair
 from onboard.core.math.states import Vehicle, VehicleLimits
@@ -57,17 +59,10 @@ EvaderStrategy = Callable[[EvaderView], Decision]
 PursuerStrategy = Callable[[PursuerView], Decision]
 
 
-class Seat(NamedTuple):
-    """One pursuer with what belongs to it."""
-
-    own: Vehicle
-    limits: VehicleLimits
-    mate: Nearest
-
-
 class Field(NamedTuple):
     """What all pursuers' decisions share."""
 
+    game: Game
     sighting: Sighting  # of the evader, with its new heading
     conditions: Conditions
     decide: PursuerStrategy
@@ -83,6 +78,11 @@ def positions(vehicles: tuple[Vehicle, ...]) -> tuple[Vec, ...]:
     return each(position_of, vehicles, 0.0)
 
 
+def speed_of(vehicle: Vehicle, _index: int, _shared: float) -> float:
+    """Speed that the game reckons with [m/s] (for `each`)."""
+    return vehicle.speed
+
+
 def begin(
     evader: Vehicle,
     pursuers: tuple[Vehicle, ...],
@@ -95,30 +95,21 @@ def begin(
     )
 
 
-def alone(own: Vehicle, limits: VehicleLimits, _shared: float) -> Seat:
-    """A pursuer that need not look for team mates (for `each_pair`)."""
-    return Seat(own, limits, Nearest(False, own.position))
-
-
-def beside_mates(seat: Seat, index: int, places: tuple[Vec, ...]) -> Seat:
-    """Pursuer `index` with its nearest team mate among the places of all pursuers (for `each`)."""
-    return Seat(seat.own, seat.limits, nearest_mate(seat.own.position, places, index))
-
-
-def seats(game: Game, rules: Rules) -> tuple[Seat, ...]:
-    """All pursuers; with their nearest team mates where a separation is kept."""
-    plain = each_pair(alone, game.pursuers, game.pursuer_limits, 0.0)
+def team_of(own: Vehicle, index: int, pursuers: tuple[Vehicle, ...], conditions: Conditions) -> Team:
+    """What pursuer `index` knows of its side; its nearest mate only where a separation is kept."""
+    rules = conditions.rules
+    mate = Nearest(False, own.position)
     if rules.separation > 0.0:
-        return each(beside_mates, plain, positions(game.pursuers))
-    return plain
+        mate = nearest_mate(own.position, positions(pursuers), index)
+    return Team(mate, pursuers, index, told(conditions.target, rules))
 
 
-def decide_one(seat: Seat, _index: int, field: Field) -> Decision:
-    """One pursuer's decision (for `each`)."""
-    conditions = field.conditions
-    view = pursuer_view(
-        seat.own, seat.limits, field.sighting, seat.mate, conditions.control, conditions.rules
-    )
+def decide_one(own: Vehicle, index: int, field: Field) -> Decision:
+    """Pursuer `index`'s decision (for `each`)."""
+    game, conditions = field.game, field.conditions
+    team = team_of(own, index, game.pursuers, conditions)
+    limits = game.pursuer_limits[index]
+    view = pursuer_view(own, limits, field.sighting, team, conditions.control, conditions.rules)
     return field.decide(view)
 
 
@@ -126,7 +117,7 @@ def decide_pursuers(
     game: Game, sighting: Sighting, conditions: Conditions, decide: PursuerStrategy
 ) -> tuple[Decision, ...]:
     """All pursuers' decisions against the evader as they see it."""
-    return each(decide_one, seats(game, conditions.rules), Field(sighting, conditions, decide))
+    return each(decide_one, game.pursuers, Field(game, sighting, conditions, decide))
 
 
 def moved(vehicle: Vehicle, decision: Decision, dt: float) -> Vehicle:
@@ -167,6 +158,8 @@ def judged(before: Game, evader: Vehicle, pursuers: tuple[Vehicle, ...], conditi
         evader.position,
         positions(before.pursuers),
         positions(pursuers),
+        before.evader.speed,
+        each(speed_of, before.pursuers, 0.0),
     )
     score = judge(before.score, step, conditions.rules, conditions.target)
     return Game(before.time + dt, evader, pursuers, before.evader_limits, before.pursuer_limits, score)

@@ -7,6 +7,7 @@ from math import sqrt
 from typing import NamedTuple
 
 from onboard.core.game.rules import Rules, Target
+from onboard.core.geometry.apollonius import in_time
 from onboard.core.math.vectors import TINY, Vec, sub
 
 
@@ -16,7 +17,8 @@ class GameResult(IntEnum):
     RUNNING = 0
     CAPTURED = 1  # (6)
     ARRIVED = 2  # (5)
-    ESCAPED = 3  # not captured at the horizon
+    ESCAPED = 3  # not captured at the horizon, and no target was held
+    DENIED = 4  # neither captured nor arrived at the horizon, when a pursuer can be at the target first
 
 
 class Passage(NamedTuple):
@@ -79,17 +81,20 @@ class Step(NamedTuple):
     e1: Vec  # and at the end
     before: tuple[Vec, ...]  # the pursuers at the start
     after: tuple[Vec, ...]  # and at the end, in the same order
+    speed: float = 0.0  # of the evader, as the game reckons with it [m/s]; 0 = not known
+    speeds: tuple[float, ...] = ()  # of the pursuers, in the same order; none = not known
 
 
 def judge(score: Score, step: Step, rules: Rules, target: Target) -> Score:
     """The score after one more step.
 
     Whatever comes first within the step decides: capture (6), arrival (5), the horizon. On a
-    tie capture stands. `target` lies on the ground, as the places of the step do [m; NED].
+    tie capture stands. At the horizon the target is denied where `held` says so, else the evader has escaped.
+    `target` lies on the ground, as the places of the step do [m; NED].
     """
     if score.verdict != GameResult.RUNNING:
         return score
-    start, dt, e0, e1, before, after = step
+    start, dt, e0, e1, before, after, _speed, _speeds = step
     smallest = score.smallest
     near = False
     captor = -1
@@ -114,8 +119,25 @@ def judge(score: Score, step: Step, rules: Rules, target: Target) -> Score:
             smallest = min(score.smallest, _nearest(arrival.entry, e0, e1, before, after))
             return Score(GameResult.ARRIVED, start + arrival.entry * dt, -1, smallest, unsafe)
     if share <= 1.0 + 1e-9:
-        return Score(GameResult.ESCAPED, rules.horizon, -1, smallest, unsafe)
+        kept = target.exists and held(step, min(1.0, share), target.position)
+        result = GameResult.DENIED if kept else GameResult.ESCAPED
+        return Score(result, rules.horizon, -1, smallest, unsafe)
     return Score(GameResult.RUNNING, start + dt, -1, smallest, unsafe)
+
+
+def held(step: Step, share: float, place: Vec) -> bool:
+    """Whether a pursuer can be at a place [m] no later than the evader, that share of a step later.
+
+    It is the test of time to block (`in_time`), by which a defender wins the game of degree of a target that
+    does not move: what is held at the horizon is not had by flying straight at it.
+    """
+    e = _part(step.e0, step.e1, share)
+    for index in range(len(step.before)):
+        p = _part(step.before[index], step.after[index], share)
+        speed = step.speeds[index] if index < len(step.speeds) else 0.0
+        if in_time(place, p, speed, e, step.speed):
+            return True
+    return False
 
 
 def _part(a: Vec, b: Vec, share: float) -> Vec:

@@ -15,13 +15,14 @@ class Rules(NamedTuple):
     lambda_: float = 100.0  # λ of (21)–(22)
     beta: float = 1.0  # β of (22)
     epsilon_min: float = 1.0  # ε_min of (5): the target counts as reached within this [m]
-    horizon: float = 100.0  # an evader that is not captured until then has escaped [s]
+    horizon: float = 100.0  # the game ends then: whoever is not captured has escaped, or was denied [s]
     separation: float = 0.0  # distance that pursuers keep from each other [m]; 0 = off (Figure 8b)
     planar: bool = False  # a game in the plane: heights count neither for decisions nor for the referee
+    target_known: bool = False  # whether the pursuers know where the evader's target is
 
 
 class Target(NamedTuple):
-    """The evader's target g. It stands apart from the rules because the pursuers must not know it."""
+    """The evader's target g. Apart from the rules: pursuers know it only where the rules say so."""
 
     exists: bool  # whether the evader has a target at all
     position: Vec  # [m; NED]

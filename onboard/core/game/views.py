@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from onboard.core.game.rules import Control, Rules, Target
+from onboard.core.game.rules import NO_TARGET, Control, Rules, Target
 from onboard.core.geometry.apollonius import intercept
 from onboard.core.geometry.cones import Cone, blocked_cones
 from onboard.core.math.states import Vehicle, VehicleLimits
@@ -42,6 +42,15 @@ class Nearest(NamedTuple):
     position: Vec  # [m; NED]
 
 
+class Team(NamedTuple):
+    """What a pursuer knows of its own side."""
+
+    mate: Nearest
+    members: tuple[Vehicle, ...]  # all pursuers that it knows of, itself among them
+    own_index: int  # its own among the members
+    target: Target  # the evader's, where the rules let the pursuers know it
+
+
 class PursuerView(NamedTuple):
     """A situation as a pursuer sees it, in the moving air mass."""
 
@@ -54,6 +63,9 @@ class PursuerView(NamedTuple):
     mate: Nearest
     control: Control
     rules: Rules
+    members: tuple[Vehicle, ...] = ()  # all pursuers that it knows of, itself among them
+    own_index: int = -1  # its own among the members
+    target: Target = NO_TARGET  # the evader's, where the pursuers know it
 
 
 def level(v: Vec, planar: bool) -> Vec:
@@ -123,8 +135,13 @@ def nearest_mate(own: Vec, mates: tuple[Vec, ...], but: int) -> Nearest:
     return Nearest(exists, position)
 
 
+def told(target: Target, rules: Rules) -> Target:
+    """The evader's target as the pursuers know it: not at all, unless the rules say so."""
+    return Target(target.exists and rules.target_known, target.position)
+
+
 def pursuer_view(
-    own: Vehicle, limits: VehicleLimits, sighting: Sighting, mate: Nearest, control: Control, rules: Rules
+    own: Vehicle, limits: VehicleLimits, sighting: Sighting, team: Team, control: Control, rules: Rules
 ) -> PursuerView:
     """The situation as a pursuer sees it."""
     return PursuerView(
@@ -134,7 +151,10 @@ def pursuer_view(
         sighting.heading,
         sighting.has_prediction,
         sighting.prediction,
-        mate,
+        team.mate,
         control,
         rules,
+        team.members,
+        team.own_index,
+        team.target,
     )

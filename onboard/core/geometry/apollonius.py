@@ -29,6 +29,17 @@ class Meeting(NamedTuple):
     miss: float  # distance left at T [m]; 0 for an intercept
 
 
+def in_time(place: Vec, p: Vec, v_p: float, e: Vec, v_e: float) -> bool:
+    """Whether a pursuer can be at a place [m] no later than the evader: |p − g| / v_p ≤ |e − g| / v_e.
+
+    The test of time to block: an evader that flies straight at the place is met there or before. Where either
+    speed is not known (0 or less) the two count as equally fast.
+    """
+    if v_p <= 0.0 or v_e <= 0.0:
+        return distance(p, place) <= distance(e, place)
+    return distance(p, place) * v_e <= distance(e, place) * v_p
+
+
 def apollonius_sphere(e: Vec, v_e: float, p: Vec, v_p: float) -> Sphere:
     """Sphere (11) of evader place `e` [m] with speed `v_e` and pursuer place `p` with `v_p` [m/s].
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from math import acos, atan2, cos, pi, sin, sqrt
 from typing import NamedTuple
 
-from onboard.core.geometry.apollonius import intercept
+from onboard.core.geometry.apollonius import in_time, intercept
 from onboard.core.geometry.cones import Cone, blocked_cones, is_free, perpendicular
 from onboard.core.math.angles import wrap
 from onboard.core.math.states import Vehicle
@@ -20,7 +20,6 @@ from onboard.core.math.vectors import (
     along,
     angle_between,
     cross,
-    distance,
     dot,
     norm,
     scale,
@@ -204,8 +203,8 @@ def prospect(
         pursuer.position.z - evader.position.z,
     ))
     meets = meeting.exists and (closing > 0.0 or pursuer.speed >= evader.speed)
-    denies = has_target and (
-        distance(pursuer.position, target) * evader.speed <= distance(evader.position, target) * pursuer.speed
+    denies = has_target and in_time(
+        target, pursuer.position, pursuer.speed, evader.position, evader.speed
     )
     return Prospect(meets, meeting.time if meets else -1.0, denies, half_angle(cone))
 

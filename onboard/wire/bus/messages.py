@@ -62,6 +62,7 @@ class OutcomeResult(Enum):
     CAPTURED = "captured"
     ARRIVED = "arrived"  # at its target
     ESCAPED = "escaped"  # not captured within the horizon
+    DENIED = "denied"  # nor arrived: at the horizon a pursuer can be at its target first
     ABORTED = "aborted"  # ended without a result
 
 
@@ -139,7 +140,7 @@ class Fence(Message, frozen=True):
 
 
 class Setup(Message, frozen=True):
-    """`game/setup`: everything but the evader's target."""
+    """`game/setup`: everything but the evader's target, unless the rules say that the pursuers know it."""
 
     game: str  # name of the game, as in the topics
     scenario: str  # name
@@ -153,6 +154,7 @@ class Setup(Message, frozen=True):
     seed: int = 0
     field_profile: bool = False  # altitude layers, capture judged horizontally
     nonce: int = 0  # of the master's process, as in `Master`
+    target: Triple | None = None  # the evader's [m; NED], where the rules let the pursuers know it
 
     @property
     def flat(self) -> bool:

@@ -212,7 +212,8 @@ _GAME = (Party.ANY_AGENT, Party.STATION)
 _GROUND = (Party.MASTER, Party.STATION)
 
 SETUP = Topic(
-    "game/setup", Setup, Delivery.CACHED, (Party.MASTER,), _GAME, "everything but the evader's target"
+    "game/setup", Setup, Delivery.CACHED, (Party.MASTER,), _GAME,
+    "the game; the evader's target where pursuers may know it",
 )
 PHASE = Topic("game/phase", PhaseChange, Delivery.CACHED, (Party.MASTER,), _GAME, "phase and t₀")
 OUTCOME = Topic("game/outcome", Outcome, Delivery.CACHED, (Party.MASTER,), _GAME, "how the game ended")

@@ -67,8 +67,18 @@ def test_the_pitch_that_the_game_reckons_with_is_that_of_climb_and_sink_over_spe
 
 def test_the_evader_that_has_a_target_is_told_that_it_has_one() -> None:
     place = Vec(300.0, 20.0, -40.0)
-    assert game_setup(COPTER, setup(), place, True).target == (True, place)
-    assert not game_setup(COPTER, setup(), None, True).target.exists
+    runner = COPTER.__class__(id=1, game="g", role=Role.EVADER)
+    assert game_setup(runner, setup(), place, True).target == (True, place)
+    assert not game_setup(runner, setup(), None, True).target.exists
+
+
+def test_a_pursuer_knows_the_target_from_the_setup_alone_and_only_where_the_rules_say_so() -> None:
+    brief, place = Vec(300.0, 20.0, -40.0), (7.0, 8.0, -40.0)
+    known = RulesMessage(2.0, 4.0, target_known=True)
+    assert not game_setup(COPTER, setup(), brief, True).target.exists
+    assert not game_setup(COPTER, setup(target=place), brief, True).target.exists
+    assert not game_setup(COPTER, setup(rules=known), brief, True).target.exists
+    assert game_setup(COPTER, setup(rules=known, target=place), None, True).target == (True, Vec(*place))
 
 
 @pytest.mark.parametrize(("may_arm", "up"), [(True, 25.0), (False, None)])

@@ -18,8 +18,8 @@ from onboard.agent import strategy_child
 from onboard.agent.core.events import Answered, Load, Loaded, Think
 from onboard.agent.strategy_child import ANSWER_S, ApartThinker
 from onboard.agent.thinker import Thinker
-from onboard.core.game.rules import Control, Rules
-from onboard.core.game.views import PursuerView, Sighting, nearest_mate, pursuer_view
+from onboard.core.game.rules import NO_TARGET, Control, Rules
+from onboard.core.game.views import PursuerView, Sighting, Team, nearest_mate, pursuer_view
 from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import ZERO, Vec
 from onboard.core.strategy.registry import DEFAULT, PURSUERS
@@ -35,7 +35,7 @@ def view() -> PursuerView:
     evader = Vehicle(Vec(50.0, 20.0, -30.0), Vec(3.0, 0.0, 0.0), 4.0)
     own = Vehicle(Vec(0.0, 0.0, -30.0), Vec(1.0, 1.0, 0.0), 6.0)
     sighting = Sighting(evader, Vec(1.0, 0.0, 0.0), False, ZERO)
-    alone = nearest_mate(own.position, (), -1)
+    alone = Team(nearest_mate(own.position, (), -1), (own,), 0, NO_TARGET)
     return pursuer_view(own, VehicleLimits(), sighting, alone, Control(), Rules(R=5.0, rho=10.0))
 
 

@@ -218,6 +218,14 @@ def test_an_evader_that_nobody_catches_has_escaped_at_the_horizon() -> None:
     assert field.outcome().time == 30.0
 
 
+def test_a_target_that_a_pursuer_holds_at_the_horizon_is_denied() -> None:
+    field = Range(target=Vec(0, 400, -50))
+    field.places[2] = Vec(0.0, 390.0, -50.0)
+    field.begin()
+    field.fly(40.0)
+    assert (field.outcome().verdict, field.outcome().time) == (OutcomeResult.DENIED, 30.0)
+
+
 PLANE = RulesMessage(5.0, 10.0, horizon=30.0, planar=True)
 
 

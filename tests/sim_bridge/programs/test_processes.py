@@ -67,10 +67,10 @@ def test_an_agent_killed_in_flight_is_started_again_and_the_game_goes_on(tmp_pat
     (folder,) = (tmp_path / "runs").iterdir()
     assert "agent 2 ended with code -9 and is started again (see agent-2.log)" in out
     assert "agent 2 was started again and may act again" in out
-    assert f"the evader escaped: not captured within {horizon:g} s" in out
+    assert f"the target was denied: neither arrived nor captured within {horizon:g} s" in out
     summary = json.loads((folder / "summary.json").read_bytes())
     timing = json.loads((folder / "timing.json").read_bytes())
-    assert (summary["mode"], summary["verdict"], summary["time"]) == ("real", "escaped", horizon)
+    assert (summary["mode"], summary["verdict"], summary["time"]) == ("real", "denied", horizon)
     assert [v["stage"] for v in summary["vehicles"]] == ["ended", "ended"]
     assert timing["agents_started_again"] == 1
     assert set(timing["agents"]) == {"1", "2"}

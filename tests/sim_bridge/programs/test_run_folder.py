@@ -73,7 +73,7 @@ def test_the_folder_holds_what_was_played_with_what_and_how_it_ended(twice: list
     assert [configuration[id]["role"] for id in ("1", "2")] == ["evader", "pursuer"]
     assert re.fullmatch(r"\d{8}T\d{6}Z-short", folder.name)
     assert f"run folder: {folder}" in said
-    assert "the evader escaped: not captured within 3 s" in said
+    assert "the target was denied: neither arrived nor captured within 3 s" in said
 
 
 def nothing_empty(value: object) -> bool:
@@ -135,7 +135,7 @@ def test_the_summary_knows_neither_the_wall_clock_nor_a_path(twice: list[tuple[P
     (folder, _), _ = twice
     text = (folder / "summary.json").read_text(encoding="utf-8")
     summary, timing = json.loads(text), json.loads((folder / "timing.json").read_bytes())
-    assert (summary["verdict"], summary["time"], summary["mode"]) == ("escaped", 3.0, "fast")
+    assert (summary["verdict"], summary["time"], summary["mode"]) == ("denied", 3.0, "fast")
     evader, pursuer = summary["vehicles"]
     assert pursuer["smallest_distance"] == pytest.approx(84.0, abs=10.0)
     assert evader["smallest_distance"] is None

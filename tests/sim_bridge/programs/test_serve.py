@@ -111,7 +111,7 @@ async def test_a_served_game_from_the_first_heartbeat_to_the_outcome(tmp_path: P
             for task in beating:
                 task.cancel()
         assert outcome is not None
-        assert outcome.verdict == OutcomeResult.ESCAPED
+        assert outcome.verdict == OutcomeResult.DENIED
         assert setup.samples
         assert len(tracks.samples) > 5
         assert said[0] == "served: 2 vehicles, game 'game', seed 0"

@@ -82,11 +82,11 @@ async def test_a_whole_game_from_staging_to_recovery() -> None:
     ]  # fmt: skip
     outcome = OUTCOME.decode(stage.payloads(OUTCOME.key(GAME))[0], Counter())
     assert isinstance(outcome, Outcome)
-    assert (outcome.verdict, outcome.time, outcome.captor) == (OutcomeResult.ESCAPED, 6.0, 0)
+    assert (outcome.verdict, outcome.time, outcome.captor) == (OutcomeResult.DENIED, 6.0, 0)
     assert outcome.smallest_distance == pytest.approx(30.0, abs=0.1)
     assert stage.bridge.master is not None
     assert stage.bridge.master.rules.nearest == pytest.approx({2: 30.0, 3: 60.0}, abs=0.1)
-    assert stage.news[-2:] == ["ended: escaped", "recovery"]
+    assert stage.news[-2:] == ["ended: denied", "recovery"]
     assert not stage.bridge.master.drops
 
 
@@ -203,5 +203,5 @@ async def test_ground_positions_decide_not_what_tracks_say() -> None:
     await stage.play(12.0)
     outcome = OUTCOME.decode(stage.payloads(OUTCOME.key(GAME))[0], Counter())
     assert outcome is not None
-    assert outcome.verdict == OutcomeResult.ESCAPED
+    assert outcome.verdict == OutcomeResult.DENIED
     assert stage.bridge.world.motions[1].position == pytest.approx(Vec(0.0, 0.0, -50.0), abs=0.5)

@@ -83,6 +83,23 @@ def test_at_the_horizon_the_evader_has_escaped_and_later_captures_do_not_count()
     assert (score.verdict, score.time) == (GameResult.ESCAPED, 100.0)
 
 
+@pytest.mark.parametrize(("place", "speed", "result"), [
+    (9.0, 4.0, GameResult.DENIED),  # 30/5 s to the target for the evader; 21/4 s for the pursuer
+    (5.9, 4.0, GameResult.ESCAPED),  # 24.1/4 s: too late by 0.03 s
+    (6.1, 4.0, GameResult.DENIED),
+    (-20.0, 0.0, GameResult.ESCAPED),  # no speed declared: distances count
+    (1.0, 0.0, GameResult.DENIED),
+])  # fmt: skip
+def test_a_target_that_a_pursuer_holds_at_the_horizon_is_denied(place, speed, result):
+    guard = (Vec(place, 50.0, 0.0), Vec(-400.0, 0.0, 0.0))
+    goal = Vec(30.0, 50.0, 0.0)
+    e = Vec(0.0, 50.0, 0.0)
+    still = Step(99.5, 1.0, e, e, guard, guard, 5.0, (speed, speed))
+    rules = Rules(0.5, 1.0, horizon=100.0)
+    assert judge(FRESH, still, rules, Target(True, goal)).verdict == result
+    assert judge(FRESH, still, rules, Target(False, goal)).verdict == GameResult.ESCAPED
+
+
 def test_a_verdict_stands():
     done = Score(GameResult.ARRIVED, 3.0, -1, 7.0, 0.0)
     guard = (ZERO,)

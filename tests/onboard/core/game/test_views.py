@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from onboard.core.game.rules import NO_TARGET, Control, Rules, Target
 from onboard.core.game.views import (
     Nearest,
+    Team,
     evader_view,
     heading_at,
     level,
@@ -26,6 +27,7 @@ from tests.support.random_situations import points, pursuers
 
 RULES = Rules(R=2.0, rho=4.0)
 OWN = Vehicle(ZERO, Vec(5.0, 0.0, 0.0), 5.0)
+ALONE = Team(Nearest(False, ZERO), (OWN,), 0, NO_TARGET)
 
 
 @settings(max_examples=200, deadline=None)
@@ -75,7 +77,7 @@ def test_the_nearest_mate_is_nearest_and_not_the_one_left_out(
 def test_a_pursuer_sees_the_evader_and_where_it_will_be() -> None:
     evader = Vehicle(Vec(10.0, 0.0, 0.0), Vec(0.0, 4.0, 0.0), 4.0)
     seen = sighted(evader, heading_at(evader), 2.0)
-    view = pursuer_view(OWN, FREE, seen, Nearest(False, ZERO), Control(0.05, 2.0), RULES)
+    view = pursuer_view(OWN, FREE, seen, ALONE, Control(0.05, 2.0), RULES)
     assert view.prediction == Vec(10.0, 8.0, 0.0)
     assert (view.evader, view.heading, view.has_prediction) == (evader, Vec(0.0, 1.0, 0.0), True)
 
