@@ -132,6 +132,11 @@ def _rules(member: Member, roster: FieldRoster, table: Table) -> list[dict[str, 
             listening = ["declare_subscriber", "query", "liveliness_query", "declare_liveliness_subscriber"]
             allow(back, listening, asked)
         whole += use is Use.READ and member.vehicle is None
+    # Who writes must learn who listens, by whatever pattern, now or later: else its messages stay with it.
+    # What it may put, and what is sent to it, the lines above name.
+    below = everything(roster.game)
+    allow("egress", ["declare_subscriber"], [below, f"{below}/@adv/**"])
+    allow("egress", ["query", "liveliness_query", "declare_liveliness_subscriber"], [f"{below}/@adv/**"])
     if whole:  # a station listens to the whole game, and is sent what the lines above name
         every = f"{everything(roster.game)}/@adv/**"
         allow("ingress", ["declare_subscriber"], [everything(roster.game), every])

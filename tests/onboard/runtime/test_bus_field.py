@@ -9,7 +9,7 @@ import pytest
 
 from onboard.runtime.bus_field import FieldBus
 from onboard.runtime.bus_zenoh import ZenohBus, open_zenoh
-from onboard.wire.bus.topics import COMMAND, STATE, Delivery
+from onboard.wire.bus.topics import COMMAND, DECISION, EVENTS, SETUP, STATE, Delivery, everything
 from tests.support.field_keys import Field
 from tests.support.real_time import until
 
@@ -112,3 +112,48 @@ async def test_a_session_without_an_echo_is_opened_again_and_everything_declared
     finally:
         await vehicle.close()
         await ground.close()
+
+
+EVERYTHING = everything(GAME)
+LATE = [  # (who writes, what and how it is delivered, who begins to listen after the first message, to what)
+    ("vehicle-2", EVENTS.key(GAME, 2), Delivery.EVENT, "ground", EVERYTHING),
+    ("vehicle-2", EVENTS.key(GAME, 2), Delivery.EVENT, "ground", "apollonius/range/vehicles/2/*"),
+    ("vehicle-2", EVENTS.key(GAME, 2), Delivery.EVENT, "second", EVERYTHING),
+    ("vehicle-2", EVENTS.key(GAME, 2), Delivery.EVENT, "second", EVENTS.key(GAME)),
+    ("vehicle-2", DECISION.key(GAME, 2), Delivery.LATEST, "ground", EVERYTHING),
+    ("vehicle-2", DECISION.key(GAME, 2), Delivery.LATEST, "second", "apollonius/range/*/2/decision"),
+    ("ground", SETUP.key(GAME), Delivery.CACHED, "vehicle-3", SETUP.key(GAME)),
+    ("ground", SETUP.key(GAME), Delivery.CACHED, "second", EVERYTHING),
+    ("vehicle-2", OWN, Delivery.LATEST, "vehicle-3", OWN),
+]
+
+
+@pytest.mark.real
+async def test_who_begins_to_listen_late_hears_what_is_written_from_then_on(tmp_path: Path) -> None:
+    """A writer learns of every listener, whatever its pattern: the access rules let the news through."""
+    field = Field(tmp_path / "keys").make()
+    names = ("ground", "second", "vehicle-2", "vehicle-3")
+    buses = dict(zip(names, await members(field, *names), strict=True))
+    for bus in buses.values():
+        bus._path.put = lambda *_: None  # type: ignore[method-assign]
+    try:
+        for writer, key, delivery, *_ in LATE:
+            buses[writer].publish(key, b"before", delivery)
+        await asyncio.sleep(0.5)
+        heard: list[list[bytes]] = [[] for _ in LATE]
+        for (_, key, _, hearer, pattern), found in zip(LATE, heard, strict=True):
+            buses[hearer].subscribe(
+                pattern, lambda s, key=key, found=found: found.append(s.payload) if s.key == key else None
+            )
+        await asyncio.sleep(0.5)
+        for _ in range(40):
+            for writer, key, delivery in {row[:3]: None for row in LATE}:
+                buses[writer].publish(key, b"after", delivery)
+            await asyncio.sleep(0.1)
+            if all(b"after" in found for found in heard):
+                break
+        deaf = [row for row, found in zip(LATE, heard, strict=True) if b"after" not in found]
+        assert not deaf
+    finally:
+        for bus in [*buses.values()][::-1]:
+            await bus.close()
