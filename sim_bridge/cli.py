@@ -15,7 +15,7 @@ for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 
 import typer
 
-from onboard.config.bounds import Epochs, PositiveDuration, Seed, TimeStep
+from onboard.config.bounds import Epochs, PositiveDistance, PositiveDuration, Seed, TimeStep
 from onboard.config.printable import printable
 from onboard.config.strict import ConfigError
 from onboard.runtime import options
@@ -203,6 +203,36 @@ def scenario_check(scenario: ScenarioArgument) -> None:
     found = load(file)
     demand_strategies(found, str(file))
     print(check(found))
+
+
+@scenario_app.command(
+    "stage",
+    epilog="Examples: sim-bridge scenario stage spatial/six ring.toml"
+    " | sim-bridge scenario stage mine.toml ring.toml --seconds 60",
+)
+def scenario_stage(
+    scenario: ScenarioArgument,
+    file: Annotated[Path, typer.Argument(help="File to write; it must not exist.")],
+    seconds: Annotated[
+        float | None,
+        options.value(
+            PositiveDuration, "--seconds", words="Time to get there; none: as long as it takes.", unit="S"
+        ),
+    ] = None,
+    nearest: Annotated[
+        float | None,
+        options.value(
+            PositiveDistance,
+            "--nearest",
+            words="No nearer to the evader [10 rho; 17 rho in space].",
+            unit="M",
+        ),
+    ] = None,
+) -> None:
+    """Write the scenario with its pursuers on a ring that closes the evader's band, or say why none does."""
+    from sim_bridge.programs.scenario_band import stage_file
+
+    print(stage_file(shipped_file(scenario, SCENARIOS), file, seconds, nearest))
 
 
 @app.command(epilog="Examples: sim-bridge design | sim-bridge design coordinated --figures out")

