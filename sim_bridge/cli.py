@@ -1,4 +1,4 @@
-"""`sim-bridge`: the plane game, the simulated autopilots, whole games."""
+"""`sim-bridge`: the plane game, the simulated autopilots, whole games, campaigns."""
 
 from __future__ import annotations
 
@@ -22,6 +22,7 @@ from onboard.runtime import options
 from onboard.runtime.options import VersionOption
 from onboard.runtime.program import run
 from onboard.runtime.resources import AIRCRAFT, SCENARIOS, shipped_file
+from sim_bridge.programs.campaigns.cli import app as campaign_app
 from sim_bridge.programs.shipped_list import Listed
 
 ScenarioArgument = Annotated[
@@ -171,6 +172,8 @@ def list_(
 
     print("\n".join(lines(what)))
 
+
+app.add_typer(campaign_app, name="campaign")
 
 scenario_app = options.group(
     "Make and check scenario files.",

@@ -16,7 +16,6 @@ import typer
 
 import gcs.cli
 import onboard.cli
-import sim_bridge.campaign.__main__ as campaign
 import sim_bridge.cli
 from onboard.config.bounds import Latitude, Seed, SystemId
 from onboard.config.option_value import parsed
@@ -25,7 +24,7 @@ from onboard.runtime.resources import AIRCRAFT, SCENARIOS, configs, named_files,
 from onboard.wire.bus.messages import CommandKind
 from tests.support.real_time import patience
 
-APPLICATIONS = {"gcs": gcs.cli.app, "sim-bridge": sim_bridge.cli.app, campaign.NAME: campaign.app}
+APPLICATIONS = {"gcs": gcs.cli.app, "sim-bridge": sim_bridge.cli.app}
 MODULES = {"gcs": "gcs.cli", "sim-bridge": "sim_bridge.cli", "onboard-agent": "onboard.cli"}
 ROOT = Path(__file__).parent.parent
 

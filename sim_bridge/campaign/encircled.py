@@ -1,7 +1,7 @@
 """How often an encircled evader is captured: outcome 1 of 3.4.2, tried in plane games from random places.
 
 The paper says that an evader without a free ray is captured. It is so in most games, not in all.
-`python -m sim_bridge.campaign encircled` prints the shares.
+`sim-bridge campaign study encircled` prints the shares.
 """
 
 from __future__ import annotations

@@ -45,8 +45,8 @@ def play_seed(
     return play_drawn(draw(scenario, seed, t0, compiled), evasion, compiled)
 
 
-def play_drawn(d: Draw, evasion: Evasion, compiled: bool = True) -> Played:
-    """Play a drawn game out. It uses up the draw's tracks."""
+def play_drawn(d: Draw, evasion: int, compiled: bool = True) -> Played:
+    """Play a drawn game out. It uses up the draw's tracks; `evasion`: the evader's way among its sides."""
     log = np.zeros((d.steps, len(d.players), 5))
     sides = d.sides
     chosen = sides.chosen._replace(evader=int(evasion))

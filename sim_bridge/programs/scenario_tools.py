@@ -132,7 +132,7 @@ def _freedom(scenario: Scenario) -> list[str]:
         return [
             "free rays at the start: none, the evader is encircled. By outcome 1 of 3.4.2 it is captured;",
             "  from places drawn at random more than a quarter of such evaders are not: "
-            "python -m sim_bridge.campaign encircled",
+            "sim-bridge campaign study encircled",
         ]
     if rules.planar:
         gaps = ", ".join(

@@ -99,6 +99,7 @@ def commands(folder: Path) -> list[Command]:
     track.write_text(f"t,north,east,down\n{rows}", "utf-8")
     bus, runs = ("--bus", free_endpoint()), ("--runs", str(folder / "runs"))
     s, agent, frames = str(scenario), str(base), str(folder / "accept.tlog")
+    campaign, games = ("sim_bridge.cli", "campaign"), str(folder / "games")
     lists: list[tuple[tuple[str, ...], str, bool]] = [
         (("sim_bridge.cli",), "", False),
         (("sim_bridge.cli", "list"), "", False),
@@ -112,8 +113,11 @@ def commands(folder: Path) -> list[Command]:
         (("sim_bridge.cli", "design"), "", False),
         (("sim_bridge.cli", "design", "ARGUMENT"), "ARGUMENT", False),
         (("sim_bridge.cli", "predict", str(track)), str(track), False),
-        (("sim_bridge.campaign", "encircled", "--games", "0"), "", False),
-        (("sim_bridge.campaign", "games", "--seeds", "1", "--scenario", "ARGUMENT"), "ARGUMENT", False),
+        ((*campaign, "study", "encircled", "--games", "0"), "", False),
+        ((*campaign, "study", "games", "--seeds", "1", "--scenario", "ARGUMENT"), "ARGUMENT", False),
+        ((*campaign, "ARGUMENT", "--games", "1", "--out", games), "ARGUMENT", False),
+        ((*campaign, "row01", "--sweep", "ARGUMENT", "--out", games), "ARGUMENT", False),
+        ((*campaign, "show", "ARGUMENT"), "ARGUMENT", False),
         (("gcs.cli", *bus), "", False),
         (("gcs.cli", "--plain", *bus, *runs), "", True),
         (("gcs.cli", "--config", "ARGUMENT", "status"), "ARGUMENT", False),

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 from tests.support.paths import RESULTS, ROOT
 
-CAMPAIGN = ("-m", "sim_bridge.campaign")
+CAMPAIGN = ("-m", "sim_bridge.cli", "campaign", "study")
+INTO = ("--out", "benchmarks/results")
 
 
 @dataclass(frozen=True)
@@ -33,18 +34,18 @@ class Figure:
 FIGURES = (
     Figure(
         "encircled.md",
-        (*CAMPAIGN, "encircled", "--games", "400", "--seed", "1"),
+        (*CAMPAIGN, "encircled", "--games", "400", "--seed", "1", *INTO),
         ("sim_bridge.campaign.encircled",),
     ),
     Figure(
         "games.md",
-        (*CAMPAIGN, "games", "--seeds", "200", "--figures", "docs/pictures"),
+        (*CAMPAIGN, "games", "--seeds", "200", "--figures", "docs/pictures", *INTO),
         ("sim_bridge.campaign.spatial_campaign", "sim_bridge.campaign.figures"),
         ("configs/scenarios/spatial/five.toml", "configs/scenarios/spatial/six.toml"),
     ),
     Figure(
         "tracking.md",
-        (*CAMPAIGN, "tracking", "--seeds", "50"),
+        (*CAMPAIGN, "tracking", "--seeds", "50", *INTO),
         ("sim_bridge.campaign.tracking",),
         ("configs/routes/twenty_km.toml",),
     ),

@@ -134,4 +134,4 @@ def test_who_reads_encircled_reads_that_it_is_no_proof_of_capture(tmp_path: Path
     said = check(load(path))
     assert "the evader is encircled" in said
     assert "more than a quarter of such evaders are not" in said
-    assert "python -m sim_bridge.campaign encircled" in said
+    assert "sim-bridge campaign study encircled" in said

@@ -1,19 +1,12 @@
-"""`python -m sim_bridge.campaign`: the tracking comparison and the spatial games, results into a folder."""
+"""`sim-bridge campaign study`: the committed comparisons of the paper's claims, a page of Markdown each."""
 
 from __future__ import annotations
-
-from onboard.runtime.early import one_line_interrupts
-
-one_line_interrupts("python -m sim_bridge.campaign", __name__)
 
 import os
 import platform
 import sys
 from pathlib import Path
 from typing import Annotated
-
-for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
-    os.environ.setdefault(_name, "1")
 
 import typer
 
@@ -23,14 +16,14 @@ from onboard.runtime.progress import Progress, over, part
 from onboard.runtime.resources import ROUTES, SCENARIOS, shipped_file
 from onboard.runtime.run_folder import made
 
-NAME = "python -m sim_bridge.campaign"
+NAME = "sim-bridge campaign study"
 app = group(
-    "The tracking comparison and the spatial games.",
-    add_completion=False,
-    epilog=f"Examples: {NAME} | {NAME} games --seeds 20 | {NAME} encircled",
+    "The comparisons of the paper's claims, a page of Markdown each.",
+    no_args_is_help=True,
+    epilog=f"Examples: {NAME} games --seeds 20 | {NAME} encircled",
 )
 SPATIAL = SCENARIOS.sought_first("spatial")
-RESULTS = Path("benchmarks/results")
+RESULTS = Path("runs/studies")
 Out = Annotated[Path, typer.Option(help="Folder for the results.")]
 
 
@@ -43,14 +36,6 @@ def preface(title: str, command: str) -> str:
         f"# {title}\n\n`{command}` on {platform.machine()} ({os.cpu_count()} cores), Python"
         f" {platform.python_version()}, NumPy {numpy.__version__}, numba {numba.__version__}.\n"
     )
-
-
-@app.callback(invoke_without_command=True)
-def both(context: typer.Context) -> None:
-    """The spatial game and the tracking comparison; without a command both, with their defaults."""
-    if context.invoked_subcommand is None:
-        games(200, None, Path("docs/pictures"), RESULTS)
-        tracking(50, Path("twenty_km"), RESULTS)
 
 
 @app.command(epilog=f"Example: {NAME} tracking --seeds 10 --out /tmp/results")
@@ -70,12 +55,12 @@ def tracking(
     made(out)
     flown = load_route(shipped_file(route, ROUTES))
     told = f"{flown.name} ({flown.description})" if flown.description else flown.name
-    text = preface("Tracking a timed route", f"python -m sim_bridge.campaign tracking --seeds {seeds}")
+    text = preface("Tracking a timed route", f"sim-bridge campaign study tracking --seeds {seeds}")
     text += (
         f"\nRoute {told}, mean wind 5 m/s from a direction drawn by the seed, gusts of 3 m/s rms;"
         f" {seeds} seeds, the same for every way. J = mean deviation / 10 m + mean |time error| / 1 s.\n"
     )
-    with Progress(NAME) as progress:
+    with Progress("sim-bridge") as progress:
         say = progress.aside(print)
         for number, aircraft in enumerate(("nose", "coordinated", "slip")):
             tell = part(progress.show, number, 3)
@@ -113,12 +98,12 @@ def games(
     contests = []
     for name, one in zip(names, scenarios, strict=True):
         print(f"{one.name}: {seeds} seeds, both ways", file=sys.stderr)
-        with Progress(NAME) as progress:
+        with Progress("sim-bridge") as progress:
             contests.append(contest(one, range(seeds), tell=progress.show))
         if figures is not None:
             for path in draw_stages(one, play_seed(one, 0, Evasion.STRATEGY), figures, f"spatial-{name}"):
                 print(f"drawn: {path}")
-    text = preface("The spatial game", f"python -m sim_bridge.campaign games --seeds {seeds}")
+    text = preface("The spatial game", f"sim-bridge campaign study games --seeds {seeds}")
     text += (
         "\nThe same seeds for both ways: a seed draws the pursuers' places about the scenario's, the"
         " direction of the mean wind, the gusts and the tracks' noise.\n\n" + table(contests) + "\n"
@@ -138,9 +123,9 @@ def encircled(
     from sim_bridge.campaign.spatial_campaign import output
 
     made(out)
-    with Progress(NAME) as progress:
+    with Progress("sim-bridge") as progress:
         found = room.table(room.shares(games, seed, tell=progress.show))
-    command = f"python -m sim_bridge.campaign encircled --games {games} --seed {seed}"
+    command = f"sim-bridge campaign study encircled --games {games} --seed {seed}"
     text = preface("Encircled, and then?", command)
     text += (
         f"\nPlane games at {room.PURSUER_SPEED:g} against {room.EVADER_SPEED:g} m/s, R = {room.R:g} m,"
@@ -174,7 +159,7 @@ def flown(
         " smallest distance [m] |",
         "|---|---|---|---|---|---|---|---|",
     ]
-    progress = Progress(NAME)
+    progress = Progress("sim-bridge")
     for seed in over(range(1, seeds + 1), progress.show, "games flown"):
         for evasion in Evasion:
             game = fly_game(path, seed, evasion, runs)
@@ -184,11 +169,5 @@ def flown(
                 f" {kernel.verdict.name.lower()} | {kernel.time:.1f} | {kernel.smallest:.0f} |"
             )
             progress.aside(print)(lines[-1])
-            text = preface("The spatial game, flown", f"python -m sim_bridge.campaign flown --seeds {seeds}")
+            text = preface("The spatial game, flown", f"sim-bridge campaign study flown --seeds {seeds}")
             output(out, "games-flown.md", text + f"\n{one.name}\n\n" + "\n".join(lines))
-
-
-if __name__ == "__main__":
-    from onboard.runtime.program import run
-
-    run(app, NAME)

@@ -1,0 +1,1 @@
+"""Campaigns: many games of scenarios, strategies, parameters and seeds, in a folder of shards that lasts."""

@@ -1,0 +1,96 @@
+"""One game of a campaign again: computed with its picture, or flown whole."""
+
+from __future__ import annotations
+
+import tempfile
+from math import isnan
+from pathlib import Path
+from typing import NamedTuple
+
+import msgspec
+
+from onboard.config.strict import ConfigError
+from onboard.game.scenario import Scenario
+from onboard.runtime.run_folder import made
+from sim_bridge.programs.campaigns import shards
+from sim_bridge.programs.campaigns.plan import Cell, Plan, is_spatial
+from sim_bridge.programs.campaigns.play import Row, drawn, simple_games, spatial_game, spatial_row
+from sim_bridge.programs.run_folder import toml_of
+
+
+class Game(NamedTuple):
+    """One game of a campaign."""
+
+    plan: Plan
+    cell: Cell
+    seed: int
+    kept: Row | None  # as its shard has it; None where that is missing
+
+
+def game_of(folder: Path, text: str) -> Game:
+    """The game `CELL:SEED` of a campaign's folder. Raises ConfigError."""
+    plan = shards.read_plan(folder)
+    first, colon, second = text.partition(":")
+    cells, seeds = plan.cell_count, range(plan.first_seed, plan.first_seed + plan.games)
+    right = bool(colon) and first.isdecimal() and second.isdecimal()
+    if not right or int(first) >= cells or int(second) not in seeds:
+        raise ConfigError(
+            f"GAME: found {text!r}, expected CELL:SEED, a cell from 0 to {cells - 1} (see show) and a seed"
+            f" from {seeds.start} to {seeds.stop - 1}"
+        )
+    number, seed = int(first), int(second)
+    shard = next(s for s in plan.shards() if number in s.cells and seed in s.seeds)
+    path = folder / shards.file_name(plan, shard)
+    kept = shards.row_of(path, number, seed) if path.exists() and shards.sound(path, plan, shard) else None
+    return Game(plan, plan.cell(number), seed, kept)
+
+
+def replay(game: Game, folder: Path) -> tuple[Row, list[Path]]:
+    """Play a game again and draw it. Returns how it ended now, and the pictures. Raises ConfigError."""
+    from sim_bridge.campaign.figures import draw_stages
+
+    cell, seed = game.cell, game.seed
+    if game.plan.flown:
+        raise ConfigError("replay: found a campaign of flights, expected a computed one (see `fly`)")
+    made(folder)
+    name = f"{cell.label}-{cell.number}-{seed}".replace("/", "-")
+    if is_spatial(cell.scenario):
+        played = spatial_game(game.plan, cell, seed)
+        return spatial_row(cell, seed, played), draw_stages(drawn(cell, seed), played, folder, name)
+    [row] = simple_games(cell, range(seed, seed + 1))
+    return row, _simple_picture(drawn(cell, seed), folder)
+
+
+def _simple_picture(scenario: Scenario, folder: Path) -> list[Path]:
+    from sim_bridge.plane_game.figures import draw_game
+    from sim_bridge.plane_game.program import play
+
+    if not scenario.planar:
+        return []
+    return draw_game(play(scenario, scenario.pursuers[0].strategy), folder)
+
+
+def agrees(game: Game, row: Row) -> bool:
+    """Whether a game played again is the one of its shard, number by number."""
+    if game.kept is None:
+        return True
+    return all(a == b or (isinstance(a, float) and isnan(a)) for a, b in zip(game.kept, row, strict=True))
+
+
+def scenario_file(game: Game) -> str:
+    """The game as a scenario file for `fly`, its draw written out."""
+    data = msgspec.to_builtins(drawn(game.cell, game.seed))
+    return toml_of(data)
+
+
+def fly(game: Game, runs: Path, report: bool) -> str:
+    """Fly a game whole on virtual time, agents included; the story of it."""
+    from sim_bridge.programs import fly as room
+
+    with tempfile.TemporaryDirectory() as place:
+        path = Path(place) / "scenario.toml"
+        path.write_text(scenario_file(game), encoding="utf-8")
+        return room.story(room.fly(path, room.Options(fast=True, runs=runs, report=report, quiet=True)))
+
+
+

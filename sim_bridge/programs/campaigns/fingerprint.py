@@ -1,0 +1,72 @@
+"""What a game's outcome depends on beside its scenario and seed: sources and versions."""
+
+from __future__ import annotations
+
+import inspect
+import platform
+from functools import cache
+from hashlib import sha256
+from importlib import metadata
+from pathlib import Path
+
+import msgspec
+
+from onboard.config.version import version
+from onboard.core.strategy.registry import EVADERS, PURSUERS
+from onboard.game.plugins import evader_strategy, plugins, pursuer_strategy
+
+ROOT = Path(__file__).resolve().parent.parent.parent.parent
+COMPUTED = (
+    "onboard/config", "onboard/core", "onboard/pilot", "onboard/game", "onboard/wire/geodesy.py",
+    "sim_bridge/draws.py", "sim_bridge/vehicle", "sim_bridge/plane_game", "sim_bridge/campaign",
+    "sim_bridge/programs/campaigns/play.py",
+)  # fmt: skip
+FLOWN = ("onboard", "sim_bridge", "gcs")
+PACKAGES = ("numpy", "numba", "llvmlite", "scipy", "pyarrow")
+
+
+class Fingerprint(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Sources and versions; equal ones give equal bytes on one kind of machine."""
+
+    sources: str  # SHA-256 of the sources that play
+    plugins: dict[str, str]  # of each strategy of another distribution: its release and sources
+    versions: dict[str, str]
+    machine: str
+
+
+def fingerprint(strategies: tuple[str, ...], *, flown: bool) -> Fingerprint:
+    """Of games with these strategies, computed or flown."""
+    own = {*EVADERS, *PURSUERS, ""}
+    foreign = sorted({name for name in strategies if name not in own})
+    told = dict(plugins())
+    versions = {"apollonius": version(), "python": platform.python_version()}
+    versions |= {name: metadata.version(name) for name in PACKAGES}
+    return Fingerprint(
+        sources(FLOWN if flown else COMPUTED),
+        {name: f"{told.get(name, '')} {_source_of(name)}" for name in foreign},
+        versions,
+        platform.machine(),
+    )
+
+
+@cache
+def sources(parts: tuple[str, ...]) -> str:
+    """SHA-256 of all Python sources and shipped aircraft below these paths."""
+    total = sha256()
+    for part in parts:
+        place = ROOT / part
+        for path in [place] if place.is_file() else sorted(place.rglob("*.py")):
+            total.update(f"{path.relative_to(ROOT).as_posix()}\0".encode() + path.read_bytes() + b"\0")
+    return total.hexdigest()
+
+
+def _source_of(name: str) -> str:
+    """SHA-256 of the file in which a plug-in's function stands, "" where it has none."""
+    for find in (pursuer_strategy, evader_strategy):
+        try:
+            file = inspect.getsourcefile(inspect.unwrap(find(name)))
+        except Exception:  # of the other role, or written in another language
+            continue
+        if file is not None:
+            return sha256(Path(file).read_bytes()).hexdigest()[:16]
+    return ""

@@ -1,0 +1,167 @@
+"""Plays the games of a shard: aircraft in their wind or simple motion, compiled, or whole flights."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import cache
+from typing import Any, NamedTuple
+
+from onboard.config.strict import ConfigError
+from onboard.core.game.advance import EvaderStrategy, PursuerStrategy
+from onboard.core.game.referee import GameResult
+from onboard.core.strategy.registry import EVADERS, PURSUERS
+from onboard.game.plugins import evader_strategy, pursuer_strategy
+from onboard.game.scenario import Scenario
+from onboard.runtime.progress import Tell, silent
+from sim_bridge.campaign.compiled import campaign, starts_of
+from sim_bridge.campaign.spatial_campaign import Played, play_drawn
+from sim_bridge.campaign.spatial_draw import Sides, draw, drawn_scenario
+from sim_bridge.campaign.spatial_game import Chosen
+from sim_bridge.plane_game.setup import conditions_of, game_of
+from sim_bridge.programs.campaigns.plan import Cell, Plan, Shard, is_spatial, spread_of
+
+
+class Row(NamedTuple):
+    """How one game ended; a column of a shard each."""
+
+    cell: int
+    seed: int
+    verdict: str
+    time: float  # of the verdict [s]
+    smallest: float  # distance of any pursuer [m]
+    captor: int  # number of the pursuer, counted from 1; 0 = nobody
+    unsafe: float  # time within the safety distance [s]; NaN where nobody measured it
+    reversals: int  # of the evader's flown course; −1 where they are not counted
+
+
+def rows(plan: Plan, shard: Shard, tell: Tell = silent) -> Iterator[Row]:
+    """All games of a shard, cell by cell. Raises ConfigError."""
+    for place, number in enumerate(shard.cells):
+        cell = plan.cell(number)
+        tell(place / len(shard.cells), f"cell {number}")
+        if plan.flown:
+            yield from (_flown(cell, seed) for seed in shard.seeds)
+        elif is_spatial(cell.scenario):
+            yield from (spatial_row(cell, seed, spatial_game(plan, cell, seed)) for seed in shard.seeds)
+        else:
+            yield from simple_games(cell, shard.seeds)
+
+
+def drawn(cell: Cell, seed: int) -> Scenario:
+    """The scenario of a game: the cell's, with what the seed draws."""
+    return drawn_scenario(cell.scenario, seed, spread_of(cell.scenario))
+
+
+# ---------------------------------------------------------------- aircraft in wind
+
+
+def spatial_game(plan: Plan, cell: Cell, seed: int) -> Played:
+    """One game of aircraft in their wind, with its paths."""
+    sides = _sides(cell, _shared(tuple((pair.evader, pair.pursuers) for pair in plan.pairs)))
+    one = draw(cell.scenario, seed)._replace(sides=sides)
+    return play_drawn(one, sides.chosen.evader)
+
+
+def spatial_row(cell: Cell, seed: int, played: Played) -> Row:
+    """How a game of aircraft ended."""
+    score = played.play.game.score
+    return Row(cell.number, seed, played.verdict.name.lower(), played.time, played.smallest,
+               int(score.captor) + 1, float(score.unsafe), played.reversals)  # fmt: skip
+
+
+class _Shared(NamedTuple):
+    """The strategies of the house that a campaign's one kernel holds."""
+
+    evaders: tuple[str, ...]
+    pursuers: tuple[str, ...]
+
+
+@cache
+def _shared(pairs: tuple[tuple[str, str], ...]) -> _Shared:
+    """Those of all pairs that are the core's own; a plug-in has a kernel for itself."""
+    return _Shared(
+        tuple(sorted({evader for evader, _pursuers in pairs} & set(EVADERS))),
+        tuple(sorted({pursuers for _evader, pursuers in pairs} & set(PURSUERS))),
+    )
+
+
+def _sides(cell: Cell, shared: _Shared) -> Sides:
+    """The strategies of a cell's kernel, and who flies by which."""
+    scenario = cell.scenario
+    names = [spec.strategy for spec in scenario.pursuers]
+    evaders, pursuers = shared
+    if scenario.evader.strategy not in evaders:
+        evaders = (scenario.evader.strategy,)
+    if not set(names) <= set(pursuers):
+        pursuers = tuple(sorted(set(names)))
+    chosen = Chosen(evaders.index(scenario.evader.strategy), tuple(pursuers.index(name) for name in names))
+    return Sides(
+        tuple(evader_strategy(name) for name in evaders),
+        tuple(pursuer_strategy(name) for name in pursuers),
+        chosen,
+    )
+
+
+# ---------------------------------------------------------------- simple motion
+
+
+def simple_games(cell: Cell, seeds: range) -> list[Row]:
+    """Games of simple motion, all in one call of the kernel."""
+    games = [drawn(cell, seed) for seed in seeds]
+    conditions = conditions_of(games[0])
+    starts = starts_of([game_of(one) for one in games], [conditions.target.position] * len(games))
+    play = _simple(cell.scenario.evader.strategy, cell.scenario.pursuers[0].strategy, len(games[0].pursuers))
+    ends = play(starts, conditions)
+    return [
+        Row(cell.number, seed, GameResult(int(ends.verdicts[k])).name.lower(), float(ends.times[k]),
+            float(ends.smallest[k]), int(ends.captors[k]) + 1, float(ends.unsafe[k]), -1)
+        for k, seed in enumerate(seeds)
+    ]  # fmt: skip
+
+
+@cache
+def _simple(evader: str, pursuers: str, count: int) -> Callable[..., Any]:
+    """The play of many games, compiled; interpreted where a plug-in does not compile."""
+    from numba.core.errors import NumbaError
+
+    decide_evader: EvaderStrategy = evader_strategy(evader)
+    decide_pursuer: PursuerStrategy = pursuer_strategy(pursuers)
+    own = (evader or "paper") in EVADERS and (pursuers or "paper") in PURSUERS
+    compiled = campaign(decide_evader, decide_pursuer, count)
+    if own:
+        return compiled
+    interpreted = campaign(decide_evader, decide_pursuer, count, compiled=False)
+
+    def play(*arguments: Any) -> Any:
+        try:
+            return compiled(*arguments)
+        except NumbaError:  # a foreign strategy need not be in kernel style
+            return interpreted(*arguments)
+
+    return play
+
+
+# ---------------------------------------------------------------- flights
+
+
+def _flown(cell: Cell, seed: int) -> Row:
+    """One game flown whole on virtual time: agents, MAVLink, sensor and bus; nothing is recorded."""
+    from onboard.runtime.loop import run_virtual, virtual_clock
+    from sim_bridge.rehearsal import Rehearsal
+    from sim_bridge.world.summary import Summary
+
+    scenario = drawn(cell, seed)
+
+    async def whole() -> Summary:
+        async with Rehearsal(scenario, virtual_clock()) as game:
+            await game.until_ended()
+            await game.land_agents()
+            return game.summary()
+
+    summary = run_virtual(whole())
+    if summary.verdict == "none":
+        raise ConfigError(f"{cell.label}, seed {seed}: found no outcome of the flight, expected a verdict")
+    ids = [*scenario.ids[1:]]
+    smallest = float("nan") if summary.smallest_distance is None else summary.smallest_distance
+    captor = ids.index(summary.captor) + 1 if summary.captor in ids else 0
+    return Row(cell.number, seed, summary.verdict, summary.time, smallest, captor, float("nan"), -1)
