@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
-from itertools import cycle
+from itertools import combinations, cycle
 from pathlib import Path
 from typing import Any
 
@@ -39,8 +39,7 @@ def draw(found: Results, folder: Path) -> list[Path]:
 def _name(found: Results, one: Games, *, values: bool) -> str:
     label, *rest = one.what
     count = len(found.plan.parameters())
-    swept = [f"{key.rpartition('.')[2]} {value}" for key, value in
-             zip(found.plan.parameters(), rest[:count], strict=True)]  # fmt: skip
+    swept = [f"{key} {value}" for key, value in zip(found.plan.parameters(), rest[:count], strict=True)]
     evader, pursuers, _model = rest[count:]
     return ", ".join([label, *(swept if values else []), f"{pursuers} after {evader}"])
 
@@ -77,8 +76,18 @@ def wins(found: Results, figure: Any) -> None:
     columns = min(3, len(shown))
     for number, members in enumerate(shown):
         axis = figure.add_subplot(-(-len(shown) // columns), columns, number + 1)
-        mapped = _map(found, axis, (keys[0], keys[1]), members)
+        mapped = _map(found, axis, _two_of(found, keys), members)
     figure.colorbar(mapped, ax=figure.axes, label="share captured", shrink=0.8)
+
+
+def _two_of(found: Results, keys: list[str]) -> tuple[str, str]:
+    """The two keys of a map: two that were drawn together where there are such, else the first two."""
+    values = {key: {point[key] for point in found.plan.points} for key in keys}
+    for first, second in combinations(keys, 2):
+        together = {(point[first], point[second]) for point in found.plan.points}
+        if len(together) < len(values[first]) * len(values[second]):
+            return first, second
+    return keys[0], keys[1]
 
 
 def _bars(found: Results, axis: Any) -> None:
@@ -115,16 +124,16 @@ def _map(found: Results, axis: Any, keys: tuple[str, str], members: list[Games])
     shares = np.array([one.share("captured")[0] / len(one.seeds) for one in members])
     x, y = (np.unique(places[:, k]) for k in (0, 1))
     settings: dict[str, Any] = {"cmap": "cividis", "vmin": 0.0, "vmax": 1.0}
-    if len(x) * len(y) <= len(members):  # a grid
-        values = np.full((len(y), len(x)), np.nan)
-        counts = np.zeros_like(values)
-        at = np.searchsorted(y, places[:, 1]), np.searchsorted(x, places[:, 0])
-        values[np.isnan(values)] = 0.0
-        np.add.at(values, at, shares)
-        np.add.at(counts, at, 1.0)
-        mapped = axis.pcolormesh(x, y, values / np.maximum(counts, 1.0), shading="nearest", **settings)
+    values, counts = np.zeros((2, len(y), len(x)))
+    at = np.searchsorted(y, places[:, 1]), np.searchsorted(x, places[:, 0])
+    np.add.at(values, at, shares)  # over whatever else was swept
+    np.add.at(counts, at, 1.0)
+    values /= np.maximum(counts, 1.0)
+    if np.all(counts > 0.0):
+        mapped = axis.pcolormesh(x, y, values, shading="nearest", **settings)
     else:
-        mapped = axis.scatter(places[:, 0], places[:, 1], c=shares, s=60, edgecolors="none", **settings)
+        row, column = np.nonzero(counts)
+        mapped = axis.scatter(x[column], y[row], c=values[row, column], s=60, edgecolors="none", **settings)
     axis.set(xlabel=keys[0], ylabel=keys[1])
     axis.set_title(_name(found, members[0], values=False), fontsize=9)
     return mapped
@@ -143,7 +152,7 @@ def survival(found: Results, figure: Any) -> None:
             label = f"{one.cell}: {_name(found, one, values=True)}" if line == "-" else None
             axis.step(x, 1.0 - gone if line == "-" else gone, line, where="post", color=colour, label=label)
     axis.set(xlabel="time since t₀ [s]", ylabel="share of games", ylim=(-0.02, 1.02))
-    axis.set_title("not captured yet (solid), arrived (dashed)", fontsize=10)
+    axis.set_title(f"not captured yet (solid), arrived (dashed){_first(found)}", fontsize=10)
     _told(found, axis)
 
 
@@ -160,13 +169,16 @@ def distance(found: Results, figure: Any) -> None:
             axis.axvline(radius, color=palette.CAPTURE.light, lw=0.8, ls=":")
     axis.set(xlabel="smallest distance of a pursuer [m] (dotted: capture radius)", ylabel="share of games")
     axis.set_ylim(-0.02, 1.02)
+    axis.set_title(f"how near a pursuer ever came{_first(found)}", fontsize=10)
     _told(found, axis)
 
 
 def _told(found: Results, axis: Any) -> None:
     axis.grid(color=palette.GRID.light)
-    if len(found.cells) > CURVES:
-        axis.text(0.99, 0.01, f"the first {CURVES} of {len(found.cells)} cells", ha="right", va="bottom",
-                  transform=axis.transAxes, fontsize=8)  # fmt: skip
     models = {model(found.plan.cell(one.cell), found.plan.flown) for one in found.cells[:CURVES]}
-    axis.legend(fontsize=8, title=", ".join(sorted(models)), title_fontsize=8)
+    title = "played as " + ", ".join(sorted(models))
+    axis.figure.legend(loc="outside lower center", ncols=2, fontsize=7, title=title, title_fontsize=8)
+
+
+def _first(found: Results) -> str:
+    return f"; the first {CURVES} of {len(found.cells)} cells" if len(found.cells) > CURVES else ""

@@ -55,13 +55,23 @@ class Filling(StrictConfig, frozen=True):
     """Points that fill the space between."""
 
     count: PointCount
-    between: dict[str, Interval]
+    between: Mapping[str, Any]  # an interval, two numbers, for each key
     seed: Seed = 0
 
     def __post_init__(self) -> None:
         demand(bool(self.between), "between", "nothing", "a key or more with its interval")
-        for key, (low, high) in self.between.items():
-            demand(low < high, f"between.{key}", f"{low:g} to {high:g}", "a growing interval")
+
+    def intervals(self, name: str) -> dict[str, Interval]:
+        """All intervals. Raises ConfigError that begins with `name`."""
+        found: dict[str, Interval] = {}
+        for key, ends in self.between.items():
+            at = f"{name}: between.{key}"
+            kind: Any = Interval
+            low, high = strict.convert(ends, kind, at)
+            if not low < high:
+                raise ConfigError(f"{at}: found {low:g} to {high:g}, expected a growing interval")
+            found[key] = (low, high)
+        return found
 
 
 class Sobol(Filling, frozen=True):
@@ -77,8 +87,8 @@ class Sweep(StrictConfig, frozen=True, rename={"hypercube": "latin-hypercube", "
                                                "ranges": "range"}):  # fmt: skip
     """A whole sweep file; the points are every combination of what its tables give."""
 
-    lists: Mapping[str, Values] = msgspec.field(default_factory=dict)
-    ranges: Mapping[str, Range] = msgspec.field(default_factory=dict)
+    lists: Mapping[str, Any] = msgspec.field(default_factory=dict)
+    ranges: Mapping[str, Any] = msgspec.field(default_factory=dict)
     hypercube: Filling | None = None
     sobol: Sobol | None = None
 
@@ -95,8 +105,13 @@ class Sweep(StrictConfig, frozen=True, rename={"hypercube": "latin-hypercube", "
 def load(path: Path) -> list[Point]:
     """All points of a sweep file. Raises ConfigError."""
     sweep = strict.read(path, Sweep)
-    axes: list[list[Point]] = [[{key: value} for value in values] for key, values in sweep.lists.items()]
-    axes += [[{key: value} for value in one.values()] for key, one in sweep.ranges.items()]
+    axes: list[list[Point]] = []
+    for key, listed in sweep.lists.items():
+        kind: Any = Values
+        axes.append([{key: value} for value in strict.convert(listed, kind, f"{path}: list.{key}")])
+    for key, table in sweep.ranges.items():
+        one: Range = strict.convert(table, Range, f"{path}: range.{key}")
+        axes.append([{key: value} for value in one.values()])
     filling = sweep.hypercube or sweep.sobol
     count = filling.count if filling is not None else 1
     for axis in axes:
@@ -104,18 +119,19 @@ def load(path: Path) -> list[Point]:
     if count > POINTS_MAX:
         raise ConfigError(f"{path}: found {count} points, expected at most {POINTS_MAX}")
     if filling is not None:
-        axes.append(filled(filling, sobol=sweep.sobol is not None))
+        axes.append(filled(filling, str(path), sobol=sweep.sobol is not None))
     return [{key: value for part in parts for key, value in part.items()} for parts in product(*axes)]
 
 
-def filled(filling: Filling, *, sobol: bool) -> list[Point]:
-    """Points of a Latin hypercube or a Sobol sequence."""
+def filled(filling: Filling, name: str, *, sobol: bool) -> list[Point]:
+    """Points of a Latin hypercube or a Sobol sequence. Raises ConfigError that begins with `name`."""
     from scipy.stats import qmc
 
-    keys = list(filling.between)
+    intervals = filling.intervals(f"{name}: {'sobol' if sobol else 'latin-hypercube'}")
+    keys = list(intervals)
     kind = qmc.Sobol if sobol else qmc.LatinHypercube
     unit = kind(d=len(keys), rng=filling.seed).random(filling.count)
-    low, high = zip(*filling.between.values(), strict=True)
+    low, high = zip(*intervals.values(), strict=True)
     return [dict(zip(keys, map(float, row), strict=True)) for row in qmc.scale(unit, low, high)]
 
 
