@@ -9,7 +9,7 @@ export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
-.PHONY: help install demo test check check-long check-pythons bench figures bench-predictor check-aarch64 golden fuzz soak mutants mavproxy clean lock
+.PHONY: help install demo test check check-long check-pythons bench figures bench-predictor check-aarch64 golden fuzz soak mutants mavproxy clean three lock
 
 help:
 	@echo "make install   the environment only"
@@ -26,6 +26,7 @@ help:
 	@echo "make soak      hours of simulated flight with random faults; resumable"
 	@echo "make mutants   small changes to the code: do the tests notice? cosmic-ray in an environment of its own"
 	@echo "make mavproxy  MAVProxy in an environment of its own (1.2 GB), for its client test"
+	@echo "make three     what the page uses of three.js, as one file again (needs npm)"
 	@echo "make lock      resolve the dependencies again (needs uv)"
 
 install: $(STAMP)
@@ -121,6 +122,10 @@ mavproxy: .venv-mavproxy/bin/mavproxy.py
 	@echo "setting up .venv-mavproxy (some minutes the first time)"
 	@$(PYTHON) locks/install.py .venv-mavproxy locks/mavproxy.lock
 	@touch $@
+
+three:
+	cd gcs/page/three && npm ci --ignore-scripts --no-audit --no-fund && node node_modules/esbuild/install.js && npm run build
+	cp gcs/page/three/node_modules/three/LICENSE gcs/page/static/three.LICENSE
 
 lock:
 	uv pip compile pyproject.toml --all-extras --group dev --group build --universal --generate-hashes --no-emit-index-url --no-header --no-annotate --python-version 3.11 -q -o locks/all.lock
