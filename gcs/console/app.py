@@ -18,20 +18,18 @@ from textual.widgets import Input, Static
 from gcs.console import command_parser, plan
 from gcs.console.events_screen import EventsScreen
 from gcs.console.help import HelpScreen
+from gcs.console.questions import Questions
 from gcs.console.source import Source
 from gcs.console.vehicle_table import Row, rows
 from gcs.console.widgets import AlertBoard, Detail, LogPanel, Plan, Prompt, StatusBar, VehicleTable
-from gcs.picture.command_book import ENDS_A_FLIGHT
 from gcs.picture.current import current
 from gcs.picture.values import Picture
-from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus.messages import CommandKind
 
 REFRESH_HZ = 3.0
 WIDE = 150  # columns from which on the plan stands beside the table
 TALL = 30  # lines from which on the table and the log take their share
 SMALLEST = (60, 15)  # columns and lines; in fewer it says so
-CONFIRM_S = 8.0  # how long a question waits for its answer
 SAID_S = 8.0  # and how long an answer of the console stands
 
 KEYS: tuple[tuple[str, str, str], ...] = (  # key, action, text for the help
@@ -105,8 +103,7 @@ class Console(App[int]):
         self.follows = False
         self.options = plan.Options()
         self.table: list[Row] = []
-        self.asked: command_parser.Order | command_parser.Do | None = None  # waits for a yes
-        self.asked_ns = 0
+        self.questions = Questions()
         self._forget: Timer | None = None
         self.picture: Picture = source.picture()
 
@@ -143,8 +140,8 @@ class Console(App[int]):
     def refresh_picture(self) -> None:
         """Take the picture and show it."""
         self.picture = self.source.picture()
-        if self.asked is not None and self.picture.now_ns - self.asked_ns > CONFIRM_S * NS_PER_S:
-            self._answer_no()
+        if self.questions.lapsed(self.picture.now_ns):
+            self.say("not done")
         self.show()
 
     def show(self) -> None:
@@ -195,7 +192,7 @@ class Console(App[int]):
         self._forget = self.set_timer(SAID_S, self._hint_again) if text else None
 
     def _hint_again(self) -> None:
-        if self.asked is None:
+        if self.questions.asked is None:
             self.say("")
 
     # ---- keys
@@ -207,7 +204,7 @@ class Console(App[int]):
 
     def action_abort_all(self) -> None:
         """Knock it off, everybody: one key, no dialogue."""
-        self.asked = None
+        self.questions.no()
         ids = tuple(vehicle.id for vehicle in self.source.picture().vehicles)
         if not ids:
             self.say("no vehicle is known yet", "bold yellow")
@@ -219,11 +216,7 @@ class Console(App[int]):
         if self.selected is None:
             self.say("no vehicle is known yet", "bold yellow")
             return
-        order = command_parser.Order(CommandKind(kind), (self.selected,), named=True)
-        if self.asked == order:
-            self.action_yes()
-        else:
-            self._order(order)
+        self._order(command_parser.Order(CommandKind(kind), (self.selected,), named=True))
 
     def action_move(self, step: int) -> None:
         """Select the next vehicle of the table."""
@@ -251,7 +244,7 @@ class Console(App[int]):
 
     def action_yes(self) -> None:
         """Yes to what was asked."""
-        asked, self.asked = self.asked, None
+        asked = self.questions.yes()
         if isinstance(asked, command_parser.Order):
             self._give(asked)
         elif isinstance(asked, command_parser.Do):
@@ -330,10 +323,11 @@ class Console(App[int]):
 
     def action_leave(self) -> None:
         """Leave, after the source's question."""
-        if isinstance(self.asked, command_parser.Do) or not self.source.leaving:
+        if isinstance(self.questions.asked, command_parser.Do) or not self.source.leaving:
             self.exit(0)
         else:
-            self._ask(command_parser.Do("quit"), self.source.leaving)
+            self.questions.ask(command_parser.Do("quit"), self.picture.now_ns)
+            self._ask(self.source.leaving)
 
     def action_leave_now(self) -> None:
         """Leave the console at once, without a question."""
@@ -373,18 +367,17 @@ class Console(App[int]):
             self.exit(0)
 
     def _order(self, order: command_parser.Order) -> None:
-        if order.kind in ENDS_A_FLIGHT:
-            self._ask(order, f"{order.kind.value} {command_parser.names(order.ids, self.picture)}?")
+        question = self.questions.put(order, self.picture)
+        if question:
+            self._ask(question)
         else:
             self._give(order)
 
-    def _ask(self, what: command_parser.Order | command_parser.Do, question: str) -> None:
-        self.asked, self.asked_ns = what, self.picture.now_ns
+    def _ask(self, question: str) -> None:
         self.say(f"{question}  y: yes, n: no", "bold reverse")
 
     def _answer_no(self) -> None:
-        if self.asked is not None:
-            self.asked = None
+        if self.questions.no():
             self.say("not done")
 
     def _give(self, order: command_parser.Order) -> None:

@@ -7,9 +7,10 @@ from collections.abc import Iterable
 import pytest
 from textual.strip import Strip
 
-from gcs.console.app import CONFIRM_S, REFRESH_HZ, Console
+from gcs.console.app import REFRESH_HZ, Console
 from gcs.console.help import HelpScreen
 from gcs.console.plain_lines import PlainLines
+from gcs.console.questions import CONFIRM_S
 from gcs.console.source import LIVE_HINT, Key
 from gcs.console.widgets import AlertBoard, Detail, Lines, LogPanel, Plan, Prompt, StatusBar, VehicleTable
 from gcs.picture import station_journal
