@@ -1,4 +1,4 @@
-"""Strategies by name: the core's own, and those of other distributions.
+"""Strategies by name: the core's own, those of other distributions, and trained ones (`policy:FILE`).
 
 A distribution adds a strategy through the entry-point group `apollonius.strategies`; the entry
 point names an object with `role` ("pursuer" or "evader") and `decide`, a pure function from a
@@ -9,13 +9,15 @@ also compiles.
 from __future__ import annotations
 
 from importlib.metadata import EntryPoint, entry_points
-from typing import Any
+from typing import Any, cast
 
 from onboard.config.in_words import nearest
 from onboard.config.printable import words_of
 from onboard.config.strict import ConfigError
 from onboard.core.game.advance import EvaderStrategy, PursuerStrategy
 from onboard.core.strategy.registry import DEFAULT, EVADERS, PURSUERS
+from onboard.game.policy_file import is_policy
+from onboard.game.policy_file import strategy as policy
 
 GROUP = "apollonius.strategies"
 
@@ -24,6 +26,8 @@ def pursuer_strategy(name: str) -> PursuerStrategy:
     """A pursuers' strategy by name ("" = the default). Raises ConfigError for an unknown one."""
     if (name or DEFAULT) in PURSUERS:
         return PURSUERS[name or DEFAULT].decide
+    if is_policy(name):
+        return cast(PursuerStrategy, policy(name, "pursuer"))
     found: PursuerStrategy = _plugin(name, "pursuer", list(PURSUERS))
     return found
 
@@ -32,6 +36,8 @@ def evader_strategy(name: str) -> EvaderStrategy:
     """The evader's strategy by name ("" = the default). Raises ConfigError for an unknown one."""
     if (name or DEFAULT) in EVADERS:
         return EVADERS[name or DEFAULT].decide
+    if is_policy(name):
+        return cast(EvaderStrategy, policy(name, "evader"))
     found: EvaderStrategy = _plugin(name, "evader", list(EVADERS))
     return found
 
@@ -40,6 +46,12 @@ def demand_name(name: str, role: str, where: str) -> None:
     """Demand that a strategy of this name is known for a role ("evader" or "pursuer"), without loading a
     plug-in: what that is for is seen where it is loaded. Raises ConfigError that begins with `where`."""
     known = list(EVADERS if role == "evader" else PURSUERS)
+    if is_policy(name):
+        try:
+            policy(name, role)
+        except ConfigError as error:
+            raise ConfigError(f"{where}: {error}") from None
+        return
     if (name or DEFAULT) not in known and name not in plugin_names():
         names = [*known, *plugin_names()]
         words = f"{', '.join(names)}{nearest(name, names)}"

@@ -16,7 +16,7 @@ from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from itertools import pairwise
 from types import FunctionType, ModuleType
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numba.core import types
@@ -46,15 +46,18 @@ KERNELS = (
     "onboard.core.game.views",
     "onboard.core.strategy.evasion",
     "onboard.core.strategy.pursuit",
+    "onboard.core.strategy.features",
+    "onboard.core.strategy.policy",
     "onboard.core.game.referee",
     "onboard.core.game.advance",
 )
 
 # Everything is inlined, or else the many small functions would pass whole games by value; but
 # these are called from many places and would swell the code.
-OUT_OF_LINE = frozenset({"free_ray_limited", "allow"})
+OUT_OF_LINE = frozenset({"free_ray_limited", "allow", "restart", "listen"})
 
 Array = NDArray[np.float64]
+T = TypeVar("T", bound=tuple[Callable[..., Any], ...])
 
 _registered: set[int] = set()
 
@@ -85,6 +88,13 @@ def _register_parts(function: FunctionType) -> None:
     for cell in function.__closure__ or ():
         if isinstance(cell.cell_contents, FunctionType):
             _register(cell.cell_contents)
+
+
+def in_arrays(strategies: T) -> T:
+    """Strategies as compiled code takes them: of a trained one the kernel whose weights are an array."""
+    found: Any = tuple(getattr(strategy, "kernel", strategy) for strategy in strategies)
+    same: T = found
+    return same
 
 
 def register_strategies(functions: Iterable[Callable[..., Any]]) -> None:
@@ -276,7 +286,8 @@ def campaign(
             np.zeros(games, np.int64), np.zeros(games), np.zeros(games, np.int64), np.zeros(games),
             np.zeros(games), np.zeros(games, np.int64), np.full((games, kept, pursuers + 1, 3), np.nan),
         )  # fmt: skip
-        run = _player(decide_evader, decide_pursuer, pursuers, compiled)
+        pair = in_arrays((decide_evader, decide_pursuer)) if compiled else (decide_evader, decide_pursuer)
+        run = _player(*pair, pursuers, compiled)
         if workers <= 1 or games < 2 * workers:
             run(starts, conditions, ends, 0, games)
             return ends

@@ -49,14 +49,16 @@ _rebuilt: Callable[..., Any] = compiler.CompileResult._rebuild
 log = logging.getLogger(__name__)
 
 
-def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
+def kernel(function: Callable[..., Any], counted: bool = True) -> Callable[..., Any]:
     """A function in kernel style compiled at its first call, or taken from disk; holds no interpreter lock.
 
-    What it calls must be registered (`sim_bridge.campaign.compiled.register`).
+    What it calls must be registered (`sim_bridge.campaign.compiled.register`). With `counted` False it counts
+    no references to arrays and may make neither arrays nor lists: worth it where it handles many arrays.
     """
-    machine: Any = numba.njit(nogil=True)(function)
+    options: Any = {"nogil": True} if counted else {"nogil": True, "_nrt": False}
+    machine: Any = numba.njit(**options)(function)
     if isinstance(function, FunctionType) and hasattr(machine, "_cache"):  # not with NUMBA_DISABLE_JIT
-        machine._cache = KernelCache(function)
+        machine._cache = KernelCache(function, counted)
     found: Callable[..., Any] = machine
     return found
 
@@ -77,9 +79,10 @@ def folder() -> Path | None:
 class KernelCache(NullCache):
     """What numba asks before it compiles a function, and tells afterwards."""
 
-    def __init__(self, function: FunctionType) -> None:
-        """`function` as written, not compiled."""
+    def __init__(self, function: FunctionType, counted: bool = True) -> None:
+        """`function` as written, not compiled; `counted` as for `kernel`."""
         self._function = function
+        self._counted = counted
         self._lock: IO[bytes] | None = None
         self._named: str | None = None
 
@@ -128,7 +131,7 @@ class KernelCache(NullCache):
         except UnknownContentError as error:
             log.debug("%s is not kept: it contains %s", self._function.__qualname__, error)
             return None
-        parts = (self._named, _surroundings(), repr(codegen.magic_tuple()), str(sig))
+        parts = (self._named, _surroundings(), repr(codegen.magic_tuple()), str(sig), str(self._counted))
         name = hashlib.sha256("\0".join(parts).encode()).hexdigest()
         return home / f"{self._function.__name__}-{name[:40]}.kernel"
 

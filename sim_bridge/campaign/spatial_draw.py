@@ -26,7 +26,7 @@ from onboard.pilot.track_filter import FilterSettings
 from onboard.runtime.resources import configs
 from sim_bridge.campaign.aboard import Aboard, autopilot_of, boarded, policy_of
 from sim_bridge.campaign.compiled import KERNELS as CORE
-from sim_bridge.campaign.compiled import register, register_strategies
+from sim_bridge.campaign.compiled import in_arrays, register, register_strategies
 from sim_bridge.campaign.kernel_cache import kernel
 from sim_bridge.campaign.machine import machine
 from sim_bridge.campaign.plane_in_wind import Flown, climate_of, drawn_wind, launched, wind_at
@@ -242,6 +242,7 @@ def kernel_of(
     """The whole game of these strategies (`machine`), compiled or not; once for each number of pursuers."""
     if not compiled:
         return machine(evaders, pursuers)
+    evaders, pursuers = in_arrays(evaders), in_arrays(pursuers)
     register_strategies((*evaders, *pursuers))
     return compiled_kernel(machine(evaders, pursuers))
 
