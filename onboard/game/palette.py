@@ -55,6 +55,7 @@ RULES = {
     "pure_pursuit": "#e08a5a",
     "constant_bearing": "#5aae9a",
     "proportional_navigation": "#997700",
+    "point_by_point": "#7a5c9e",
     "waypoint_near": "#4478ab",
     "astray": "#ee6678",
     "still_astray": "#994456",

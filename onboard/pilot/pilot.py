@@ -29,6 +29,7 @@ from onboard.core.geometry.assessment import half_angle
 from onboard.core.geometry.cones import blocked_cones
 from onboard.core.math.states import Mate, Vehicle
 from onboard.core.math.vectors import ZERO, Vec, add, along, clamp, scale, sub
+from onboard.core.strategy.choosing import held_after
 from onboard.core.strategy.knowledge import Decision, Level, Module
 from onboard.core.strategy.registry import DEFAULT, EVADERS, PURSUERS
 from onboard.pilot.memory import Memory
@@ -37,6 +38,7 @@ from onboard.pilot.setup import GameSetup, Own, Player, Side
 
 HEIGHT_GAIN = 0.5  # of keeping the height in a plane game [1/s]
 CLIMB_SHARE = 0.3  # and the share of the speed it may use
+REMEMBERS = 1.0  # [s] for which a decision is remembered
 
 Quad = tuple[float, float, float, float]
 
@@ -102,6 +104,8 @@ class Viewpoint:
         self.side = side
         self.strategy = strategy or DEFAULT
         known = (EVADERS if side is Side.EVADER else PURSUERS).get(self.strategy)
+        self._last: Decision | None = None  # and when it was asked for [s]
+        self._last_at = self._asked_at = 0.0
         self._modules: dict[int, Module] = {} if known is None else {r.id: r.module for r in known.table}
 
     def look(
@@ -139,7 +143,11 @@ class Viewpoint:
             later = memory.predict(known[0][0].id, now + setup.control.lookahead)
             sighting = _sighting(others[0], later, wind, setup)
             team = self._team(seen, mates, wind, setup)
+            if self._last is not None and now - self._last_at <= REMEMBERS:
+                rule, aim, time = self._last.rule, self._last.aim, self._last.time
+                team = team._replace(held=held_after(rule, aim, time, now - self._last_at, wind))
             view = pursuer_view(seen, me.limits, sighting, team, setup.control, setup.rules)
+        self._asked_at = now
         sigma = inf if lacks else worst.sigma
         return Question(view, own, me, seen, others, wind, sigma, worst.source.name.lower(), tuple(lacks))
 
@@ -162,6 +170,7 @@ class Viewpoint:
     def conclude(self, question: Question, decision: Decision, setup: GameSetup) -> PilotDecision:
         """The strategy's answer to a question, with everything a person needs to see why."""
         own, planar = question.own, setup.rules.planar
+        self._last, self._last_at = decision, self._asked_at
         return PilotDecision(
             decides=True,
             velocity=_steered(decision, own, question.me, planar),

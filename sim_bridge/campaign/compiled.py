@@ -48,6 +48,7 @@ KERNELS = (
     "onboard.core.strategy.pursuit",
     "onboard.core.strategy.features",
     "onboard.core.strategy.policy",
+    "onboard.core.strategy.choosing",
     "onboard.core.game.referee",
     "onboard.core.game.advance",
 )

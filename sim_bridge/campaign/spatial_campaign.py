@@ -35,7 +35,7 @@ class Played(NamedTuple):
     reversals: int  # of the evader's flown course
     decided_reversals: int  # of the course it decided on
     play: SpatialPlay
-    log: Array  # (steps, players, 5): position [m; NED], flown and decided course [rad]
+    log: Array  # (steps, players, 6): position [m; NED], flown and decided course [rad], rule
 
 
 def play_seed(
@@ -47,7 +47,7 @@ def play_seed(
 
 def play_drawn(d: Draw, evasion: int, compiled: bool = True) -> Played:
     """Play a drawn game out. It uses up the draw's tracks; `evasion`: the evader's way among its sides."""
-    log = np.zeros((d.steps, len(d.players), 5))
+    log = np.zeros((d.steps, len(d.players), 6))
     sides = d.sides
     chosen = sides.chosen._replace(evader=int(evasion))
     found = kernel_of(sides.evaders, sides.pursuers, compiled)(

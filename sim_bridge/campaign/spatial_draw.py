@@ -56,6 +56,7 @@ KERNELS = (
     "sim_bridge.campaign.plane_in_wind",
     "sim_bridge.campaign.aboard",
     "sim_bridge.campaign.tracks",
+    "sim_bridge.campaign.ledger",
     "sim_bridge.campaign.spatial_game",
 )
 T0 = 6.5  # [s] from the beginning of the world to that of the game, as `fly --fast` has it

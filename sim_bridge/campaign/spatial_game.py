@@ -31,16 +31,17 @@ from onboard.core.game.views import (
 )
 from onboard.core.math.each import each
 from onboard.core.math.states import Mate, Vehicle
-from onboard.core.math.vectors import ZERO, Vec, pitch_of, scale, yaw_of
+from onboard.core.math.vectors import ZERO, Vec, scale
 from onboard.core.safety.policy import Policy
 from onboard.core.strategy.knowledge import Decision
 from sim_bridge.campaign.aboard import NOBODY, Aboard, Autopilot, Instant, aware, commanded, ordered
+from sim_bridge.campaign.ledger import held_by, known, known_wind, note, note_wind, write_down
 from sim_bridge.campaign.plane_in_wind import Climate, Flown, blown, fly, gust_at, gust_tick, wind_at
 from sim_bridge.campaign.tracks import Eye, Tracks, track_of, watched
 from sim_bridge.draws import Key
 from sim_bridge.vehicle.flight.plane import Command, PlaneModel, nose_yaw, placed, true_airspeed
 from sim_bridge.vehicle.wind.dryden import gust_noise
-from sim_bridge.vehicle.wind.estimate import ARDUPILOT, Errors, Estimate, Sensed, estimated
+from sim_bridge.vehicle.wind.estimate import ARDUPILOT, Errors, Sensed, estimated
 
 Array = NDArray[np.float64]
 WIND_EVERY = 10  # samples between two updates of an estimate of the wind: `EVERY` of it
@@ -130,17 +131,7 @@ class Deciding(NamedTuple):
     seen: Tracks
     now: int  # sample
     ways: Ways
-
-
-def known(states: Array, index: int) -> Vehicle:
-    """Player `index` as its agent knows it: place and velocity over ground (its speed is nobody's)."""
-    s = states[index]
-    return Vehicle(Vec(s[0], s[1], s[2]), Vec(s[3], s[4], s[5]), 0.0)
-
-
-def known_wind(states: Array, index: int) -> Vec:
-    """The wind as player `index`'s autopilot estimates it [m/s; NED]."""
-    return Vec(states[index, 6], states[index, 7], 0.0)
+    decided: Array  # as `decide_all` has it
 
 
 def in_air(vehicle: Vehicle, wind: Vec, speed: float) -> Vehicle:
@@ -189,7 +180,8 @@ def decide_pursuer(vehicle: Vehicle, index: int, team: Deciding) -> Decision:
     if rules.separation > 0.0:
         mate = nearest_mate(own.position, positions(members), index)
     me = in_air(own, wind, vehicle.speed)
-    side = Team(mate, members, index, told(start.conditions.target, rules))
+    held = held_by(team.decided, index + 1, control.dt, wind)
+    side = Team(mate, members, index, told(start.conditions.target, rules), held)
     view = pursuer_view(me, game.pursuer_limits[index], sighting, side, control, rules)
     return team.ways.pursuer(view, team.ways.chosen.pursuers[index])
 
@@ -219,7 +211,8 @@ def nobody(_vehicle: Vehicle, _index: int, _shared: float) -> Mate:
 def decide_all(
     start: Start, ways: Ways, crew: list[Aboard], seen: Tracks, states: Array, decided: Array
 ) -> None:
-    """Everybody's decision into `crew`, evader first, and its course and pitch [rad] into `decided`."""
+    """Everybody's decision into `crew`, evader first, and into `decided` (players, 8): course and pitch
+    [rad], the sample (of the evader), rule, aim [m; NED] and time until then [s]."""
     game, conditions = start.game, start.conditions
     now, dt = int(decided[0, 2]), start.fleet.evader.dt
     own = known(states, 0)
@@ -229,30 +222,11 @@ def decide_all(
     view = evader_view(me, game.evader_limits, others, conditions.target, wind, conditions.rules)
     decision = ways.evader(view, ways.chosen.evader)
     crew[0] = order(start, crew[0], decision, states, (0, now))
-    decided[0, 0] = yaw_of(decision.direction)
-    decided[0, 1] = pitch_of(decision.direction)
-    decisions = each(decide_pursuer, game.pursuers, Deciding(start, states, seen, now, ways))
+    write_down(decided, 0, decision)
+    decisions = each(decide_pursuer, game.pursuers, Deciding(start, states, seen, now, ways, decided))
     for i in range(len(decisions)):
         crew[i + 1] = order(start, crew[i + 1], decisions[i], states, (i + 1, now))
-        decided[i + 1, 0] = yaw_of(decisions[i].direction)
-        decided[i + 1, 1] = pitch_of(decisions[i].direction)
-
-
-def note(states: Array, index: int, flown: Flown) -> None:
-    """Write down where aircraft `index` is, and its velocity over ground."""
-    plane = flown.plane
-    states[index, 0] = plane.position.x
-    states[index, 1] = plane.position.y
-    states[index, 2] = plane.position.z
-    states[index, 3] = plane.velocity.x
-    states[index, 4] = plane.velocity.y
-    states[index, 5] = plane.velocity.z
-
-
-def note_wind(states: Array, index: int, wind: Estimate) -> None:
-    """Write down the wind as the autopilot of aircraft `index` estimates it."""
-    states[index, 6] = wind.north
-    states[index, 7] = wind.east
+        write_down(decided, i + 1, decisions[i])
 
 
 def weathered(start: Start, index: int, aboard: Aboard, flown: Flown) -> Aboard:
@@ -333,8 +307,8 @@ def play(
 ) -> SpatialPlay:
     """Play a game out from t₀. Kernel style but for the lists and arrays, which it changes in place.
 
-    `players` and `crew`: evader first; `log` (steps, players, 5): position [m; NED], flown and decided
-    course [rad].
+    `players` and `crew`: evader first; `log` (steps, players, 6): position [m; NED], flown and decided
+    course [rad], rule.
     """
     game, pace, eye = start.game, start.pace, start.eye
     dt = start.fleet.evader.dt
@@ -342,7 +316,7 @@ def play(
     count = len(players)
     here = np.empty((count, 8))
     before = np.empty((count, 8))
-    decided = np.zeros((count, 3))
+    decided = np.zeros((count, 8))
     for i in range(count):
         note(here, i, players[i])
         note_wind(here, i, crew[i].wind)
@@ -361,6 +335,7 @@ def play(
                     log[steps, i, 2] = here[i, 2]
                     log[steps, i, 3] = players[i].plane.course
                     log[steps, i, 4] = decided[i, 0]
+                    log[steps, i, 5] = decided[i, 3]
             for i in range(count):
                 if sample % WIND_EVERY == 0:
                     crew[i] = weathered(start, i, crew[i], players[i])

@@ -35,7 +35,7 @@ speed = 4
 [[pursuers]]
 position = [-30, -60]
 speed = 4
-# strategy = "paper"           # predictive, earlier, pure-pursuit, constant-bearing, proportional-navigation
+# strategy = "paper"           # predictive, choosing, earlier, … (docs/rules.md)
 
 [parameters]
 R = 2.0                        # capture radius (6)

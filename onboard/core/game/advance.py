@@ -13,6 +13,7 @@ from onboard.core.game.referee import Score, Step, judge, opening
 from onboard.core.game.rules import Control, Rules, Target
 from onboard.core.game.views import (
     EvaderView,
+    Held,
     Nearest,
     PursuerView,
     Sighting,
@@ -101,7 +102,9 @@ def team_of(own: Vehicle, index: int, pursuers: tuple[Vehicle, ...], conditions:
     mate = Nearest(False, own.position)
     if rules.separation > 0.0:
         mate = nearest_mate(own.position, positions(pursuers), index)
-    return Team(mate, pursuers, index, told(conditions.target, rules))
+    return Team(
+        mate, pursuers, index, told(conditions.target, rules), Held(False, False, mate.position, 0.0)
+    )
 
 
 def decide_one(own: Vehicle, index: int, field: Field) -> Decision:

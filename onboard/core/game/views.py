@@ -12,7 +12,7 @@ from onboard.core.game.rules import NO_TARGET, Control, Rules, Target
 from onboard.core.geometry.apollonius import intercept
 from onboard.core.geometry.cones import Cone, blocked_cones
 from onboard.core.math.states import Vehicle, VehicleLimits
-from onboard.core.math.vectors import NORTH, TINY, Vec, along, norm, scale, unit
+from onboard.core.math.vectors import NORTH, TINY, ZERO, Vec, along, norm, scale, unit
 
 
 class EvaderView(NamedTuple):
@@ -42,6 +42,18 @@ class Nearest(NamedTuple):
     position: Vec  # [m; NED]
 
 
+class Held(NamedTuple):
+    """The meeting point that a pursuer's last decision headed for, where it lies now in the moving air."""
+
+    exists: bool
+    corrected: bool  # whether it was held then, too: strategy (30)
+    place: Vec  # [m; NED]
+    left: float  # until it is due [s]
+
+
+NOTHING_HELD = Held(False, False, ZERO, 0.0)
+
+
 class Team(NamedTuple):
     """What a pursuer knows of its own side."""
 
@@ -49,6 +61,7 @@ class Team(NamedTuple):
     members: tuple[Vehicle, ...]  # all pursuers that it knows of, itself among them
     own_index: int  # its own among the members
     target: Target  # the evader's, where the rules let the pursuers know it
+    held: Held = NOTHING_HELD
 
 
 class PursuerView(NamedTuple):
@@ -66,6 +79,7 @@ class PursuerView(NamedTuple):
     members: tuple[Vehicle, ...] = ()  # all pursuers that it knows of, itself among them
     own_index: int = -1  # its own among the members
     target: Target = NO_TARGET  # the evader's, where the pursuers know it
+    held: Held = NOTHING_HELD  # nothing where nobody remembers: in the plane game
 
 
 def level(v: Vec, planar: bool) -> Vec:
@@ -157,4 +171,5 @@ def pursuer_view(
         team.members,
         team.own_index,
         team.target,
+        team.held,
     )

@@ -16,7 +16,8 @@ from onboard.core.strategy.knowledge import Decision, Module, Rule, RuleId, fold
 NAVIGATION_GAIN = 3.0  # N of proportional navigation
 
 
-def _head(view: PursuerView, aim: Vec, rule: RuleId, time: float, miss: float) -> Decision:
+def heading_for(view: PursuerView, aim: Vec, rule: RuleId, time: float, miss: float) -> Decision:
+    """The decision to head for `aim` [m; NED], within the limits; there after `time` [s], `miss` [m] away."""
     (x, y, z), _velocity, speed = view.own
     x = aim.x - x
     y = aim.y - y
@@ -50,7 +51,7 @@ def exact_intercept(view: PursuerView) -> Decision:
     exists, time, point, _miss = intercept(place, view.heading, speed, own.position, own.speed)
     if not exists:
         return silent(view.heading, place)
-    return _head(view, point, RuleId.INTERCEPT, time, 0.0)
+    return heading_for(view, point, RuleId.INTERCEPT, time, 0.0)
 
 
 def greatest_approach(view: PursuerView) -> Decision:
@@ -59,7 +60,7 @@ def greatest_approach(view: PursuerView) -> Decision:
     meeting = closest_approach(e.position, view.heading, e.speed, view.own.position, view.own.speed)
     if not meeting.exists:
         return silent(view.heading, e.position)
-    return _head(view, meeting.point, RuleId.CLOSEST_APPROACH, meeting.time, meeting.miss)
+    return heading_for(view, meeting.point, RuleId.CLOSEST_APPROACH, meeting.time, meeting.miss)
 
 
 def parallel(view: PursuerView) -> Decision:
@@ -76,17 +77,17 @@ def predicted_place(view: PursuerView) -> Decision:
     if not view.has_prediction:
         return silent(view.heading, view.evader.position)
     left = distance(view.prediction, view.own.position) - view.own.speed * view.control.lookahead
-    return _head(view, view.prediction, RuleId.PREDICTED_PLACE, view.control.lookahead, max(0.0, left))
+    return heading_for(view, view.prediction, RuleId.PREDICTED_PLACE, view.control.lookahead, max(0.0, left))
 
 
 def straight_at_evader(view: PursuerView) -> Decision:
     """[37]: no intercept, so straight at the evader."""
-    return _head(view, view.evader.position, RuleId.STRAIGHT_AT_EVADER, 0.0, 0.0)
+    return heading_for(view, view.evader.position, RuleId.STRAIGHT_AT_EVADER, 0.0, 0.0)
 
 
 def pure_pursuit(view: PursuerView) -> Decision:
     """For comparison: the velocity always points at the evader."""
-    return _head(view, view.evader.position, RuleId.PURE_PURSUIT, 0.0, 0.0)
+    return heading_for(view, view.evader.position, RuleId.PURE_PURSUIT, 0.0, 0.0)
 
 
 def constant_bearing(view: PursuerView) -> Decision:

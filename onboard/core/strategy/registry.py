@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from onboard.core.game.advance import EvaderStrategy, PursuerStrategy
 from onboard.core.game.views import EvaderView, PursuerView
-from onboard.core.strategy import evasion, pursuit
+from onboard.core.strategy import choosing, evasion, pursuit
 from onboard.core.strategy.knowledge import Rule
 
 
@@ -35,6 +35,11 @@ PURSUERS: dict[str, NamedPursuer] = {
     ),
     "earlier": NamedPursuer(
         pursuit.pursuer_earlier, pursuit.PURSUER_EARLIER, "the strategy of [37]: intercept, or straight at it"
+    ),
+    "choosing": NamedPursuer(
+        choosing.pursuer_choosing,
+        choosing.PURSUER_CHOOSING,
+        "paper; in gusts it holds a meeting point (30) or finds a new one (31): figure 8b",
     ),
     "pure-pursuit": NamedPursuer(
         pursuit.pursuer_pure, pursuit.PURE, "for comparison: always straight at the evader"
