@@ -1,0 +1,67 @@
+"""What agents know and what they decided, as rows of arrays, one a player, evader first. Kernel style.
+
+`states` (players, 8): position [m; NED], velocity over ground and wind as estimated [m/s]. `decided`
+(players, 8): course and pitch [rad], the sample (of the evader alone), rule, aim [m; NED] and time until
+then [s].
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from onboard.core.game.views import Held
+from onboard.core.math.states import Vehicle
+from onboard.core.math.vectors import Vec, pitch_of, yaw_of
+from onboard.core.strategy.choosing import held_after
+from onboard.core.strategy.knowledge import Decision
+from sim_bridge.campaign.plane_in_wind import Flown
+from sim_bridge.vehicle.wind.estimate import Estimate
+
+Array = NDArray[np.float64]
+
+
+def known(states: Array, index: int) -> Vehicle:
+    """Player `index` as its agent knows it: place and velocity over ground (its speed is nobody's)."""
+    s = states[index]
+    return Vehicle(Vec(s[0], s[1], s[2]), Vec(s[3], s[4], s[5]), 0.0)
+
+
+def known_wind(states: Array, index: int) -> Vec:
+    """The wind as player `index`'s autopilot estimates it [m/s; NED]."""
+    return Vec(states[index, 6], states[index, 7], 0.0)
+
+
+def note(states: Array, index: int, flown: Flown) -> None:
+    """Write down where aircraft `index` is, and its velocity over ground."""
+    plane = flown.plane
+    states[index, 0] = plane.position.x
+    states[index, 1] = plane.position.y
+    states[index, 2] = plane.position.z
+    states[index, 3] = plane.velocity.x
+    states[index, 4] = plane.velocity.y
+    states[index, 5] = plane.velocity.z
+
+
+def note_wind(states: Array, index: int, wind: Estimate) -> None:
+    """Write down the wind as the autopilot of aircraft `index` estimates it."""
+    states[index, 6] = wind.north
+    states[index, 7] = wind.east
+
+
+def held_by(decided: Array, index: int, since: float, wind: Vec) -> Held:
+    """What player `index` decided `since` [s] ago leaves to its next decision."""
+    d = decided[index]
+    aim = Vec(d[4], d[5], d[6])
+    return held_after(int(d[3]), aim, d[7], since, wind)
+
+
+def write_down(decided: Array, index: int, decision: Decision) -> None:
+    """Keep what player `index` decided: see `decide_all`."""
+    decided[index, 0] = yaw_of(decision.direction)
+    decided[index, 1] = pitch_of(decision.direction)
+    decided[index, 3] = decision.rule
+    decided[index, 4] = decision.aim.x
+    decided[index, 5] = decision.aim.y
+    decided[index, 6] = decision.aim.z
+    decided[index, 7] = decision.time
