@@ -60,7 +60,7 @@ def write_down(decided: Array, index: int, decision: Decision) -> None:
     """Keep what player `index` decided: see `decide_all`."""
     decided[index, 0] = yaw_of(decision.direction)
     decided[index, 1] = pitch_of(decision.direction)
-    decided[index, 3] = decision.rule
+    decided[index, 3] = decision.rule * 1  # a number, which an IntEnum is not to numba
     decided[index, 4] = decision.aim.x
     decided[index, 5] = decision.aim.y
     decided[index, 6] = decision.aim.z

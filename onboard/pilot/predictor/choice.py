@@ -15,7 +15,8 @@ from onboard.pilot.predictor.prediction import PredictorKind
 
 WITNESSES = 40.0  # no choice is held surer than by so many independent points
 FEW = 0.55  # Student's t: 68 % lie within 1 + 0.55 / n of the deviation that n errors gave
-HANDICAP = 1.15  # of what was learnt against what needs no learning, in mean square error
+ODDS = 0.4  # of what was learnt against what needs no learning, before any witness: a far horizon has few
+HANDICAP = 1.2  # of what was learnt against what needs no learning, in mean square error
 
 
 class Held(NamedTuple):
@@ -88,12 +89,12 @@ def _blend(held: Held, whole: Array, independent: float) -> float:
     """The share of the manoeuvre filter beside what the model says: how likely it is the better of the two.
 
     Witness is each independent point held out, by mean square errors against the sensor (two Gaussian errors
-    of unknown size); what was learnt bears a handicap."""
+    of unknown size); what was learnt bears a handicap, and before any witness the lesser odds."""
     if np.isnan(held.turning).any():
         return 0.0
     mine = float(((held.measured - whole) ** 2).sum(axis=1).mean())
     other = float(((held.measured - held.turning) ** 2).sum(axis=1).mean())
-    odds = (other / max(mine * HANDICAP, 1e-12)) ** min(independent, WITNESSES)
+    odds = ODDS * (other / max(mine * HANDICAP, 1e-12)) ** min(independent, WITNESSES)
     return float(1.0 / (1.0 + odds))
 
 

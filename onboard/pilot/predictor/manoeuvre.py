@@ -27,7 +27,7 @@ class ManoeuvreSettings(NamedTuple):
     """Settings of the filter."""
 
     density: tuple[float, float] = (0.3, 2.0)  # white acceleration of each model [m²/s³]
-    turn_density: float = 0.005  # of the turn rate's random walk [rad²/s³]
+    turn_density: float = 0.01  # of the turn rate's random walk [rad²/s³]
     turn_unknown: float = 0.3  # turn rate before anything is known [rad/s]
     stay: float = 8.0  # mean time in a model [s]
     gap_max: float = 2.0  # a longer silence begins anew [s]

@@ -73,6 +73,14 @@ class Heard(NamedTuple):
     measured: Array  # (n, 3) as the sensor says [m]: noisy, but with no lag of a filter
 
 
+class Learnt(NamedTuple):
+    """What a model says of one window by itself."""
+
+    innovation: Array  # (H, 3) [m a step] in the heading frame, where ridge or network speak; else zero
+    cos: Array  # (1,) of the heading
+    sin: Array
+
+
 class Forecast(NamedTuple):
     """Mean velocities to the horizons."""
 
@@ -173,6 +181,14 @@ def forecast(
 
     `trust` (H,) scales what was learnt: see Trust. `turned` (H, 2) are the places that a manoeuvre filter
     expects; without them the model speaks alone."""
+    return answer(
+        model, learnt(model, positions, velocity, settings), positions[-1], velocity, settings,
+        (trust, turned),
+    )  # fmt: skip
+
+
+def learnt(model: Model, positions: Array, velocity: Array, settings: ModelSettings) -> Learnt:
+    """What ridge and network say of the last positions and the velocity now (units: `forecast`)."""
     last = np.array([model.points - 1])
     recent = positions[-model.points :]
     newest = np.broadcast_to(velocity, recent.shape)
@@ -185,14 +201,27 @@ def forecast(
         said = (raw.reshape(len(model.kinds), -1) - 0.5) / SQUEEZE * model.spread
         by_net = np.array([kind is PredictorKind.NETWORK for kind in model.kinds]) * model.shrink
         innovation[:, model.axes] += said * by_net[:, None]
-    learnt = np.array([kind in (PredictorKind.RIDGE, PredictorKind.NETWORK) for kind in model.kinds])
-    innovation[~learnt] = 0.0
+    speaks = np.array([kind in (PredictorKind.RIDGE, PredictorKind.NETWORK) for kind in model.kinds])
+    innovation[~speaks] = 0.0
+    return Learnt(innovation, view.cos, view.sin)
+
+
+def answer(
+    model: Model,
+    said: Learnt,
+    here: Array,
+    velocity: Array,
+    settings: ModelSettings,
+    beside: tuple[Array | None, Array | None] = (None, None),
+) -> Forecast:
+    """The forecast from `here` (3,) [m] of what was learnt; `beside`: `trust` and `turned` of `forecast`."""
+    trust, turned = beside
     share = model.believed if trust is None else model.believed * trust
-    own = turn((innovation * share[:, None])[None], view.cos, -view.sin)[0]
+    own = turn((said.innovation * share[:, None])[None], said.cos, -said.sin)[0]
     if turned is not None and np.isfinite(turned).all():
         horizons = np.array(settings.horizons)[:, None]
         other = np.zeros_like(own)
-        other[:, :2] = (turned - positions[-1, :2]) / horizons - velocity[:2]
+        other[:, :2] = (turned - here[:2]) / horizons - velocity[:2]
         own += model.turning[:, None] * (other - own)
     return Forecast(velocity + own, model.kinds, model.sigma)
 

@@ -168,13 +168,12 @@ class TrackPredictor:
         self.trust.judge(self.grid.last, positions)
         self.calibration.judge(self.grid.last, positions)
         if len(positions) >= self.model.points:
-            learnt = flying.forecast(self.model, positions, velocities[-1], self.settings.model)
-            innovation = learnt.velocities - velocities[-1]
-            self.trust.tell(self.grid.last, positions[-1], velocities[-1], innovation)
-            said = flying.forecast(
-                self.model, positions, velocities[-1], self.settings.model, self.trust.shares(),
-                self._turned.get(self.grid.last),
-            )  # fmt: skip
+            settings, here, velocity = self.settings.model, positions[-1], velocities[-1]
+            learnt = flying.learnt(self.model, positions, velocity, settings)
+            alone = flying.answer(self.model, learnt, here, velocity, settings)
+            self.trust.tell(self.grid.last, here, velocity, alone.velocities - velocity)
+            beside = (self.trust.shares(), self._turned.get(self.grid.last))
+            said = flying.answer(self.model, learnt, here, velocity, settings, beside)
             ends = positions[-1] + said.velocities * np.array(self.settings.model.horizons)[:, None]
             start = self.filter.estimate(self.grid.last * self.settings.step).sigma
             self.calibration.tell(self.grid.last, ends, np.hypot(start, said.sigma))
