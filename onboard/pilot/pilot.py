@@ -32,6 +32,7 @@ from onboard.core.math.vectors import ZERO, Vec, add, along, clamp, scale, sub
 from onboard.core.strategy.choosing import held_after
 from onboard.core.strategy.knowledge import Decision, Level, Module
 from onboard.core.strategy.registry import DEFAULT, EVADERS, PURSUERS
+from onboard.core.strategy.team.plan_types import IDLE
 from onboard.pilot.memory import Memory
 from onboard.pilot.predictor import Prediction, PredictorKind
 from onboard.pilot.setup import GameSetup, Own, Player, Side
@@ -61,6 +62,7 @@ class PilotDecision(NamedTuple):
     own: Vehicle  # as the strategy saw it
     others: tuple[Vehicle, ...]  # opponents as the strategy saw them
     rho: float  # safety distance ρ of the blocked cones [m]
+    why: str = ""  # who planned it, in words; "" where the vehicle decides alone
 
 
 def drawing(thought: PilotDecision, side: Side) -> tuple[tuple[Quad, ...], tuple[Quad, ...]]:
@@ -104,6 +106,8 @@ class Viewpoint:
         self.side = side
         self.strategy = strategy or DEFAULT
         known = (EVADERS if side is Side.EVADER else PURSUERS).get(self.strategy)
+        self.part = IDLE  # of the team's plan, where there is one
+        self.why = ""  # whose plan that is, in words
         self._last: Decision | None = None  # and when it was asked for [s]
         self._last_at = self._asked_at = 0.0
         self._modules: dict[int, Module] = {} if known is None else {r.id: r.module for r in known.table}
@@ -142,7 +146,7 @@ class Viewpoint:
         else:
             later = memory.predict(known[0][0].id, now + setup.control.lookahead)
             sighting = _sighting(others[0], later, wind, setup)
-            team = self._team(seen, mates, wind, setup)
+            team = self._team(seen, mates, wind, setup)._replace(part=self.part)
             if self._last is not None and now - self._last_at <= REMEMBERS:
                 rule, aim, time = self._last.rule, self._last.aim, self._last.time
                 team = team._replace(held=held_after(rule, aim, time, now - self._last_at, wind))
@@ -187,6 +191,7 @@ class Viewpoint:
             own=question.seen,
             others=question.others,
             rho=setup.rules.rho,
+            why=self.why,
         )
 
     def _silent(self, own: Own, lacks: tuple[str, ...]) -> PilotDecision:

@@ -8,8 +8,6 @@ writes benchmarks/results/choice-in-pursuit.md.
 from __future__ import annotations
 
 import argparse
-import platform
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import NamedTuple
 
@@ -23,6 +21,7 @@ from onboard.game.scenario import Scenario
 from sim_bridge.campaign.spatial_campaign import Played, mcnemar, play_seed, share
 from sim_bridge.campaign.spatial_draw import spatial
 from sim_bridge.campaign.spatial_game import Evasion
+from tests.support import benchmark_record
 
 RESULT = Path("benchmarks/results/choice-in-pursuit.md")
 WAYS = ("paper", "choosing")
@@ -98,12 +97,12 @@ def paired(name: str, games: dict[str, list[Row]]) -> str:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seeds", type=int, default=40)
-    parser.add_argument("--scenarios", nargs="+", default=["five", "six"])
+    parser.add_argument("--scenarios", nargs="+", default=["six"])
     options = parser.parse_args()
     lines = [
         "# (30) and (31) in pursuit",
         "",
-        f"{datetime.now(UTC):%Y-%m-%d}, {platform.machine()}, Python {platform.python_version()};"
+        f"{benchmark_record.machine()};"
         f" `python -m tests.benchmarks.choice_in_pursuit --seeds {options.seeds}`; compiled spatial games,"
         " the evader by the strategy of 3.4.1, pairs of the same seeds.",
         "",

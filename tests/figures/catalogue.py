@@ -50,6 +50,12 @@ FIGURES = (
         ("configs/routes/twenty_km.toml",),
     ),
     Figure(
+        "choice-in-pursuit.md",
+        ("-m", "tests.benchmarks.choice_in_pursuit", "--seeds", "40"),
+        ("sim_bridge.campaign.spatial_campaign", "onboard.core.strategy.choosing"),
+        ("configs/scenarios/spatial/six.toml", "tests/benchmarks/choice_in_pursuit.py"),
+    ),
+    Figure(
         "predictor.md",
         ("-m", "tests.benchmarks.predictor"),
         ("onboard.pilot.predictor", "onboard.core.game.advance", "onboard.core.strategy"),

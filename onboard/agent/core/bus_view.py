@@ -30,6 +30,7 @@ from onboard.wire.bus.messages import (
     State,
     Track,
 )
+from onboard.wire.bus.team_messages import TeamPlan
 
 SAY_AGAIN_S = 30.0  # a trouble that goes on is said again after this
 
@@ -66,6 +67,8 @@ class BusView:
         self.target: Vec | None = None
         self.briefed = False
         self.mates: dict[int, Heard] = {}
+        self.plans: dict[int, tuple[TeamPlan, float]] = {}  # by planner, with when each came [s, monotonic]
+        self._plans = False  # whether plans are listened to
         self._mates_at = NEVER  # when `_mates` were carried forward to; NEVER = one has been heard since
         self._mates: tuple[Mate, ...] = ()
         self.clock = MasterClock()
@@ -89,7 +92,13 @@ class BusView:
             .on(topics.TRACK, self._take_track)
             .on(topics.STATE, self._take_mate)
             .on(topics.HEALTH, self._take_own_health)
+            .on(topics.PLAN, self._take_plan)
         )
+
+    @property
+    def nonce(self) -> int:
+        """Of this agent's process."""
+        return self._nonce
 
     def keys(self) -> tuple[str, ...]:
         """Every key and pattern that this agent listens to now."""
@@ -99,7 +108,8 @@ class BusView:
             fixed.append(topics.EVADER_BRIEF)
         keys = [topic.key(self._game) for topic in fixed]
         keys.append(topics.HEALTH.key(self._game, self._id))
-        keys += [topics.STATE.key(self._game, mate) for mate in sorted(self._followed)]
+        for mate in sorted(self._followed):
+            keys += self._keys_of(mate)
         return tuple(keys)
 
     def open(self) -> None:
@@ -115,17 +125,26 @@ class BusView:
         self._hear((key, payload))
         return self._track
 
-    def follow(self, mates: tuple[int, ...]) -> None:
-        """Listen to these team mates' states, and to nobody else's."""
-        for id in [id for id in self._followed if id not in mates]:
+    def follow(self, mates: tuple[int, ...], plans: bool = False) -> None:
+        """Listen to these team mates' states, with `plans` to their plans, and to nobody else's."""
+        changed = plans is not self._plans
+        for id in [id for id in self._followed if changed or id not in mates]:
             self._followed.remove(id)
-            self._out.put(Unsubscribe(topics.STATE.key(self._game, id)))
+            for key in self._keys_of(id):
+                self._out.put(Unsubscribe(key))
             self.mates.pop(id, None)
+            self.plans.pop(id, None)
             self._mates_at = NEVER
+        self._plans = plans
         for id in mates:
             if id not in self._followed and id != self._id:
                 self._followed.append(id)
-                self._out.put(Subscribe(topics.STATE.key(self._game, id)))
+                for key in self._keys_of(id):
+                    self._out.put(Subscribe(key))
+
+    def _keys_of(self, mate: int) -> list[str]:
+        keys = [topics.STATE.key(self._game, mate)]
+        return [*keys, topics.PLAN.key(self._game, mate)] if self._plans else keys
 
     def mates_at(self, now: float) -> tuple[Mate, ...]:
         """The team mates where they are at `now` [s, monotonic], carried forward from when they were heard.
@@ -193,6 +212,10 @@ class BusView:
         if state.id in self._followed:
             self.mates[state.id] = Heard(state, self._now.s)
             self._mates_at = NEVER
+
+    def _take_plan(self, plan: TeamPlan) -> None:
+        if self._plans and plan.id in self._followed:
+            self.plans[plan.id] = (plan, self._now.s)
 
     def _take_master(self, master: Master) -> None:
         if self._foreign(master.name):

@@ -12,6 +12,7 @@ from onboard.agent.core.journal import Journal
 from onboard.agent.core.part import PartState, Way
 from onboard.agent.core.participation import Participation
 from onboard.agent.core.readiness import lacking
+from onboard.agent.core.team_talk import TEAM, TeamTalk
 from onboard.agent.core.to_place import approach_of, own_state
 from onboard.agent.core.vehicle_link import VehicleLink
 from onboard.autopilot.base import Stage
@@ -20,11 +21,13 @@ from onboard.core.game.rules import Target
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec
 from onboard.core.strategy.knowledge import Decision
+from onboard.core.strategy.team.plan_types import Heights
 from onboard.game.track_watch import TrackWatch
 from onboard.pilot.approach import Approach
 from onboard.pilot.memory import Memory
 from onboard.pilot.pilot import PilotDecision, Question, Viewpoint
 from onboard.pilot.setup import GameSetup, Own, Side, TrackSample
+from onboard.pilot.team_seat import Field
 from onboard.wire.bus.messages import Phase, PhaseChange, Role, Setup, Track
 from onboard.wire.geodesy import Frame
 
@@ -51,6 +54,9 @@ class GamePlayer:
         self.policy = limits.policy_of(config, None, True)
         self.strategy = ""
         self.flying: Flying | None = None
+        self.fit = False  # whether the vehicle follows the game
+        self._team: TeamTalk | None = None  # of who flies by a plan
+        self._asked: tuple[Instant, Question] | None = None  # the last control step
         self.why_not = ""  # why the setup at hand was refused
         self._participation = Participation(config.id)
         self._vehicle, self._bus, self._out, self._journal = vehicle, bus, out, journal
@@ -179,7 +185,12 @@ class GamePlayer:
             game = game._replace(target=Target(True, bus.target))
             self.flying = flying._replace(game=game)
         at = self._seconds(now.wall_ns)
-        return flying.viewpoint.look(at, own, bus.mates_at(now.s), game, self._memory)
+        if self._team is not None:
+            flying.viewpoint.part = self._team.part(now.s)
+            flying.viewpoint.why = self._team.why
+        asked = flying.viewpoint.look(at, own, bus.mates_at(now.s), game, self._memory)
+        self._asked = (now, asked) if isinstance(asked, Question) else None
+        return asked
 
     def conclude(self, question: Question, decision: Decision) -> PilotDecision:
         """What the strategy's answer means in this game."""
@@ -201,6 +212,11 @@ class GamePlayer:
 
     def train(self, wall_ns: int) -> None:
         """Give the predictors a little time."""
+        if self._team is not None and self._asked is not None:
+            self._team.fit = self.fit
+            now, question = self._asked
+            self._asked = None
+            self._team.work(now, self.time(now.wall_ns), question)
         if self.flying is not None:
             self._memory.train(self._seconds(wall_ns), TRAINING_SLICES)
 
@@ -239,15 +255,28 @@ class GamePlayer:
         origin = setup.origin
         self._vehicle.observer.frame = Frame(origin.latitude_deg, origin.longitude_deg, origin.altitude_m)
         self.policy = limits.policy_of(self.config, setup, hovers, own)
+        self.strategy = self._strategy_of(setup)
         mates = (m.id for m in setup.roster if m.role is self.config.role and m.id != self.config.id)
-        self._bus.follow(tuple(mates))
+        self._bus.follow(tuple(mates), self.strategy == TEAM)
         game = limits.game_setup(self.config, setup, self._bus.target, hovers, own)
         opponents = [player.id for player in game.opponents(self.side)]
         self._memory = Memory(self.config.prediction, opponents)
-        self.strategy = self._strategy_of(setup)
+        self._team = self._team_of(setup, game) if self.strategy == TEAM else None
         viewpoint = Viewpoint(self.config.id, self.side, self.strategy)
         self.flying = Flying(game, viewpoint, self._approach(setup, game))
         self._journal.info("setup", f"{setup.scenario} from {setup.master}: {len(setup.roster)} vehicles")
+
+    def _team_of(self, setup: Setup, game: GameSetup) -> TeamTalk:
+        """The seat in the team: of all pursuers whose strategy is the plan's."""
+        team = tuple(
+            m.id for m in setup.roster
+            if m.role is Role.PURSUER and (m.strategy == TEAM or m.id == self.config.id)
+        )  # fmt: skip
+        fences = self.policy.fences
+        floor = max((fence.low for fence in fences), default=Heights().floor)
+        ceiling = min((fence.high for fence in fences), default=Heights().ceiling)
+        field = Field(game, team, Heights(floor, ceiling), setup.track_sigma)
+        return TeamTalk(self.config.id, self.config.game, field, self._bus, self._out, self._journal)
 
     def _approach(self, setup: Setup, game: GameSetup) -> Approach | None:
         member = limits.member_of(setup, self.config.id)

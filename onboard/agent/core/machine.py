@@ -304,12 +304,19 @@ class AgentCore:
 
     # ------------------------------------------------------------------ what it says
 
+    @property
+    def _fit(self) -> bool:
+        """Whether the vehicle follows the game, as far as was looked at last."""
+        return self.stage in (AgentStage.READY, AgentStage.ACTING)
+
     def _publish(self, step: Instant) -> None:
         now, wall_ns, t = step.s, step.wall_ns, self.vehicle.telemetry
         if t.placed and now - self._state_at >= STATE_EVERY_S and now - t.position_at < 1.0:
             self._state_at = now
             self.out.put(
-                Publish(self._keys[STATE], STATE.encode(self.reports.state(wall_ns)), STATE.delivery)
+                Publish(
+                    self._keys[STATE], STATE.encode(self.reports.state(wall_ns, self._fit)), STATE.delivery
+                )
             )
         if now - self._decision_at >= DECISION_EVERY_S:
             report = self.reports.decision(wall_ns)
@@ -347,6 +354,8 @@ class AgentCore:
             self.stage = stage
             text = f": lacks {', '.join(self.lacks)}" if self.lacks and stage is AgentStage.WAITING else ""
             self.journal.info("stage", f"{stage.value}{text}")
+        if self.game is not None:
+            self.game.fit = self._fit
 
     def _stage(self, *, over: bool) -> AgentStage:
         output = self.flight.output if self.flight.playing else None

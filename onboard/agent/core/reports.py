@@ -12,8 +12,9 @@ from onboard.agent.core.flight import Flight
 from onboard.agent.core.vehicle_link import VehicleLink
 from onboard.core.math.vectors import Vec
 from onboard.core.safety.policy import Action
+from onboard.core.safety.supervisor import SupervisorOutput
 from onboard.core.safety.words import ACTIONS, CAUSES
-from onboard.pilot.pilot import drawing
+from onboard.pilot.pilot import PilotDecision, drawing
 from onboard.wire.bus.messages import (
     AgentStage,
     DecisionLevel,
@@ -55,8 +56,8 @@ class Reports:
         self._id, self._role, self._nonce, self._version = config.id, config.role, nonce, version
         self._vehicle, self._bus, self._flight = vehicle, bus, flight
 
-    def state(self, stamp_ns: int) -> State:
-        """`vehicles/<id>/state`."""
+    def state(self, stamp_ns: int, fit: bool = True) -> State:
+        """`vehicles/<id>/state`; `fit`: whether the vehicle follows the game."""
         t = self._vehicle.telemetry
         return State(
             id=self._id,
@@ -72,6 +73,7 @@ class Reports:
             mode=t.mode,
             armed=t.armed,
             nonce=self._nonce,
+            fit=fit,
         )
 
     def decision(self, stamp_ns: int) -> DecisionReport | None:
@@ -98,7 +100,7 @@ class Reports:
             cones=tuple(cone for cone in cones if all(map(isfinite, cone))),
             circles=tuple(circle for circle in circles if all(map(isfinite, circle))),
             supervisor=SupervisorAction(ACTIONS[output.action]),
-            reason=CAUSES[output.cause] if output.action != Action.PASS else ", ".join(decision.lacks),
+            reason=_reason(decision, output),
             predictor=decision.predictor,
             predictor_sigma=min(_number(decision.sigma, UNSURE), UNSURE),
             setpoint=_sound(flight.setpoint),
@@ -139,6 +141,13 @@ class Reports:
             loiter_m=own.loiter_radius or 0.0,
             place_s=flight.part.place_s(now),
         )
+
+
+def _reason(decision: PilotDecision, output: SupervisorOutput) -> str:
+    """The supervisor's where it acts; else what is lacking, or the plan that is followed."""
+    if output.action != Action.PASS:
+        return CAUSES[output.cause]
+    return ", ".join(decision.lacks) or decision.why
 
 
 def _number(value: float, otherwise: float = 0.0) -> float:

@@ -13,6 +13,7 @@ from onboard.core.geometry.apollonius import intercept
 from onboard.core.geometry.cones import Cone, blocked_cones
 from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import NORTH, TINY, ZERO, Vec, along, norm, scale, unit
+from onboard.core.strategy.team.plan_types import IDLE, Assignment
 
 
 class EvaderView(NamedTuple):
@@ -62,6 +63,7 @@ class Team(NamedTuple):
     own_index: int  # its own among the members
     target: Target  # the evader's, where the rules let the pursuers know it
     held: Held = NOTHING_HELD
+    part: Assignment = IDLE  # its own in the team's plan that it last heard
 
 
 class PursuerView(NamedTuple):
@@ -80,6 +82,7 @@ class PursuerView(NamedTuple):
     own_index: int = -1  # its own among the members
     target: Target = NO_TARGET  # the evader's, where the pursuers know it
     held: Held = NOTHING_HELD  # nothing where nobody remembers: in the plane game
+    part: Assignment = IDLE  # its own in the team's plan that it last heard
 
 
 def level(v: Vec, planar: bool) -> Vec:
@@ -172,4 +175,5 @@ def pursuer_view(
         team.own_index,
         team.target,
         team.held,
+        team.part,
     )

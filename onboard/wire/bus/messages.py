@@ -220,6 +220,7 @@ class State(Message, frozen=True):
     mode: str  # the autopilot's, in its own words
     armed: bool
     nonce: int = 0  # random per process: two agents with one id are told apart
+    fit: bool = True  # whether it follows the game: False while it is held, handed over, or lacks something
 
 
 class DecisionReport(Message, frozen=True):

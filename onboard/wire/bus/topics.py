@@ -31,6 +31,7 @@ from onboard.wire.bus.messages import (
     State,
     Track,
 )
+from onboard.wire.bus.team_messages import TeamPlan
 
 ROOT = "apollonius"
 DEFAULT_GAME = "game"  # the game that all programs join unless told another
@@ -232,6 +233,10 @@ STATE = Topic(
 DECISION = Topic(
     "vehicles/{id}/decision", DecisionReport, Delivery.LATEST, (Party.OWN_AGENT,), _GROUND,
     "what was decided and why", 10.0,
+)  # fmt: skip
+PLAN = Topic(
+    "vehicles/{id}/plan", TeamPlan, Delivery.LATEST, (Party.OWN_AGENT,), (Party.SAME_SIDE, *_GROUND),
+    "what the planner has its team do", 2.0,
 )  # fmt: skip
 HEALTH = Topic(
     "vehicles/{id}/health", Health, Delivery.LATEST, (Party.OWN_AGENT,), (Party.OWN_AGENT, *_GROUND),

@@ -1,0 +1,126 @@
+"""A pursuer's team on the bus: hears plans, plans where it is the planner, and says what it plans."""
+
+from __future__ import annotations
+
+from math import inf, isfinite
+
+from onboard.agent.core.bus_view import BusView
+from onboard.agent.core.events import Instant, Outbox, Publish
+from onboard.agent.core.journal import Journal
+from onboard.core.math.vectors import Vec
+from onboard.core.strategy.team.plan_types import NOBODY, Assignment, Band, Plan, Reason, Role
+from onboard.pilot.pilot import Question
+from onboard.pilot.team_seat import Dated, Field, Known, TeamSeat
+from onboard.wire.bus.team_messages import PartReason, PlannedPart, TeamPlan, TeamRole
+from onboard.wire.bus.topics import PLAN
+
+TEAM = "team"  # name of the strategy whose pursuers fly by a plan
+
+
+def said(made: Plan, team: tuple[int, ...], planner: int, stamp_ns: int, nonce: int) -> TeamPlan:
+    """A plan as it goes over the bus; `team` are the ids of its members in their order."""
+    band = made.band
+    parts = tuple(
+        PlannedPart(
+            id,
+            TeamRole[part.role.name],
+            (part.aim.x, part.aim.y, part.aim.z),
+            part.heading,
+            part.due if isfinite(part.due) else -1.0,
+            PartReason[part.reason.name],
+        )
+        for id, part in zip(team, made.assignments, strict=True)
+    )
+    return TeamPlan(
+        id=planner,
+        stamp_ns=stamp_ns,
+        t=made.time,
+        parts=parts,
+        closed=band.closed,
+        gap=band.gap,
+        bearing=band.bearing,
+        pitch=band.pitch,
+        closer=0 if band.closer == NOBODY else team[band.closer],
+        closes=band.closes if isfinite(band.closes) else -1.0,
+        nonce=nonce,
+    )
+
+
+def understood(message: TeamPlan, team: tuple[int, ...]) -> Plan | None:
+    """The plan of a message; None where it is not one of this team, or holds what is no number."""
+    parts = {part.id: part for part in message.parts}
+    numbers = [message.t, message.gap, message.bearing, message.pitch, message.closes]
+    numbers += [n for part in message.parts for n in (*part.aim, part.heading, part.due)]
+    if set(parts) != set(team) or not all(map(isfinite, numbers)):
+        return None
+    assignments = tuple(
+        Assignment(
+            Role[parts[id].role.name],
+            Vec(*parts[id].aim),
+            parts[id].heading,
+            parts[id].due if parts[id].due >= 0.0 else inf,
+            Reason[parts[id].reason.name],
+        )
+        for id in team
+    )
+    closer = team.index(message.closer) if message.closer in team else NOBODY
+    closes = message.closes if message.closes >= 0.0 else inf
+    band = Band(message.closed, message.gap, message.bearing, message.pitch, closer, closes)
+    return Plan(message.t, assignments, band)
+
+
+class TeamTalk:
+    """Joins one member's seat with the bus."""
+
+    def __init__(
+        self, id: int, game: str, field: Field, bus: BusView, out: Outbox, journal: Journal
+    ) -> None:
+        self.seat = TeamSeat(id, field)
+        self.fit = False  # whether this vehicle follows the game
+        self._key, self._bus, self._out, self._journal = PLAN.key(game, id), bus, out, journal
+        self._taken: dict[int, TeamPlan] = {}
+        self._dated: Dated | None = None  # the plan that counted when it was last asked
+        self._planner = 0  # whose plan counted when it was last asked
+
+    def part(self, now: float) -> Assignment:
+        """The own part now [s, monotonic]."""
+        for planner, (message, at) in self._bus.plans.items():
+            if self._taken.get(planner) is not message:
+                self._taken[planner] = message
+                made = understood(message, self.seat.field.team)
+                if made is None:
+                    self._bus.drops["foreign_plan"] += 1
+                else:
+                    self.seat.heard(planner, made, at)
+        self._tell(now)
+        return self.seat.part(now)
+
+    @property
+    def why(self) -> str:
+        """Who planned the part at hand, what it is and why, in words; "" without a plan."""
+        dated = self._dated
+        if dated is None or self.seat.id not in self.seat.field.team:
+            return ""
+        part = dated.plan.assignments[self.seat.field.team.index(self.seat.id)]
+        reason = PartReason[part.reason.name].value
+        return f"{part.role.name.lower()} in the plan of {dated.planner}" + (f": {reason}" if reason else "")
+
+    def work(self, now: Instant, t: float, question: Question) -> None:
+        """After a control step at `t` [s] since t0: plan where that is this vehicle's to do, and say it."""
+        bus, seat = self._bus, self.seat
+        unfit = frozenset(id for id, heard in bus.mates.items() if not heard.state.fit)
+        evader = question.others[0] if question.others else None
+        known = Known(now.s, t, question.own, self.fit, bus.mates_at(now.s), unfit, evader)
+        made = seat.work(known)
+        if made is not None:
+            message = said(made, seat.field.team, seat.id, now.wall_ns, self._bus.nonce)
+            self._out.put(Publish(self._key, PLAN.encode(message), PLAN.delivery))
+
+    def _tell(self, now: float) -> None:
+        """Say whose plan counts where that has changed."""
+        dated = self._dated = self.seat.counts(now)
+        planner = 0 if dated is None else dated.planner
+        if planner != self._planner:
+            self._planner = planner
+            text = f"{planner} plans for the team" if planner else "no plan: chases alone"
+            self._journal.info("planner", text)

@@ -1,0 +1,151 @@
+"""One pursuer's seat in its team: it plans where the plan is its to make, and knows the plan that counts.
+
+One planner by lease: the member with the lowest id that is fit and was heard within `LEASE_S`. Whoever
+becomes the planner goes on from the plan that it heard last. The plan that counts is the one of the lowest
+planner among those heard within `LEASE_S`, else the newest; older than `OLD_S` none counts, and a pursuer
+chases alone. No input and no output.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from onboard.core.game.views import level, told
+from onboard.core.math.states import Mate, Vehicle, VehicleLimits
+from onboard.core.math.vectors import Vec, sub
+from onboard.core.strategy.team.plan_types import (
+    IDLE,
+    Assignment,
+    Heights,
+    Margin,
+    Member,
+    Plan,
+    Situation,
+)
+from onboard.core.strategy.team.planner import no_plan, plan
+from onboard.pilot.setup import GameSetup, Own, Side
+
+EVERY_S = 0.5  # between two plans
+LEASE_S = 1.0  # for which a member's or a planner's last word counts
+OLD_S = 5.0  # beyond which a plan is no plan
+DELAY_S = 0.2  # from a measurement to the pursuers' answer to it, through sensor, decision and autopilot
+
+
+class Known(NamedTuple):
+    """What one member knows when it looks at its team."""
+
+    now: float  # [s, monotonic]
+    t: float  # [s] since t0
+    own: Own
+    fit: bool  # itself
+    mates: tuple[Mate, ...]  # carried forward to now
+    unfit: frozenset[int]  # mates that say that they do not follow the game
+    evader: Vehicle | None  # through the air; None: no track of it
+
+
+class Field(NamedTuple):
+    """What stays the same through a game."""
+
+    game: GameSetup
+    team: tuple[int, ...]  # ids of the members, in the roster's order
+    heights: Heights
+    sigma: float  # stated error of the evader's track [m]
+
+
+class Dated(NamedTuple):
+    """A plan, and when it came."""
+
+    planner: int
+    plan: Plan
+    at: float  # [s, monotonic]
+
+
+class TeamSeat:
+    """The seat of vehicle `id`."""
+
+    def __init__(self, id: int, field: Field) -> None:
+        self.id = id
+        self.field = field
+        self._heard: dict[int, Dated] = {}  # by planner
+        self._planned_at = -1e9
+
+    def heard(self, planner: int, made: Plan, now: float) -> None:
+        """A mate's plan came at `now` [s, monotonic]; one of another team is left out."""
+        if planner in self.field.team and len(made.assignments) == len(self.field.team):
+            self._heard[planner] = Dated(planner, made, now)
+
+    def counts(self, now: float) -> Dated | None:
+        """The plan that counts at `now` [s, monotonic]; None where there is none, or only an old one."""
+        fresh = [dated for dated in self._heard.values() if now - dated.at <= LEASE_S]
+        if fresh:
+            return min(fresh, key=lambda dated: dated.planner)
+        newest = max(self._heard.values(), key=lambda dated: dated.at, default=None)
+        return newest if newest is not None and now - newest.at <= OLD_S else None
+
+    def part(self, now: float) -> Assignment:
+        """The own part of the plan that counts; IDLE where none does: then it chases alone."""
+        dated = self.counts(now)
+        if dated is None or self.id not in self.field.team:
+            return IDLE
+        return dated.plan.assignments[self.field.team.index(self.id)]
+
+    def planner(self, known: Known) -> int:
+        """Whose the plan is to make now: the lowest fit id; 0 where nobody is fit."""
+        heard = {m.id for m in known.mates if m.age <= LEASE_S and m.id not in known.unfit}
+        if known.fit:
+            heard.add(self.id)
+        return min((id for id in heard if id in self.field.team), default=0)
+
+    def work(self, known: Known) -> Plan | None:
+        """Make a plan where one is due and it is this member's to make; it counts at once."""
+        due = known.now - self._planned_at >= EVERY_S - 1e-6
+        if not due or known.evader is None or self.planner(known) != self.id:
+            return None
+        self._planned_at = known.now
+        situation = situation_of(self.id, self.field, known, known.evader)
+        newest = max(self._heard.values(), key=lambda dated: dated.at, default=None)
+        before = no_plan(situation.team, known.t) if newest is None else newest.plan
+        made = plan(situation, before)
+        self._heard[self.id] = Dated(self.id, made, known.now)
+        return made
+
+
+def situation_of(id: int, field: Field, known: Known, evader: Vehicle) -> Situation:
+    """The situation that a planner reckons with, in the moving air."""
+    game, planar = field.game, field.game.rules.planar
+    wind = level(known.own.wind, planar)
+
+    def there(position: Vec, velocity: Vec, speed: float) -> Vehicle:
+        return Vehicle(level(position, planar), sub(level(velocity, planar), wind), speed)
+
+    mates: Mapping[int, Mate] = {mate.id: mate for mate in known.mates}
+    team = []
+    for member in field.team:
+        player = game.player(member)
+        limits = VehicleLimits() if player is None else player.limits
+        speed = 0.0 if player is None else player.speed
+        if member == id:
+            own = there(known.own.position, known.own.velocity, speed)
+            team.append(Member(own, limits, known.fit))
+        elif member in mates:
+            mate = mates[member]
+            fit = mate.age <= LEASE_S and member not in known.unfit
+            team.append(Member(there(mate.position, mate.velocity, speed), limits, fit))
+        else:
+            team.append(Member(there(known.own.position, known.own.velocity, speed), limits, False))
+    evading = next(iter(game.opponents(Side.PURSUER)), None)
+    return Situation(
+        known.t,
+        0.0,
+        evader,
+        VehicleLimits() if evading is None else evading.limits,
+        tuple(team),
+        told(game.target, game.rules),
+        wind,
+        game.rules,
+        field.heights,
+        Margin(DELAY_S, field.sigma),
+        evader.position,
+        game.rules.rho,
+    )
