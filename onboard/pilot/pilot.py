@@ -23,6 +23,7 @@ from onboard.core.game.views import (
     nearest_mate,
     pursuer_view,
     told,
+    with_limits,
 )
 from onboard.core.geometry.apollonius import apollonius_sphere
 from onboard.core.geometry.assessment import half_angle
@@ -143,6 +144,7 @@ class Viewpoint:
         if self.side is Side.EVADER:
             goal = setup.target._replace(position=level(setup.target.position, planar))
             view = evader_view(seen, me.limits, others, goal, wind, setup.rules)
+            view = with_limits(view, tuple(player.limits for player, _ in known))
         else:
             later = memory.predict(known[0][0].id, now + setup.control.lookahead)
             sighting = _sighting(others[0], later, wind, setup)

@@ -41,10 +41,13 @@ from sim_bridge.campaign.kernel_cache import kernel
 
 KERNELS = (
     "onboard.core.math.vectors",
+    "onboard.core.math.angles",
     "onboard.core.geometry.apollonius",
     "onboard.core.geometry.cones",
     "onboard.core.game.views",
     "onboard.core.strategy.evasion",
+    "onboard.core.strategy.foresight",
+    "onboard.core.strategy.evasive",
     "onboard.core.strategy.pursuit",
     "onboard.core.strategy.features",
     "onboard.core.strategy.policy",
@@ -55,7 +58,9 @@ KERNELS = (
 
 # Everything is inlined, or else the many small functions would pass whole games by value; but
 # these are called from many places and would swell the code.
-OUT_OF_LINE = frozenset({"free_ray_limited", "allow", "restart", "listen"})
+OUT_OF_LINE = frozenset(
+    {"free_ray_limited", "allow", "restart", "listen", "foreseen", "hunted", "two_legs", "chase"}
+)
 
 Array = NDArray[np.float64]
 T = TypeVar("T", bound=tuple[Callable[..., Any], ...])

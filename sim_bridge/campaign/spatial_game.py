@@ -28,6 +28,7 @@ from onboard.core.game.views import (
     pursuer_view,
     sighted,
     told,
+    with_limits,
 )
 from onboard.core.math.each import each
 from onboard.core.math.states import Mate, Vehicle
@@ -220,6 +221,7 @@ def decide_all(
     others = each(opponent, game.pursuers, Watch(seen, now, wind, dt))
     me = in_air(own, wind, game.evader.speed)
     view = evader_view(me, game.evader_limits, others, conditions.target, wind, conditions.rules)
+    view = with_limits(view, game.pursuer_limits)
     decision = ways.evader(view, ways.chosen.evader)
     crew[0] = order(start, crew[0], decision, states, (0, now))
     write_down(decided, 0, decision)

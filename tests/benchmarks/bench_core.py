@@ -85,7 +85,7 @@ ENCLOSED = tuple(
 def evader_decides(team: tuple[Vehicle, ...]) -> Any:
     own = Vehicle(ZERO, scale(NORTH, 5.0), 5.0)
     cones = blocked_cones(own, team, 4.0)
-    return evader(EvaderView(own, FREE, team, cones, Target(True, TARGET), RULES))
+    return evader(EvaderView(own, FREE, team, cones, Target(True, TARGET), RULES, (0.0,) * len(team)))
 
 
 @pytest.mark.parametrize(

@@ -42,7 +42,8 @@ def decision() -> Any:
 
     def work() -> object:
         view = EvaderView(
-            own, limits, others, blocked_cones(own, others, rules.rho), Target(True, target), rules
+            own, limits, others, blocked_cones(own, others, rules.rho), Target(True, target), rules,
+            (0.0,) * len(others),
         )
         return evader(view)
 

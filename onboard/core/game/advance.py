@@ -23,6 +23,7 @@ from onboard.core.game.views import (
     pursuer_view,
     sighted,
     told,
+    with_limits,
 )
 from onboard.core.math.each import each, each_pair
 from onboard.core.math.states import Vehicle, VehicleLimits
@@ -136,9 +137,10 @@ def move_one(vehicle: Vehicle, decision: Decision, dt: float) -> Vehicle:
 
 def still_view(game: Game, conditions: Conditions) -> EvaderView:
     """The situation as the evader sees it in still air."""
-    return evader_view(
+    view = evader_view(
         game.evader, game.evader_limits, game.pursuers, conditions.target, ZERO, conditions.rules
     )
+    return with_limits(view, game.pursuer_limits)
 
 
 def decide(

@@ -11,6 +11,7 @@ from typing import NamedTuple
 from onboard.core.game.rules import NO_TARGET, Control, Rules, Target
 from onboard.core.geometry.apollonius import intercept
 from onboard.core.geometry.cones import Cone, blocked_cones
+from onboard.core.math.each import each
 from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import NORTH, TINY, ZERO, Vec, along, norm, scale, unit
 from onboard.core.strategy.team.plan_types import IDLE, Assignment
@@ -25,6 +26,7 @@ class EvaderView(NamedTuple):
     cones: tuple[Cone, ...]  # directions that the pursuers block, one cone each, from `blocked_cones`
     target: Target  # where it will be met in the moving air
     rules: Rules
+    turn_rates: tuple[float, ...]  # of the pursuers, at most, as they declare [rad/s]; 0 = not declared
 
 
 class Sighting(NamedTuple):
@@ -125,7 +127,24 @@ def evader_view(
     holds its velocity over ground.
     """
     cones = blocked_cones(own, pursuers, rules.rho)
-    return EvaderView(own, limits, pursuers, cones, target_in_air(target, own, wind), rules)
+    aim = target_in_air(target, own, wind)
+    return EvaderView(own, limits, pursuers, cones, aim, rules, each(undeclared, pursuers, 0.0))
+
+
+def undeclared(_pursuer: Vehicle, _index: int, _shared: float) -> float:
+    """The turn rate of a pursuer that declares none (for `each`)."""
+    return 0.0
+
+
+def turn_rate_of(limits: VehicleLimits, _index: int, _shared: float) -> float:
+    """What a vehicle declares [rad/s] (for `each`)."""
+    return limits.turn_rate
+
+
+def with_limits(view: EvaderView, limits: tuple[VehicleLimits, ...]) -> EvaderView:
+    """The same view, of pursuers whose limits are known."""
+    rates = each(turn_rate_of, limits, 0.0)
+    return EvaderView(view.own, view.limits, view.pursuers, view.cones, view.target, view.rules, rates)
 
 
 def sighted(evader: Vehicle, heading: Vec, lookahead: float) -> Sighting:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from onboard.core.game.advance import EvaderStrategy, PursuerStrategy
 from onboard.core.game.views import EvaderView, PursuerView
-from onboard.core.strategy import choosing, evasion, pursuit
+from onboard.core.strategy import choosing, evasion, evasive, pursuit
 from onboard.core.strategy.knowledge import Rule
 
 
@@ -57,6 +57,18 @@ PURSUERS: dict[str, NamedPursuer] = {
 EVADERS: dict[str, NamedEvader] = {
     "paper": NamedEvader(
         evasion.evader, evasion.EVADER, "rules 1 to 3 of 3.4.1: free ray, or resultant force"
+    ),
+    "hysteresis": NamedEvader(
+        evasive.hysteresis, evasive.HYSTERESIS, "paper; between free rays, a turn has its cost"
+    ),
+    "two-leg": NamedEvader(
+        evasive.two_leg, evasive.TWO_LEG, "hysteresis; nothing free: a first leg after which a ray is safe"
+    ),
+    "dodge": NamedEvader(
+        evasive.dodging, evasive.DODGING, "hysteresis; nothing free: early across the nearest line of sight"
+    ),
+    "evasive": NamedEvader(
+        evasive.evasive, evasive.EVASIVE, "two-leg; else the best of some turns, played against the pursuers"
     ),
     "straight": NamedEvader(evasion.straight, evasion.STRAIGHT, "for comparison: straight to the target"),
 }

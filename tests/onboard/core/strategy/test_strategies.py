@@ -50,7 +50,7 @@ def seen_by_evader(team, target=None, limits=FREE, planar=True):
     cones = blocked_cones(own, team, 4.0)
     goal = ZERO if target is None else target
     rules = Rules(2.0, 4.0, planar=planar)
-    return EvaderView(own, limits, team, cones, Target(target is not None, goal), rules)
+    return EvaderView(own, limits, team, cones, Target(target is not None, goal), rules, (0.0,) * len(team))
 
 
 def seen_by_pursuer(place, heading=NORTH, speed=4.0, limits=FREE, mate=None, separation=0.0,
