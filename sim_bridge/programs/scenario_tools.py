@@ -24,7 +24,7 @@ seed = 1                       # of noise, wind and lost datagrams
 position = [0, 0]
 speed = 5                      # what the game reckons with
 target = [-60, -140]           # leave it out: the evader only flees
-# strategy = "paper"           # or "straight"
+# strategy = "paper"           # hysteresis, two-leg, dodge, evasive, straight; see sim-bridge list
 # pitch_min_deg = -20          # limits (2)-(3); they enter the decision itself
 # pitch_max_deg = 20
 
@@ -160,6 +160,13 @@ def _duration(scenario: Scenario) -> list[str]:
         lines.append(f"no target: the game lasts until a capture, at most {rules.horizon:g} s")
     half_turn = pi / turn_rate_of(scenario, 0)
     lines.append(f"a half turn of the evader takes {half_turn:.1f} s")
+    for index, (id, spec) in enumerate(zip(scenario.ids, scenario.vehicles, strict=True)):
+        held = degrees(turn_rate_of(scenario, index))
+        if held < spec.turn_rate_deg - 1e-9:
+            lines.append(
+                f"warning: vehicle {id} declares a turn of {spec.turn_rate_deg:g}°/s, its airframe holds"
+                f" {held:g}: strategies reckon with what is declared"
+            )
     faster = [p for p in pursuers if p.speed > evader.speed]
     if faster:
         least = min(distance(p.position, evader.position) / (p.speed - evader.speed) for p in faster)

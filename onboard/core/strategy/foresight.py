@@ -6,7 +6,7 @@ its present heading best, turning no faster than it declares. A fixed number of 
 
 from __future__ import annotations
 
-from math import atan2, cos, pi, sin, sqrt
+from math import atan2, cos, pi, sin, sqrt, tan
 from typing import NamedTuple
 
 from onboard.core.game.views import EvaderView, heading_at
@@ -16,11 +16,12 @@ from onboard.core.math.each import each, each_pair
 from onboard.core.math.states import Vehicle
 from onboard.core.math.vectors import TINY, Vec, clamp, distance, dot, scale, sub, unit, yaw_of
 
-STEPS = (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12)  # instants of a path, the first one now
+STEPS = (0, 1, 2, 3, 4, 5, 6, 7, 8)  # instants of a path, the first one now
 BEARING = 0  # a pursuer that keeps the bearing: parallel pursuit
 PURE = 1  # straight at the evader
 PAPER = 2  # rules 4 to 6 of 3.4.2
 UNLIMITED = 1e9  # [rad/s]
+STEEPEST = 1.5  # pitch of a pursuer [rad]
 
 
 class Instant(NamedTuple):
@@ -52,7 +53,7 @@ class Hunt(NamedTuple):
     path: tuple[Instant, ...]
     speed: float  # of the evader [m/s]
     step: float  # [s]
-    climb: float  # largest sine of a pursuer's pitch
+    climb: float  # largest slope of a pursuer's path: tan θ
 
 
 class Hunted(NamedTuple):
@@ -99,28 +100,33 @@ def instant(number: int, _index: int, wish: Wish) -> Instant:
 
 
 def chase(seen: Instant, p: Vec, v_e: float, v_p: float, model: int) -> Vec:
-    """The direction in which a pursuer at `p` chases the evader; not normalised."""
-    rx, ry, rz = seen.x - p.x, seen.y - p.y, seen.z - p.z
-    far = sqrt(rx * rx + ry * ry + rz * rz)
-    if far <= TINY or model == PURE:
-        return Vec(rx, ry, rz)
-    lx, ly, lz = rx / far, ry / far, rz / far
-    away = seen.hx * lx + seen.hy * ly + seen.hz * lz  # −cos φ
+    """The direction in which a pursuer at `p` chases the evader; not normalised. Written out in floats: an
+    evader asks it a thousand times a decision."""
+    x, y, z, hx, hy, hz = seen
+    px, py, pz = p
+    x -= px
+    y -= py
+    z -= pz
+    square = x * x + y * y + z * z
+    if square <= TINY or model == PURE:
+        return Vec(x, y, z)
+    away = hx * x + hy * y + hz * z  # −d cos φ
     if model == PAPER and away >= 0.0 and v_p < v_e:
-        return Vec(seen.hx, seen.hy, seen.hz)
-    cx = v_e * (seen.hx - away * lx)
-    cy = v_e * (seen.hy - away * ly)
-    cz = v_e * (seen.hz - away * lz)
-    lateral = cx * cx + cy * cy + cz * cz
-    square = v_p * v_p
-    if lateral < square:
-        k = sqrt(square - lateral)
-        return Vec(cx + k * lx, cy + k * ly, cz + k * lz)
+        return Vec(hx, hy, hz)
+    # The evader's velocity across the line of sight, and what is left of the own speed along it.
+    k = away / square
+    cx = v_e * (hx - k * x)
+    cy = v_e * (hy - k * y)
+    cz = v_e * (hz - k * z)
+    left = v_p * v_p - cx * cx - cy * cy - cz * cz
+    if left > 0.0:
+        k = sqrt(left / square)
+        return Vec(cx + k * x, cy + k * y, cz + k * z)
     if model == PAPER and v_p < v_e:
         gamma = v_p / v_e
-        sine = sqrt(max(0.0, 1.0 - away * away))
-        k = far * (-away + sine * gamma / sqrt(1.0 - gamma * gamma))  # v_e T of (19)
-        return Vec(rx + k * seen.hx, ry + k * seen.hy, rz + k * seen.hz)
+        sine = sqrt(max(0.0, square - away * away))  # d sin φ
+        k = -away + sine * gamma / sqrt(1.0 - gamma * gamma)  # v_e T of (19)
+        return Vec(x + k * hx, y + k * hy, z + k * hz)
     return Vec(cx, cy, cz)
 
 
@@ -141,7 +147,7 @@ def model_of(seen: Instant, pursuer: Vehicle, v_e: float) -> int:
 
 def hunted(pursuer: Vehicle, turn_rate: float, hunt: Hunt) -> Hunted:
     """A pursuer played along the evader's path (for `each_pair`)."""
-    path, v_e, step = hunt.path, hunt.speed, hunt.step
+    path, v_e, step, climb = hunt
     (px, py, pz), velocity, v_p = pursuer
     model = model_of(path[0], pursuer, v_e)
     yaw = yaw_of(velocity)
@@ -149,24 +155,35 @@ def hunted(pursuer: Vehicle, turn_rate: float, hunt: Hunt) -> Hunted:
     smallest = 1e300
     dx, dy, dz = velocity
     for number in range(len(path) - 1):
-        now, then = path[number], path[number + 1]
-        dx, dy, dz = chase(now, Vec(px, py, pz), v_e, v_p, model)
+        x, y, z, _hx, _hy, _hz = path[number]
+        dx, dy, dz = chase(path[number], Vec(px, py, pz), v_e, v_p, model)
         flat = sqrt(dx * dx + dy * dy)
-        steep = hunt.climb * sqrt(flat * flat + dz * dz)
-        if dz > steep or dz < -steep:
-            dz = steep if dz > 0.0 else -steep
+        if abs(dz) > climb * flat:
+            dz = climb * flat if dz > 0.0 else -climb * flat
         if reach < pi:
-            yaw = yaw + clamp(wrap(atan2(dy, dx) - yaw), -reach, reach)
-            dx, dy = flat * cos(yaw), flat * sin(yaw)
-        n = sqrt(dx * dx + dy * dy + dz * dz)
+            yaw += clamp(wrap(atan2(dy, dx) - yaw), -reach, reach)
+            dx = flat * cos(yaw)
+            dy = flat * sin(yaw)
+        n = sqrt(flat * flat + dz * dz)
         pace = v_p * step / n if n > TINY else 0.0
         # The closest approach within the step, both flying straight.
-        rx, ry, rz = now.x - px, now.y - py, now.z - pz
-        px, py, pz = px + dx * pace, py + dy * pace, pz + dz * pace
-        mx, my, mz = then.x - px - rx, then.y - py - ry, then.z - pz - rz
-        moved = mx * mx + my * my + mz * mz  # [m²]
-        when = clamp(-(rx * mx + ry * my + rz * mz) / moved, 0.0, 1.0) if moved > TINY else 0.0
-        rx, ry, rz = rx + mx * when, ry + my * when, rz + mz * when
+        rx = x - px
+        ry = y - py
+        rz = z - pz
+        px += dx * pace
+        py += dy * pace
+        pz += dz * pace
+        x, y, z, _hx, _hy, _hz = path[number + 1]
+        mx = x - px - rx
+        my = y - py - ry
+        mz = z - pz - rz
+        moved = mx * mx + my * my + mz * mz
+        inward = rx * mx + ry * my + rz * mz
+        if inward < 0.0 and moved > TINY:
+            when = min(1.0, -inward / moved)
+            rx += mx * when
+            ry += my * when
+            rz += mz * when
         smallest = min(smallest, rx * rx + ry * ry + rz * rz)
     n = sqrt(dx * dx + dy * dy + dz * dz)
     k = v_p / n if n > TINY else 0.0
@@ -181,7 +198,8 @@ def vehicle_of(end: Hunted, _index: int, _shared: float) -> Vehicle:
 def foreseen(view: EvaderView, wish: Wish) -> Foreseen:
     """What the way to fly comes to at the end of its steps."""
     path = each(instant, STEPS, wish)
-    hunt = Hunt(path, wish.speed, wish.step, sin(max(view.limits.pitch_max, -view.limits.pitch_min)))
+    steep = min(STEEPEST, max(view.limits.pitch_max, -view.limits.pitch_min))
+    hunt = Hunt(path, wish.speed, wish.step, tan(steep))
     ends = each_pair(hunted, view.pursuers, view.turn_rates, hunt)
     last = path[-1]
     place = Vec(last.x, last.y, last.z)

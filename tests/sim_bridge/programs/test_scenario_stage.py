@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from math import hypot
+from math import hypot, radians
 from pathlib import Path
 
 import pytest
+from msgspec.structs import replace
 
 from onboard.config.strict import ConfigError
 from onboard.game.scenario import load
 from onboard.runtime.resources import configs
-from sim_bridge.programs.scenario_band import band_lines, stage_file
+from sim_bridge.programs.scenario_band import band_lines, stage_file, turn_rate_of
 from sim_bridge.programs.scenario_tools import check
 
 SCENARIOS = configs() / "scenarios"
@@ -67,10 +68,23 @@ def test_four_aircraft_need_a_wide_ring_for_their_turns(tmp_path: Path) -> None:
 
 
 def test_check_tells_the_turn_that_the_aircraft_can_fly() -> None:
-    """The file leaves the turn at its default of 60 deg/s; the rudder of `nose` holds 4.5."""
-    told = check(load(SCENARIOS / "spatial/six.toml"))
+    """Left at its default a file declares 60 deg/s; the rudder of `nose` holds 4.5."""
+    six = load(SCENARIOS / "spatial/six.toml")
+    told = check(six)
     assert "636.6 m" in told
     assert "a half turn of the evader takes 40.0 s" in told
+    assert "its airframe holds" not in told
+    quick = replace(six, evader=replace(six.evader, turn_rate_deg=60.0))
+    told = check(quick)
+    assert "a half turn of the evader takes 40.0 s" in told
+    assert "warning: vehicle 1 declares a turn of 60°/s, its airframe holds 4.5" in told
+
+
+@pytest.mark.parametrize("path", sorted(SCENARIOS.rglob("*.toml")), ids=lambda path: path.stem)
+def test_shipped_scenarios_declare_turns_that_their_airframes_hold(path: Path) -> None:
+    scenario = load(path)
+    for index, spec in enumerate(scenario.vehicles):
+        assert turn_rate_of(scenario, index) == pytest.approx(radians(spec.turn_rate_deg))
 
 
 @pytest.mark.parametrize("layout", ["inline", "two lines"])
