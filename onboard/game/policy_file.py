@@ -65,14 +65,15 @@ def save(path: Path, policy: Policy) -> None:
 def load(path: Path) -> Policy:
     """Read a policy's file. Raises ConfigError that names the file, the key, what was found and expected."""
     try:
-        with np.load(path, allow_pickle=False) as data:
+        found = np.load(path, allow_pickle=False)
+        if isinstance(found, np.ndarray):
+            raise ConfigError(f"{path}: found one array, expected a policy's .npz")
+        with found as data:
             content = {key: data[key] for key in data.files}
     except OSError as error:
         raise ConfigError(f"{path}: {(error.strerror or str(error)).lower()}") from None
     except (ValueError, EOFError, KeyError, zipfile.BadZipFile) as error:
         raise ConfigError(f"{path}: found no policy, expected NumPy's .npz: {error}") from None
-    except AttributeError:  # a single array is no archive
-        raise ConfigError(f"{path}: found one array, expected a policy's .npz") from None
     read = _Reader(str(path), content)
     if read.number("format", 1, 1) != FORMAT:
         raise ConfigError(f"{path}: format: expected {FORMAT}")

@@ -22,7 +22,7 @@ class Shelf(NamedTuple):
         return self._replace(rooms=(room, *(one for one in self.rooms if one != room)))
 
 
-SCENARIOS = Shelf("scenarios", ("flight", "spatial", "table1"))
+SCENARIOS = Shelf("scenarios", ("flight", "spatial", "table1", "gym"))
 AIRCRAFT = Shelf("aircraft")
 ROUTES = Shelf("routes")
 

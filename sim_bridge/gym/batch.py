@@ -84,6 +84,11 @@ class BatchedGames:
         return self._table.seeds
 
     @property
+    def winds(self) -> NDArray[np.float64]:
+        """Each game's wind (games, 2): north and east [m/s], where the air moves to."""
+        return self._table.winds
+
+    @property
     def times(self) -> NDArray[np.float64]:
         """Since each game's start (games,) [s]."""
         return self._table.clock[:, 0]

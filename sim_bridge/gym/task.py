@@ -15,7 +15,7 @@ from onboard.core.math.vectors import distance
 from onboard.core.strategy.features import Axes, Form, Steering
 from onboard.game.plugins import evader_strategy, pursuer_strategy
 from onboard.game.scenario import AirframeKind, Scenario, load
-from onboard.runtime.resources import configs
+from onboard.runtime.resources import SCENARIOS, shipped_file
 from sim_bridge.gym.exchange import Rewards
 
 EVADER = "evader"
@@ -26,7 +26,6 @@ class Motion(Enum):
     """How vehicles move."""
 
     SIMPLE = "simple"  # (7)–(8): at once as decided, in the mean wind
-    AIRCRAFT = "aircraft"  # as flown: transfer functions, gusts, sensor and filters, supervisor, autopilot
 
 
 class Task(NamedTuple):
@@ -45,11 +44,11 @@ class Task(NamedTuple):
 class Wish(msgspec.Struct, frozen=True, kw_only=True):
     """What an environment can be told; every key is one of `gymnasium.make`."""
 
-    scenario: Scenario | Path | str = "plane"  # a scenario, its file, or the name of one of configs/scenarios
+    scenario: Scenario | Path | str = "plane"  # a scenario, its file, or the name of a shipped one
     learn: str | Sequence[str] = "pursuers"  # "pursuers", "evader", "all", or names as "pursuer_1"
     evader: str = ""  # its strategy where it does not learn; "" = the scenario's
     pursuers: str = ""  # strategy of those who do not learn; "" = the scenario's
-    motion: str = "simple"  # or "aircraft"
+    motion: str = "simple"
     actions: str = "heading"  # or "velocity", "acceleration"
     axes: str = "ned"  # or "sight"
     rewards: Rewards = Rewards()
@@ -94,17 +93,7 @@ def _one(key: str, value: str, words: list[str]) -> str:
 
 
 def _scenario(wish: Scenario | Path | str) -> Scenario:
-    if isinstance(wish, Scenario):
-        return wish
-    if isinstance(wish, Path) or wish.endswith(".toml"):
-        return load(Path(wish))
-    folder = configs() / "scenarios"
-    found = {path.stem: path for path in sorted(folder.rglob("*.toml"))}
-    found |= {f"{path.parent.name}/{path.stem}": path for path in sorted(folder.rglob("*.toml"))}
-    found |= {path.stem: path for path in sorted((folder / "gym").glob("*.toml"))}
-    if wish not in found:
-        raise ConfigError(f"scenario: found {wish!r}, expected a file or one of: {', '.join(sorted(found))}")
-    return load(found[wish])
+    return wish if isinstance(wish, Scenario) else load(shipped_file(Path(wish), SCENARIOS))
 
 
 def _demand_playable(scenario: Scenario, motion: Motion) -> None:

@@ -87,7 +87,7 @@ def test_an_acceleration_changes_the_velocity_by_no_more_than_the_vehicle_can() 
 
 
 def test_a_seed_draws_the_places_of_campaigns_and_the_wind_carries_everybody() -> None:
-    task = make_task(Wish(scenario="spatial", learn="all", actions="velocity", spread=20.0))
+    task = make_task(Wish(scenario="space", learn="all", actions="velocity", spread=20.0))
     games = BatchedGames(task, 3, compiled=False)
     games.reset(seeds=np.array([7, 8, 7]))
     for g, seed in enumerate((7, 8, 7)):
@@ -102,7 +102,7 @@ def test_a_seed_draws_the_places_of_campaigns_and_the_wind_carries_everybody() -
 
 
 def test_tracks_are_noisy_and_late_by_as_much_as_the_sensor_says() -> None:
-    task = make_task(Wish(scenario="spatial", learn="evader", spread=0.0, pursuers="pure-pursuit"))
+    task = make_task(Wish(scenario="space", learn="evader", spread=0.0, pursuers="pure-pursuit"))
     games = BatchedGames(task, 1, compiled=False)
     arrays = games.reset(1)
     off = []
