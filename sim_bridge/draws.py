@@ -29,6 +29,7 @@ class Purpose(IntEnum):
     PLACE = 3  # where a campaign's vehicle starts
     WIND = 4  # where a campaign's wind comes from (vehicle 0)
     ESTIMATE = 5  # what is wrong with an autopilot's estimate of the wind: five, once
+    PLAN = 6  # which messages of a team's plan are lost (vehicle 0)
 
 
 class Key(NamedTuple):

@@ -67,6 +67,7 @@ NAMES: dict[Kind, dict[str, Names]] = {
 }
 """Where each limit of each kind is read."""
 
+
 def names_of(kind: Kind) -> tuple[str, ...]:
     """Return every name under which a kind's limits may be read."""
     return tuple(name for names in NAMES.get(kind, {}).values() for name, _ in names)

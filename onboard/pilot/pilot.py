@@ -31,7 +31,7 @@ from onboard.core.geometry.cones import blocked_cones
 from onboard.core.math.states import Mate, Vehicle
 from onboard.core.math.vectors import ZERO, Vec, add, along, clamp, scale, sub
 from onboard.core.strategy.choosing import held_after
-from onboard.core.strategy.knowledge import Decision, Level, Module
+from onboard.core.strategy.knowledge import Decision, Level, Module, level_of
 from onboard.core.strategy.registry import DEFAULT, EVADERS, PURSUERS
 from onboard.core.strategy.team.plan_types import IDLE
 from onboard.pilot.memory import Memory
@@ -180,7 +180,7 @@ class Viewpoint:
         return PilotDecision(
             decides=True,
             velocity=_steered(decision, own, question.me, planar),
-            level=Level.TACTICAL.name.lower(),
+            level=level_of(decision.rule).name.lower(),
             module=self._modules.get(decision.rule, Module.INTELLIGENT).name.lower(),
             strategy=self.strategy,
             rule=decision.rule.name.lower(),

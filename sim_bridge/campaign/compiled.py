@@ -52,6 +52,15 @@ KERNELS = (
     "onboard.core.strategy.features",
     "onboard.core.strategy.policy",
     "onboard.core.strategy.choosing",
+    "onboard.core.strategy.team.assignment",
+    "onboard.core.strategy.team.closure",
+    "onboard.core.strategy.team.flying",
+    "onboard.core.strategy.team.guarding",
+    "onboard.core.strategy.team.parts",
+    "onboard.core.strategy.team.plan_types",
+    "onboard.core.strategy.team.planner",
+    "onboard.core.strategy.team.ring",
+    "onboard.core.strategy.team.staging",
     "onboard.core.game.referee",
     "onboard.core.game.advance",
 )
@@ -60,6 +69,7 @@ KERNELS = (
 # these are called from many places and would swell the code.
 OUT_OF_LINE = frozenset(
     {"free_ray_limited", "allow", "restart", "listen", "foreseen", "hunted", "two_legs", "chase"}
+    | {"assigned", "engaged", "way_out_at", "least_gap"}
 )
 
 Array = NDArray[np.float64]

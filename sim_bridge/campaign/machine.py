@@ -8,9 +8,12 @@ from typing import Any
 
 from onboard.core.game.advance import EvaderStrategy, PursuerStrategy
 from onboard.core.strategy.knowledge import Decision
+from onboard.core.strategy.team.flying import pursuer_team
+from onboard.core.strategy.team.planner import engaged
 from sim_bridge.campaign.aboard import Aboard
 from sim_bridge.campaign.plane_in_wind import Flown
 from sim_bridge.campaign.spatial_game import Array, Chosen, SpatialPlay, Start, Ways, play
+from sim_bridge.campaign.team_play import stand_by
 from sim_bridge.campaign.tracks import Tracks
 
 
@@ -49,10 +52,11 @@ def machine(
     One compiled kernel holds all of them, so that a matrix of strategies is compiled once.
     """
     evade, pursue = among(evaders), among(pursuers)
+    planner = engaged if pursuer_team in pursuers else stand_by
 
     def played(
         start: Start, chosen: Chosen, players: list[Flown], crew: list[Aboard], seen: Tracks, log: Array
     ) -> SpatialPlay:
-        return play(start, Ways(evade, pursue, chosen), players, crew, seen, log)
+        return play(start, Ways(evade, pursue, chosen, planner), players, crew, seen, log)
 
     return played

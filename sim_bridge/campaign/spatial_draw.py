@@ -31,9 +31,17 @@ from sim_bridge.campaign.kernel_cache import kernel
 from sim_bridge.campaign.machine import machine
 from sim_bridge.campaign.plane_in_wind import Flown, climate_of, drawn_wind, launched, wind_at
 from sim_bridge.campaign.spatial_game import Chosen, Fleet, Pace, Start, approach
+from sim_bridge.campaign.team_play import Planning
 from sim_bridge.campaign.tracks import Eye, Tracks, no_tracks
 from sim_bridge.draws import Purpose, Stream, key_of
-from sim_bridge.plane_game.setup import conditions_of, game_of
+from sim_bridge.plane_game.setup import (
+    conditions_of,
+    game_of,
+    heights_of,
+    margin_of,
+    nearest_of,
+    turn_rate_of,
+)
 from sim_bridge.vehicle.flight import KERNELS as FLIGHT
 from sim_bridge.vehicle.flight.aircraft import named, within
 from sim_bridge.vehicle.flight.plane import Command, PlaneState, Steer, start_state, trimmed
@@ -45,7 +53,6 @@ KERNELS = (
     *CORE,
     *FLIGHT,
     *WIND,
-    "onboard.core.math.angles",
     "onboard.core.guidance.plane",
     "onboard.core.safety.envelope",
     "onboard.core.safety.fence",
@@ -57,12 +64,17 @@ KERNELS = (
     "sim_bridge.campaign.aboard",
     "sim_bridge.campaign.tracks",
     "sim_bridge.campaign.ledger",
+    "sim_bridge.campaign.envelope",
+    "sim_bridge.campaign.team_play",
     "sim_bridge.campaign.spatial_game",
 )
 T0 = 6.5  # [s] from the beginning of the world to that of the game, as `fly --fast` has it
 DECIDES = 2  # samples after a multiple of 50 ms at which positions come and everybody decides
 PLACE_SIGMA = 300.0  # [m] by which a seed moves each pursuer's start, level
 HEIGHT_SIGMA = 60.0  # [m] and in height
+PLAN_EVERY = 0.5  # [s] between two plans of a team
+PLAN_LATE = 0.05  # [s] until a plan is heard over an undisturbed bus
+PLAN_PATIENCE = 5.0  # [s] without a plan after which a pursuer flies alone
 TURNS = 100  # draws of places within a fence
 
 
@@ -154,6 +166,7 @@ def draw(scenario: Scenario, seed: int, t0: float = T0, compiled: bool = True) -
         tuple(autopilot_of(spec.limits(), spec.speed, radians(spec.turn_rate_deg)) for spec in specs),
         keys,
         tuple(drawn_errors(key_of(scenario.seed, id, Purpose.ESTIMATE)) for id in scenario.ids),
+        planning_of(scenario, control * dt),
     )
     players: list[Flown] = []
     level: list[Command] = []
@@ -170,6 +183,31 @@ def draw(scenario: Scenario, seed: int, t0: float = T0, compiled: bool = True) -
     crew = [aboard_of(flown[i].plane, start, specs[i].speed, i) for i in range(len(players))]
     steps = int(conditions.rules.horizon / (control * dt)) + 8
     return Draw(start, list(flown), crew, tracks, steps, sides_of(scenario))
+
+
+def planning_of(scenario: Scenario, step: float) -> Planning:
+    """How the scenario's pursuers plan, as their agents do; `step` [s] is a control step.
+
+    The plan's messages are late and lost as those of the bus, where the scenario says so.
+    """
+    spec = scenario.flight.impairment
+    every = max(2, round(PLAN_EVERY / step))
+    late = PLAN_LATE + (spec.delay_s + 0.5 * spec.jitter_s if spec.bus else 0.0)
+    limits = tuple(
+        one.limits()._replace(turn_rate=turn_rate_of(scenario, index))
+        for index, one in enumerate(scenario.vehicles)
+    )
+    return Planning(
+        every,
+        min(every - 1, max(1, round(late / step))),
+        spec.loss if spec.bus else 0.0,
+        round(PLAN_PATIENCE / step),
+        heights_of(scenario),
+        margin_of(scenario),
+        nearest_of(scenario),
+        limits,
+        key_of(scenario.seed, 0, Purpose.PLAN),
+    )
 
 
 def sides_of(scenario: Scenario) -> Sides:

@@ -35,9 +35,13 @@ from onboard.core.math.states import Mate, Vehicle
 from onboard.core.math.vectors import ZERO, Vec, scale
 from onboard.core.safety.policy import Policy
 from onboard.core.strategy.knowledge import Decision
+from onboard.core.strategy.team.plan_types import Plan, Situation
+from onboard.core.strategy.team.planner import no_plan
 from sim_bridge.campaign.aboard import NOBODY, Aboard, Autopilot, Instant, aware, commanded, ordered
+from sim_bridge.campaign.envelope import UNMOVED, Envelope, widened
 from sim_bridge.campaign.ledger import held_by, known, known_wind, note, note_wind, write_down
 from sim_bridge.campaign.plane_in_wind import Climate, Flown, blown, fly, gust_at, gust_tick, wind_at
+from sim_bridge.campaign.team_play import Planning, Talk, arrived, opened, posted, seat, stand_by
 from sim_bridge.campaign.tracks import Eye, Tracks, track_of, watched
 from sim_bridge.draws import Key
 from sim_bridge.vehicle.flight.plane import Command, PlaneModel, nose_yaw, placed, true_airspeed
@@ -68,6 +72,7 @@ class Ways(NamedTuple):
     evader: Callable[[EvaderView, int], Decision]
     pursuer: Callable[[PursuerView, int], Decision]
     chosen: Chosen
+    planner: Callable[[Situation, Plan], Plan] = stand_by  # of the pursuers' team
 
 
 class Fleet(NamedTuple):
@@ -87,17 +92,6 @@ class Pace(NamedTuple):
     t0: int  # the game begins
     control: int  # between two decisions
     decides: int  # remainder at which everybody decides
-
-
-class Envelope(NamedTuple):
-    """How far the aircraft went, all of them together."""
-
-    pitch_low: float  # [rad]
-    pitch_high: float
-    speed_low: float  # share of a vehicle's declared airspeed
-    speed_high: float
-    lowest: float  # height [m]
-    surface: float  # largest share of a servo's stroke
 
 
 class SpatialPlay(NamedTuple):
@@ -122,6 +116,7 @@ class Start(NamedTuple):
     autopilots: tuple[Autopilot, ...]
     gusts: tuple[Key, ...]  # of everybody's random numbers
     errors: tuple[Errors, ...]  # of everybody's estimate of the wind
+    planning: Planning
 
 
 class Deciding(NamedTuple):
@@ -133,6 +128,7 @@ class Deciding(NamedTuple):
     now: int  # sample
     ways: Ways
     decided: Array  # as `decide_all` has it
+    talk: Talk
 
 
 def in_air(vehicle: Vehicle, wind: Vec, speed: float) -> Vehicle:
@@ -182,7 +178,8 @@ def decide_pursuer(vehicle: Vehicle, index: int, team: Deciding) -> Decision:
         mate = nearest_mate(own.position, positions(members), index)
     me = in_air(own, wind, vehicle.speed)
     held = held_by(team.decided, index + 1, control.dt, wind)
-    side = Team(mate, members, index, told(start.conditions.target, rules), held)
+    part = team.talk.parts[index]
+    side = Team(mate, members, index, told(start.conditions.target, rules), held, part)
     view = pursuer_view(me, game.pursuer_limits[index], sighting, side, control, rules)
     return team.ways.pursuer(view, team.ways.chosen.pursuers[index])
 
@@ -209,13 +206,31 @@ def nobody(_vehicle: Vehicle, _index: int, _shared: float) -> Mate:
     return NOBODY
 
 
-def decide_all(
-    start: Start, ways: Ways, crew: list[Aboard], seen: Tracks, states: Array, decided: Array
-) -> None:
-    """Everybody's decision into `crew`, evader first, and into `decided` (players, 8): course and pitch
-    [rad], the sample (of the evader), rule, aim [m; NED] and time until then [s]."""
-    game, conditions = start.game, start.conditions
-    now, dt = int(decided[0, 2]), start.fleet.evader.dt
+def situation(team: Deciding) -> Situation:
+    """What the planner knows, by the wind of the first pursuer. The game has begun: t₀ is past."""
+    start = team.start
+    game, conditions, planning = start.game, start.conditions, start.planning
+    dt = start.fleet.evader.dt
+    wind = known_wind(team.states, 1)
+    evader = in_air(track_of(team.seen, 0, team.now, dt), wind, game.evader.speed)
+    members = each(seat, each(member_of, game.pursuers, team), planning)
+    target = told(conditions.target, conditions.rules)
+    return Situation(
+        (team.now - start.pace.t0) * dt, 0.0, evader, planning.limits[0], members, target, wind,
+        conditions.rules, planning.heights, planning.margin, evader.position, planning.nearest,
+    )  # fmt: skip
+
+
+def decide_all(team: Deciding, crew: list[Aboard], step: int) -> None:
+    """Everybody's decision into `crew`, evader first, and into the team's `decided` (players, 8): course and
+    pitch [rad], the sample (of the evader), rule, aim [m; NED] and time until then [s]."""
+    start, ways, seen, states, now = team.start, team.ways, team.seen, team.states, team.now
+    game, conditions, planning, decided = start.game, start.conditions, start.planning, team.decided
+    dt = start.fleet.evader.dt
+    decided[0, 2] = now
+    if step % planning.every == 0:
+        posted(team.talk, planning, ways.planner(situation(team), team.talk.made[0]), step)
+    arrived(team.talk, planning, step)
     own = known(states, 0)
     wind = known_wind(states, 0)
     others = each(opponent, game.pursuers, Watch(seen, now, wind, dt))
@@ -225,7 +240,7 @@ def decide_all(
     decision = ways.evader(view, ways.chosen.evader)
     crew[0] = order(start, crew[0], decision, states, (0, now))
     write_down(decided, 0, decision)
-    decisions = each(decide_pursuer, game.pursuers, Deciding(start, states, seen, now, ways, decided))
+    decisions = each(decide_pursuer, game.pursuers, team)
     for i in range(len(decisions)):
         crew[i + 1] = order(start, crew[i + 1], decisions[i], states, (i + 1, now))
         write_down(decided, i + 1, decisions[i])
@@ -238,23 +253,6 @@ def weathered(start: Start, index: int, aboard: Aboard, flown: Flown) -> Aboard:
     speed = true_airspeed(plane, wind_at(climate, plane.position), gust_at(climate, flown, model))
     sensed = Sensed(plane.velocity, speed, nose_yaw(plane, model))
     return aware(aboard, estimated(aboard.wind, ARDUPILOT, start.errors[index], sensed))
-
-
-def widened(e: Envelope, flown: Flown, model: PlaneModel, declared: float) -> Envelope:
-    """The envelope with one more aircraft's state."""
-    plane = flown.plane
-    surface = max(
-        abs(plane.pitch.surface) / model.pitch_law.surface_limit,
-        abs(plane.yaw.surface) / model.yaw_law.surface_limit,
-    )
-    return Envelope(
-        min(e.pitch_low, plane.pitch.angle),
-        max(e.pitch_high, plane.pitch.angle),
-        min(e.speed_low, plane.speed / declared),
-        max(e.speed_high, plane.speed / declared),
-        min(e.lowest, -plane.position.z),
-        max(e.surface, surface),
-    )
 
 
 def moved_on(start: Start, index: int, flown: Flown, command: Command, sample: int) -> Flown:
@@ -314,7 +312,7 @@ def play(
     """
     game, pace, eye = start.game, start.pace, start.eye
     dt = start.fleet.evader.dt
-    reach = Envelope(0.0, 0.0, 1.0, 1.0, 1e300, 0.0)
+    reach = UNMOVED
     count = len(players)
     here = np.empty((count, 8))
     before = np.empty((count, 8))
@@ -323,14 +321,14 @@ def play(
         note(here, i, players[i])
         note_wind(here, i, crew[i].wind)
         before[i] = here[i]
+    talk = opened(no_plan(each(seat, game.pursuers, start.planning), 0.0))
     steps = 0
     sample = pace.t0
     while game.score.verdict == GameResult.RUNNING:
         for _ in range(pace.control):
             watched(seen, eye, sample, here, dt)
             if sample % pace.control == pace.decides:
-                decided[0, 2] = sample
-                decide_all(start, ways, crew, seen, before, decided)
+                decide_all(Deciding(start, before, seen, sample, ways, decided, talk), crew, steps)
                 for i in range(count):
                     log[steps, i, 0] = here[i, 0]
                     log[steps, i, 1] = here[i, 1]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from math import atan2, ceil, degrees, pi, radians
+from math import atan2, ceil, degrees, pi
 from pathlib import Path
 from typing import NamedTuple
 
@@ -14,30 +14,21 @@ from onboard.core.math.angles import wrap
 from onboard.core.math.vectors import ZERO, Vec, distance, yaw_of
 from onboard.core.strategy.team.closure import least_number, past, pitch_band, way_out
 from onboard.core.strategy.team.parts import front_line, lead, setting_out
-from onboard.core.strategy.team.plan_types import NOBODY, Band, Heights, Margin, Member, Situation
+from onboard.core.strategy.team.plan_types import NOBODY, Band, Member, Situation
 from onboard.core.strategy.team.ring import TURNED, closing, laid
-from onboard.game.scenario import AirframeKind, Scenario, load
-from sim_bridge.plane_game.setup import conditions_of, vehicles_of
+from onboard.game.scenario import Scenario, load
+from sim_bridge.plane_game.setup import (
+    conditions_of,
+    heights_of,
+    margin_of,
+    nearest_of,
+    turn_rate_of,
+    vehicles_of,
+)
 
-NEAREST = 10.0  # safety distances ρ that a plane game's pursuers stage away from the evader, and
-NEAREST_IN_SPACE = 17.0  # those in space: 1.5 km with the 88 m of the shipped scenarios
 WIDER = 12  # rings, each 15 % wider than the one before, that are tried
 WITHOUT_BOUND = 3  # lines that are told where no bound is broken
 AGES = 100_000.0  # [s] for staging without a limit of time
-
-
-def turn_rate_of(scenario: Scenario, index: int) -> float:
-    """The turn that a vehicle can hold [rad/s]: as declared, and no more than its airframe's."""
-    from sim_bridge.vehicle.flight.aircraft import named
-    from sim_bridge.vehicle.flight.plane import PathModel
-
-    spec = scenario.vehicles[index]
-    declared = radians(spec.turn_rate_deg)
-    frame = spec.airframe or scenario.flight.airframe
-    if frame is AirframeKind.KINEMATIC:
-        return declared
-    model = named(frame.value).model
-    return declared if model.path == PathModel.COORDINATED else min(declared, model.yaw_law.rate_limit)
 
 
 def situation_of(scenario: Scenario, seconds: float, nearest: float | None = None) -> Situation:
@@ -46,22 +37,27 @@ def situation_of(scenario: Scenario, seconds: float, nearest: float | None = Non
     The evader stays about its place until then. The margin is the sensor's noise and delay and a control
     step; `nearest` [m] is how near the pursuers may come before t₀.
     """
-    rules, target, control = conditions_of(scenario)
+    rules, target, _ = conditions_of(scenario)
     evader, *others = vehicles_of(scenario)
-    fence = scenario.flight.fence
-    heights = Heights() if fence is None else Heights(fence.height_min, fence.height_max)
-    sensor = scenario.flight.sensor
-    flown = not rules.planar
-    step = 1.0 / scenario.flight.control_rate_hz if flown else control.dt
-    margin = Margin(sensor.delay_s + step, sensor.sigma) if flown else Margin(step, 0.0)
     team = tuple(
         Member(one, spec.limits()._replace(turn_rate=turn_rate_of(scenario, index)), True)
         for index, (one, spec) in enumerate(zip(others, scenario.pursuers, strict=True), 1)
     )
-    least = (NEAREST if rules.planar else NEAREST_IN_SPACE) * rules.rho if nearest is None else nearest
+    least = nearest_of(scenario) if nearest is None else nearest
     limits = scenario.evader.limits()._replace(turn_rate=turn_rate_of(scenario, 0))
     return Situation(
-        0.0, seconds, evader, limits, team, target, ZERO, rules, heights, margin, evader.position, least
+        0.0,
+        seconds,
+        evader,
+        limits,
+        team,
+        target,
+        ZERO,
+        rules,
+        heights_of(scenario),
+        margin_of(scenario),
+        evader.position,
+        least,
     )
 
 

@@ -11,8 +11,8 @@ from onboard.core.geometry.cones import blocked_cones
 from onboard.core.math.vectors import ZERO, distance
 from onboard.core.safety.fence import inside
 from onboard.game.scenario import Scenario
-from sim_bridge.plane_game.setup import conditions_of, vehicles_of
-from sim_bridge.programs.scenario_band import band_lines, turn_rate_of
+from sim_bridge.plane_game.setup import conditions_of, turn_rate_of, vehicles_of
+from sim_bridge.programs.scenario_band import band_lines
 
 TEMPLATE = """\
 # A scenario of Apollonius. Metres, metres a second, degrees where a key ends in _deg.

@@ -47,9 +47,7 @@ class Participation:
 
     def running(self, phase: PhaseChange | None, wall_ns: int) -> bool:
         """Whether the agent's part is on: from t₀ to the end."""
-        return (
-            phase is not None and phase.phase is Phase.RUNNING and self.joined and wall_ns >= phase.t0_ns
-        )
+        return phase is not None and phase.phase is Phase.RUNNING and self.joined and wall_ns >= phase.t0_ns
 
     @staticmethod
     def about_to(phase: PhaseChange | None) -> bool:

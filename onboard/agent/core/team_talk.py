@@ -72,9 +72,7 @@ def understood(message: TeamPlan, team: tuple[int, ...]) -> Plan | None:
 class TeamTalk:
     """Joins one member's seat with the bus."""
 
-    def __init__(
-        self, id: int, game: str, field: Field, bus: BusView, out: Outbox, journal: Journal
-    ) -> None:
+    def __init__(self, id: int, game: str, field: Field, bus: BusView, out: Outbox, journal: Journal) -> None:
         self.seat = TeamSeat(id, field)
         self.fit = False  # whether this vehicle follows the game
         self._key, self._bus, self._out, self._journal = PLAN.key(game, id), bus, out, journal

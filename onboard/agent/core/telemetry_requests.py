@@ -19,9 +19,7 @@ from onboard.wire.retry import CommandRetry, RetryPolicy
 
 REVIEW_S = 1.0  # between two looks at the rates
 LATE = 1.5  # times that, after which this process was late itself
-PARAM_RETRY = RetryPolicy(
-    0.5, patience=6, slow=5.0
-)  # [s] without end: the limits must come
+PARAM_RETRY = RetryPolicy(0.5, patience=6, slow=5.0)  # [s] without end: the limits must come
 VERSION_RETRY = RetryPolicy(1.0, patience=4, slow=30.0)  # [s] without end: a second autopilot answers, too
 CLOCK_EVERY_S = 2.0
 MORE_PATIENCE = 40  # tries at that pace where more is read than flying needs

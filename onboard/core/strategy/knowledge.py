@@ -41,6 +41,9 @@ class RuleId(IntEnum):
     TWO_LEGS = 32
     DODGE = 33
     PLAYED = 34
+    RING_SLOT = 40
+    GUARD_TARGET = 41
+    BLOCK_CORRIDOR = 42
     CUSTOM = 100
 
 
@@ -50,6 +53,14 @@ class Level(IntEnum):
     STRATEGIC = 1
     TACTICAL = 2
     EXECUTIVE = 3
+
+
+STRATEGIC = (RuleId.RING_SLOT, RuleId.GUARD_TARGET, RuleId.BLOCK_CORRIDOR)  # rules that follow a team's plan
+
+
+def level_of(rule: RuleId) -> Level:
+    """The level on which a rule speaks: what follows a team's plan is strategic, all else tactical."""
+    return Level.STRATEGIC if rule in STRATEGIC else Level.TACTICAL
 
 
 class Module(IntEnum):

@@ -8,6 +8,7 @@ from onboard.core.game.advance import EvaderStrategy, PursuerStrategy
 from onboard.core.game.views import EvaderView, PursuerView
 from onboard.core.strategy import choosing, evasion, evasive, pursuit
 from onboard.core.strategy.knowledge import Rule
+from onboard.core.strategy.team import flying
 
 
 class NamedPursuer(NamedTuple):
@@ -46,6 +47,9 @@ PURSUERS: dict[str, NamedPursuer] = {
     ),
     "constant-bearing": NamedPursuer(
         pursuit.pursuer_bearing, pursuit.BEARING, "for comparison: the line of sight keeps its direction"
+    ),
+    "team": NamedPursuer(
+        flying.pursuer_team, flying.TEAM, "its part of the team's plan: ring, goalkeeper, blocker, chase"
     ),
     "proportional-navigation": NamedPursuer(
         pursuit.pursuer_navigation,

@@ -37,9 +37,14 @@ def no_plan(team: tuple[Member, ...], now: float) -> Plan:
 
 def plan(s: Situation, previous: Plan) -> Plan:
     """What the team does from now on. `previous` is what it does now (`no_plan` where there is none)."""
-    way = way_out(s)
     if s.now < s.t0:
-        return Plan(s.now, staged(s, previous), closing(s, way))
+        return Plan(s.now, staged(s, previous), closing(s, way_out(s)))
+    return engaged(s, previous)
+
+
+def engaged(s: Situation, previous: Plan) -> Plan:
+    """What the team does once the evader has set out."""
+    way = way_out(s)
     was = previous.band.closed and previous.time >= s.t0
     if way.closed or (was and way.gap <= KEEP):
         band = Band(True, way.gap, way.bearing, way.pitch, NOBODY, s.now)
