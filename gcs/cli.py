@@ -23,7 +23,7 @@ from gcs import field_commands
 from gcs.export.formats import Format
 from gcs.options import BUS, STATION, Options, takes
 from gcs.urgent import WITHIN_S, Abort, abort_of
-from onboard.config.bounds import ListenTime, SystemId, WaitTime
+from onboard.config.bounds import HttpPort, ListenTime, SystemId, WaitTime
 from onboard.config.strict import ConfigError
 from onboard.runtime.options import VersionOption, group, shipped, value
 from onboard.runtime.program import run
@@ -174,6 +174,37 @@ def export(
     from gcs import programs
 
     return programs.export(run, tuple(dict.fromkeys(formats or (Format.CSV,))), to, tuple(ids or ()))
+
+
+@app.command(
+    epilog="Examples: gcs page | gcs page --control"
+    " | gcs page --host 0.0.0.0 --control --tls-certificate page.crt --tls-key page.key"
+)
+@takes(*BUS, "operator", "runs", "record")
+def page(
+    options: Options,
+    host: Annotated[str, typer.Option("--host", help="Address to listen at.")] = "127.0.0.1",
+    port: Annotated[int, value(HttpPort, "--port", words="Port to listen at; 0 = any.", unit="PORT")] = 8765,
+    control: Annotated[
+        bool, typer.Option("--control", help="Let who opens the address it prints command vehicles.")
+    ] = False,
+    token_file: Annotated[
+        Path | None, typer.Option("--token-file", help="A token of your own, in a file of mode 0600.")
+    ] = None,
+    tls_certificate: Annotated[
+        Path | None, typer.Option("--tls-certificate", help="Serve by TLS with this certificate (PEM).")
+    ] = None,
+    tls_key: Annotated[Path | None, typer.Option("--tls-key", help="Its key (PEM).")] = None,
+    tls_clients: Annotated[
+        Path | None,
+        typer.Option("--tls-clients", help="Let in who has a certificate of this authority (PEM)."),
+    ] = None,
+) -> int:
+    """Serve the game as a page for any browser: 3-D scene, plan, tables, alerts, orders."""
+    from gcs.page import program
+
+    how = program.PageOptions(host, port, control, token_file, tls_certificate, tls_key, tls_clients)
+    return _play(program.live(options.settings(), how))
 
 
 @app.command(epilog="Examples: gcs fence area.plan | gcs fence area.kml --scenario mine.toml")

@@ -171,6 +171,14 @@ _KEYS: dict[str, Callable[[VehicleView, Grade, Vec | None], Any]] = {
 }
 
 
+def sort_values(picture: Picture) -> dict[int, dict[str, Any]]:
+    """What each vehicle is sorted by, by the columns' sort names; None where it is not known."""
+    graded, evader = grades(picture), evader_position(picture)
+    return {
+        v.id: {name: key(v, graded[v.id], evader) for name, key in _KEYS.items()} for v in picture.vehicles
+    }
+
+
 def columns(width: int) -> tuple[Column, ...]:
     """The columns that a table of this width has."""
     whole = sum(abs(column.width) + 1 for column in COLUMNS) - 1 + RULE_WIDTH

@@ -44,6 +44,7 @@ Flights = Annotated[int, Meta(ge=2, le=1_000_000, description="a whole number fr
 Pressure = Annotated[float, Meta(ge=870, le=1085, description="870 to 1085 hPa")]
 Undulation = Annotated[float, Meta(ge=-110, le=90, description="−110 to 90 m")]
 ListenTime = Annotated[float, Meta(ge=0, le=600, description="0 to 600 s")]
+HttpPort = Annotated[int, Meta(ge=0, le=65535, description="a port, 0 to 65535")]
 WaitTime = Annotated[float, Meta(ge=0.1, le=3600, description="0.1 to 3600 s")]
 
 SystemId = Annotated[int, Meta(ge=1, le=250, description="a MAVLink system id from 1 to 250")]

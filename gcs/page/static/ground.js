@@ -1,0 +1,196 @@
+// What stands still: grid, fence, target, and the shapes of the selected vehicle's decision.
+import {
+  BufferGeometry, ConeGeometry, DoubleSide, Float32BufferAttribute, GridHelper, Group, Line, LineBasicMaterial,
+  LineDashedMaterial, LineLoop, LineSegments, Mesh, MeshBasicMaterial, RingGeometry, SphereGeometry, Vector3,
+} from "three";
+import { place } from "frames";
+
+function points(list) {
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new Float32BufferAttribute(list.flat(), 3));
+  return geometry;
+}
+
+function circle(radius, [x, y, z], colour, dashed = false) {
+  const list = [];
+  for (let i = 0; i <= 96; i += 1) {
+    const a = (i / 96) * 2 * Math.PI;
+    list.push([x + radius * Math.sin(a), y, z - radius * Math.cos(a)]);
+  }
+  const material = dashed
+    ? new LineDashedMaterial({ color: colour, dashSize: radius / 8, gapSize: radius / 12 })
+    : new LineBasicMaterial({ color: colour });
+  const line = new Line(points(list), material);
+  if (dashed) line.computeLineDistances();
+  return line;
+}
+
+function veil(colour, opacity) {
+  return new MeshBasicMaterial({ color: colour, transparent: true, opacity, side: DoubleSide, depthWrite: false });
+}
+
+function clear(group) {
+  for (const child of [...group.children]) {
+    group.remove(child);
+    child.traverse((each) => {
+      if (each.geometry) each.geometry.dispose();
+      if (each.material) each.material.dispose();
+    });
+  }
+}
+
+export function round(value) {
+  const power = 10 ** Math.floor(Math.log10(value));
+  const step = [1, 2, 5, 10].find((s) => s * power >= value * 0.999999);
+  return step * power;
+}
+
+export class Ground {
+  constructor() {
+    this.group = new Group();
+    this.still = new Group();
+    this.near = new Group(); // spheres around the evader
+    this.chosen = new Group(); // of the selected vehicle
+    this.aims = new Group();
+    this.gaps = new Group();
+    this.group.add(this.still, this.near, this.chosen, this.aims, this.gaps);
+  }
+
+  setColours(colours) {
+    this.colours = colours;
+    if (this.field) this.setField(this.field, this.reach);
+  }
+
+  setField(field, reach) {
+    this.field = field;
+    this.reach = reach;
+    clear(this.still);
+    clear(this.near);
+    const { colours } = this;
+    const cell = round(reach / 10);
+    const grid = new GridHelper(cell * 40, 40, colours.faint, colours.grid);
+    grid.material.transparent = true;
+    grid.material.opacity = colours.dark ? 0.5 : 0.9;
+    this.still.add(grid);
+    if (field.fence) this.drawFence(field.fence);
+    if (field.target) this.drawTarget(field);
+    if (field.capture) this.near.add(this.shell(field.capture, colours.capture, field.planar, false));
+    if (field.safety) this.near.add(this.shell(field.safety, colours.safety, field.planar, true));
+    this.near.visible = false;
+  }
+
+  shell(radius, colour, planar, dashed) {
+    const group = new Group();
+    group.add(circle(radius, [0, 0, 0], colour, dashed));
+    if (!planar) group.add(new Mesh(new SphereGeometry(radius, 32, 20), veil(colour, dashed ? 0.06 : 0.14)));
+    return group;
+  }
+
+  drawFence(fence) {
+    const { colours } = this;
+    const corners = fence.polygon.map(([north, east]) => [east, -north]);
+    for (const height of [fence.floor, fence.ceiling]) {
+      this.still.add(new LineLoop(points(corners.map(([x, z]) => [x, height, z])), new LineBasicMaterial({ color: colours.fence })));
+    }
+    corners.forEach(([x, z], i) => {
+      const [u, w] = corners[(i + 1) % corners.length];
+      const wall = points([[x, fence.floor, z], [u, fence.floor, w], [u, fence.ceiling, w], [x, fence.floor, z], [u, fence.ceiling, w], [x, fence.ceiling, z]]);
+      this.still.add(new Mesh(wall, veil(colours.fence, 0.08)));
+      this.still.add(new Line(points([[x, fence.floor, z], [x, fence.ceiling, z]]), new LineBasicMaterial({ color: colours.fence })));
+    });
+  }
+
+  drawTarget(field) {
+    const [x, y, z] = place(field.target);
+    const { colours } = this;
+    const radius = Math.max(field.capture || 0, this.reach / 60);
+    const disc = new Mesh(new RingGeometry(radius * 0.7, radius, 48), veil(colours.target, 0.9));
+    disc.rotation.x = -Math.PI / 2;
+    disc.position.set(x, y, z);
+    this.still.add(disc);
+    this.still.add(new Line(points([[x, 0, z], [x, y, z]]), new LineBasicMaterial({ color: colours.target })));
+    for (const [dx, dz] of [[radius, 0], [0, radius]]) {
+      this.still.add(new Line(points([[x - dx, y, z - dz], [x + dx, y, z + dz]]), new LineBasicMaterial({ color: colours.target })));
+    }
+  }
+
+  // Where the evader is, for its spheres; null where unknown.
+  setEvader(at) {
+    this.near.visible = at !== null;
+    if (at) this.near.position.set(...at);
+    this.evader = at;
+  }
+
+  setAims(aims, where, selected) {
+    clear(this.aims);
+    for (const aim of aims) {
+      const from = where.get(aim.id);
+      if (!from) continue;
+      const to = place(aim.aim);
+      const chosen = aim.id === selected;
+      const material = new LineDashedMaterial({
+        color: this.colours.rule(aim.rule), transparent: true, opacity: chosen ? 1 : 0.45,
+        dashSize: this.reach / 90, gapSize: this.reach / 150,
+      });
+      const line = new Line(points([from, to]), material);
+      line.computeLineDistances();
+      this.aims.add(line);
+      if (chosen) {
+        const mark = this.reach / 120;
+        this.aims.add(new LineSegments(points([[to[0] - mark, to[1], to[2] - mark], [to[0] + mark, to[1], to[2] + mark], [to[0] - mark, to[1], to[2] + mark], [to[0] + mark, to[1], to[2] - mark]]), new LineBasicMaterial({ color: this.colours.rule(aim.rule) })));
+      }
+    }
+  }
+
+  setGaps(assessment) {
+    clear(this.gaps);
+    if (!assessment || !this.evader || !this.field) return;
+    const radius = Math.max((this.field.safety || 0) * 1.6, this.reach / 12);
+    const [x, y, z] = this.evader;
+    for (const [start, width] of assessment.gaps) {
+      const ring = new RingGeometry(radius * 0.82, radius, 48, 1, Math.PI / 2 - start - width, width);
+      const mesh = new Mesh(ring, veil(this.colours.free, 0.55));
+      mesh.rotation.x = -Math.PI / 2;
+      mesh.position.set(x, y, z);
+      this.gaps.add(mesh);
+    }
+  }
+
+  setDecision(decision, from) {
+    clear(this.chosen);
+    if (!decision || !from) return;
+    const { colours } = this;
+    const length = this.reach / 3;
+    for (const [n, e, d, half] of decision.cones) {
+      const axis = new Vector3(...place([n, e, d])).normalize();
+      if (axis.lengthSq() === 0) continue;
+      const open = Math.min(half, Math.PI / 2 - 0.01);
+      if (this.field && this.field.planar) {
+        const heading = Math.atan2(e, n);
+        const sector = new RingGeometry(0, length, 32, 1, Math.PI / 2 - heading - half, 2 * half);
+        const mesh = new Mesh(sector, veil(colours.cone, 0.22));
+        mesh.rotation.x = -Math.PI / 2;
+        mesh.position.set(...from);
+        this.chosen.add(mesh);
+      } else {
+        const height = length * Math.cos(open);
+        const cone = new ConeGeometry(length * Math.sin(open), height, 40, 1, true);
+        cone.translate(0, -height / 2, 0);
+        const mesh = new Mesh(cone, veil(colours.cone, 0.16));
+        mesh.quaternion.setFromUnitVectors(new Vector3(0, -1, 0), axis);
+        mesh.position.set(...from);
+        this.chosen.add(mesh);
+      }
+    }
+    for (const [n, e, d, radius] of decision.circles) {
+      if (!(radius < 50 * this.reach)) continue;
+      const centre = place([n, e, d]);
+      this.chosen.add(circle(radius, centre, colours.apollonius));
+      if (this.field && !this.field.planar) {
+        const sphere = new Mesh(new SphereGeometry(radius, 40, 24), veil(colours.apollonius, 0.1));
+        sphere.position.set(...centre);
+        this.chosen.add(sphere);
+      }
+    }
+  }
+}
