@@ -29,6 +29,7 @@ from onboard.core.math.each import each, each_pair
 from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import ZERO, Vec, along, scale
 from onboard.core.strategy.knowledge import Decision
+from onboard.core.strategy.team.plan_types import IDLE
 
 
 class Conditions(NamedTuple):
@@ -103,9 +104,8 @@ def team_of(own: Vehicle, index: int, pursuers: tuple[Vehicle, ...], conditions:
     mate = Nearest(False, own.position)
     if rules.separation > 0.0:
         mate = nearest_mate(own.position, positions(pursuers), index)
-    return Team(
-        mate, pursuers, index, told(conditions.target, rules), Held(False, False, mate.position, 0.0)
-    )
+    held = Held(False, False, mate.position, 0.0)
+    return Team(mate, pursuers, index, told(conditions.target, rules), held, IDLE)
 
 
 def decide_one(own: Vehicle, index: int, field: Field) -> Decision:
