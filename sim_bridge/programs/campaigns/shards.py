@@ -25,7 +25,6 @@ from sim_bridge.programs.campaigns.play import Row
 
 MANIFEST = "manifest.json"
 KEY = b"apollonius.shard"
-VERDICTS = ("captured", "arrived", "escaped", "aborted")
 
 
 def file_name(plan: Plan, shard: Shard) -> str:
@@ -36,7 +35,6 @@ def file_name(plan: Plan, shard: Shard) -> str:
 def encoded(plan: Plan, shard: Shard, rows: Iterable[Row]) -> bytes:
     """A shard's games as a Parquet file: the columns of `Row`, what was played, and every swept value."""
     import pyarrow as pa
-    import pyarrow.parquet as pq
 
     games = list(rows)
     cells = {number: plan.cell(number) for number in shard.cells}
@@ -62,7 +60,14 @@ def encoded(plan: Plan, shard: Shard, rows: Iterable[Row]) -> bytes:
         "unsafe": pa.array([row.unsafe for row in games], pa.float64()),
         "reversals": pa.array([row.reversals for row in games], pa.int32()),
     }
-    table = pa.table(columns).replace_schema_metadata({KEY: plan.key(shard).encode()})
+    return written(pa.table(columns).replace_schema_metadata({KEY: plan.key(shard).encode()}))
+
+
+def written(table: Any) -> bytes:
+    """A table as the bytes of a Parquet file: the same for the same table and release of pyarrow."""
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
     sink = pa.BufferOutputStream()
     pq.write_table(
         table, sink, version="2.6", compression="zstd", compression_level=3, row_group_size=1 << 20,
@@ -122,15 +127,16 @@ def find(folder: Path, plan: Plan) -> Found:
     return Found(whole, broken, strange)
 
 
-def sound(source: Path | bytes, plan: Plan, shard: Shard) -> bool:
-    """Whether a file, or its bytes, is the shard: its key, its number of games, every page as written."""
+def sound(path: Path, plan: Plan, shard: Shard) -> bool:
+    """Whether a file is the shard: its key, its number of games, every page and every byte as written."""
     import pyarrow as pa
     import pyarrow.parquet as pq
 
     try:
-        table = pq.ParquetFile(
-            pa.BufferReader(source) if isinstance(source, bytes) else source, page_checksum_verification=True
-        ).read()
+        data = path.read_bytes()
+        table = pq.ParquetFile(pa.BufferReader(data), page_checksum_verification=True).read()
+        if pa.__version__ == plan.fingerprint.versions.get("pyarrow") and written(table) != data:
+            return False  # what stands between the pages has no checksum
     except (pa.ArrowException, OSError, ValueError):
         return False
     key = (table.schema.metadata or {}).get(KEY, b"").decode()

@@ -83,14 +83,15 @@ def _what(plan: Plan, number: int) -> tuple[str, ...]:
 def table(found: Results) -> str:
     """A line a cell."""
     head = ("cell", "scenario", *found.plan.parameters(), "evader", "pursuers", "played as", "games",
-            "captured", "arrived", "neither", "time to capture", "to arrival", "median smallest")  # fmt: skip
+            "captured", "arrived", "denied", "escaped", "time to capture", "to arrival",
+            "median smallest")  # fmt: skip
     rows: list[tuple[str, ...]] = [head]
     for one in found.cells:
         games, captured, arrived = len(one.seeds), one.share("captured"), one.share("arrived")
         rows.append(
             (str(one.cell), *one.what, str(games), _share(captured, games), _share(arrived, games),
-             str(games - captured[0] - arrived[0]), _mean(one, "captured"), _mean(one, "arrived"),
-             _metres(one.smallest))
+             str(one.share("denied")[0]), str(one.share("escaped")[0]), _mean(one, "captured"),
+             _mean(one, "arrived"), _metres(one.smallest))
         )  # fmt: skip
     widths = [max(len(row[k]) for row in rows) for k in range(len(head))]
     lines = [
@@ -145,7 +146,7 @@ def paired(found: Results) -> list[Paired]:
     return tests
 
 
-def tests_text(found: Results) -> str:
+def pairs_text(found: Results) -> str:
     """The paired tests in words, "" where there are none."""
     lines = [
         f"cells {t.first.cell} and {t.second.cell}: of the same {t.games} games {t.only_first} were captured"
@@ -158,7 +159,7 @@ def tests_text(found: Results) -> str:
 
 def text(found: Results) -> str:
     """All that `show` tells."""
-    parts = [table(found), tests_text(found)]
+    parts = [table(found), pairs_text(found)]
     if found.missing:
         parts.append(f"{found.missing} of {len(found.plan.shards())} shards are missing")
     return "\n\n".join(part for part in parts if part)

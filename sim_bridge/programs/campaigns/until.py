@@ -10,7 +10,9 @@ from typing import NamedTuple
 from onboard.config.strict import ConfigError
 
 Z = 1.959963984540054  # of the normal distribution at 97.5 %
-_RULE = re.compile(r"\s*ci(?:\(\s*(captured|arrived|escaped)\s*\))?\s*<\s*(0?\.\d+|\d+(?:\.\d+)?e-\d+)\s*")
+_RULE = re.compile(
+    r"\s*ci(?:\(\s*(captured|arrived|denied|escaped)\s*\))?\s*<\s*(0?\.\d+|\d+(?:\.\d+)?e-\d+)\s*"
+)
 
 
 class Until(NamedTuple):
