@@ -15,7 +15,7 @@ for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 
 import typer
 
-from onboard.config.bounds import Epochs, PositiveDistance, PositiveDuration, Seed, TimeStep
+from onboard.config.bounds import Count, Epochs, Flights, PositiveDistance, PositiveDuration, Seed, TimeStep
 from onboard.config.printable import printable
 from onboard.config.strict import ConfigError
 from onboard.runtime import options
@@ -174,6 +174,43 @@ def list_(
 
 
 app.add_typer(campaign_app, name="campaign")
+
+
+@app.command(
+    epilog="Examples: sim-bridge bench --games 50 | sim-bridge bench --scenario five --evader paper"
+    " | sim-bridge bench --key organisers.key --out /tmp/bench",
+)
+def bench(
+    scenario: Annotated[
+        list[Path] | None,
+        typer.Option(
+            help="Scenario; may be repeated. Default: Table 1, demo, five and six.",
+            autocompletion=options.shipped(SCENARIOS),
+        ),
+    ] = None,
+    pursuers: Annotated[
+        list[str] | None, typer.Option(help="Pursuers' strategy; may be repeated. Default: all.")
+    ] = None,
+    evader: Annotated[
+        list[str] | None, typer.Option(help="Evader's strategy; may be repeated. Default: all.")
+    ] = None,
+    games: Annotated[int, options.value(Flights, "--games", words="Games of each kind.", unit="N")] = 20,
+    key: Annotated[Path | None, typer.Option(help="File of a key that hides the seeds.")] = None,
+    out: Annotated[Path, typer.Option(help="Folder of the leaderboard.")] = Path("runs/bench"),
+    workers: Annotated[
+        int | None, options.value(Count, "--workers", words="Processes [one a core].", unit="N")
+    ] = None,
+) -> None:
+    """Rank every strategy, plug-ins too: each side's against each of the other's, one page of HTML."""
+    from sim_bridge.programs.leaderboard import command as room
+    from sim_bridge.programs.leaderboard.page import text
+
+    strategies = tuple(evader or ()), tuple(pursuers or ())
+    told = room.Options(tuple(scenario or ()), *strategies, games, key, workers, out)
+    made = room.bench(told, lambda line: typer.echo(f"sim-bridge: {line}", err=True))
+    print(text(made.board))
+    print(f"\n{made.page} (open it in a browser), {made.data.name}")
+
 
 scenario_app = options.group(
     "Make and check scenario files.",
