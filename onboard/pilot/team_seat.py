@@ -3,7 +3,8 @@
 One planner by lease: the member with the lowest id that is fit and was heard within `LEASE_S`. Whoever
 becomes the planner goes on from the plan that it heard last. The plan that counts is the one of the lowest
 planner among those heard within `LEASE_S`, else the newest; older than `OLD_S` none counts, and a pursuer
-chases alone. No input and no output.
+chases alone. Who hears no mate at all plans for nobody: it is cut off, and flies on the last plan. No input
+and no output.
 """
 
 from __future__ import annotations
@@ -91,11 +92,14 @@ class TeamSeat:
         return dated.plan.assignments[self.field.team.index(self.id)]
 
     def planner(self, known: Known) -> int:
-        """Whose the plan is to make now: the lowest fit id; 0 where nobody is fit."""
-        heard = {m.id for m in known.mates if m.age <= LEASE_S and m.id not in known.unfit}
+        """Whose the plan is to make now: the lowest fit id; 0 where nobody is fit, or no mate is heard."""
+        team = self.field.team
+        heard = {m.id for m in known.mates if m.age <= LEASE_S and m.id in team}
+        if not heard and team != (self.id,):  # cut off: the others may well fly by a plan
+            return 0
         if known.fit:
             heard.add(self.id)
-        return min((id for id in heard if id in self.field.team), default=0)
+        return min((id for id in heard - known.unfit if id in team), default=0)
 
     def work(self, known: Known) -> Plan | None:
         """Make a plan where one is due and it is this member's to make; it counts at once."""

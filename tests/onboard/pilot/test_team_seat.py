@@ -115,7 +115,6 @@ def test_cut_off_it_flies_on_the_last_plan_and_then_alone() -> None:
     team.planners(2.0)
     role = team.seats[5].part(team.now).role
     team.silent.add(5)
-    team.unfit.add(5)  # so that it does not plan for itself either
     team.planners(LEASE_S + 2.0)
     assert team.seats[5].part(team.now).role is role
     assert team.seats[3].part(team.now).role is not Role.RESERVE  # the others know that it is lost
@@ -124,13 +123,12 @@ def test_cut_off_it_flies_on_the_last_plan_and_then_alone() -> None:
     assert team.seats[3].counts(team.now) is not None
 
 
-def test_cut_off_but_fit_it_plans_for_itself_and_not_for_the_others() -> None:
+def test_who_hears_nobody_plans_for_nobody() -> None:
     team = Squadron()
     team.planners(2.0)
-    team.silent.add(5)
-    assert {2, 5} <= set(team.planners(4.0))
-    assert team.seats[5].counts(team.now).planner == 5  # type: ignore[union-attr]
-    assert team.seats[3].counts(team.now).planner == 2  # type: ignore[union-attr]
+    team.silent |= {3, 5}
+    assert set(team.planners(OLD_S + 1.0)[2:]) == set()
+    assert {team.seats[id].part(team.now) for id in TEAM} == {IDLE}
 
 
 def test_a_plan_of_another_team_is_no_plan() -> None:

@@ -17,6 +17,7 @@ from onboard.core.strategy.team.plan_types import Assignment, Member, Plan, Reas
 POSTS = 2  # at the target at most: one to keep the goal, one that blocks beside it
 GUARD = 3.5  # safety distances ρ from the target at which it is guarded, and from the evader to engage
 CHANGE = 3.0  # [s] that a change of parts costs
+SECOND = 3.0 * CHANGE  # [s] that the second post costs: nobody stays there while the goal stands empty
 EMPTY = 1e4  # [s] that a post costs that nobody takes though somebody could be there in time
 
 
@@ -83,7 +84,7 @@ def guarded(s: Situation, previous: Plan) -> tuple[Assignment, ...]:
                 cost = FORBIDDEN
             elif distance(member.vehicle.position, s.evader.position) < GUARD * s.rules.rho:
                 cost = FORBIDDEN  # it engages
-            costs[i * tasks + number] = cost if held else cost + CHANGE
+            costs[i * tasks + number] = (cost if held else cost + CHANGE) + SECOND * number
         for number in range(POSTS, tasks):
             costs[i * tasks + number] = EMPTY
     found = assigned(costs, n, tasks)
