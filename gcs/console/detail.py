@@ -6,6 +6,7 @@ from math import atan2, degrees, hypot
 
 from gcs.console.vehicle_table import GRADE_WORDS, STYLES, age, evader_position, grades
 from gcs.picture.current import current
+from gcs.picture.team import part_in_words, part_of
 from gcs.picture.values import Picture, VehicleView
 from onboard.core.math.vectors import Vec, distance, dot, norm, scale, sub
 from onboard.wire.bus.messages import LinkLock, Role, SupervisorAction
@@ -42,6 +43,7 @@ def detail(
     lines += _last(known, vehicle)
     if vehicle.health is not None and vehicle.health.lacks:
         lines.append((f"waits for {', '.join(vehicle.health.lacks)}", "yellow"))
+    lines += _part(picture, vehicle)
     lines += _decision(vehicle)
     lines += _distances(picture, vehicle)
     lines += _prospect(picture, vehicle)
@@ -73,6 +75,12 @@ def _mode_age(known: VehicleView) -> float:
     if known.health is None or known.health_age_s >= known.state_age_s:
         return known.state_age_s
     return known.health_age_s + known.health.heartbeat_age_s
+
+
+def _part(picture: Picture, vehicle: VehicleView) -> list[Line]:
+    plan = picture.game.plan
+    part = part_of(plan, vehicle.id)
+    return [] if plan is None or part is None else [(part_in_words(plan, part), "bold")]
 
 
 def _decision(vehicle: VehicleView) -> list[Line]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from gcs.console.status_line import clock
 from gcs.console.vehicle_table import GRADE_WORDS, age, grades
 from gcs.picture.current import current
+from gcs.picture.team import band_in_words, part_of
 from gcs.picture.terminal_text import printable
 from gcs.picture.values import LogLine, Picture
 from onboard.core.math.constants import NS_PER_S
@@ -58,6 +59,8 @@ def status(picture: Picture) -> list[str]:
     name = game.setup.scenario if game.setup else game.name
     alerts = len(picture.alerts)
     said = f"{at} STATUS {name} {phase} {game.clock}, {len(picture.vehicles)} vehicles, {alerts} alerts"
+    if game.plan is not None:
+        said += f", {band_in_words(game.plan)}"
     lines = [said]
     graded = grades(picture)
     for vehicle in picture.vehicles:
@@ -74,5 +77,8 @@ def status(picture: Picture) -> list[str]:
         ]
         if vehicle.rule:
             parts.append(f"rule {vehicle.rule}")
+        part = part_of(game.plan, vehicle.id)
+        if part is not None:
+            parts.append(f"role {part.role.value}")
         lines.append(" ".join(parts))
     return lines

@@ -5,6 +5,7 @@ from __future__ import annotations
 from datetime import UTC, datetime
 from math import degrees
 
+from gcs.picture.team import band_in_words
 from gcs.picture.terminal_text import cut
 from gcs.picture.values import CommandView, LegState, LogLine, Picture, Presence
 from onboard.core.math.constants import NS_PER_S
@@ -47,6 +48,8 @@ def _game(picture: Picture) -> list[str]:
         found = picture.assessment
         gap = "encircled" if found.encircled else f"gap {degrees(found.largest_gap):.0f}°"
         parts.append(f"{gap}{', target denied' if found.target_denied else ''}")
+    if game.plan is not None:
+        parts.append(band_in_words(game.plan))
     return parts
 
 

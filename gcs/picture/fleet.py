@@ -17,6 +17,7 @@ from gcs.picture.current import HEALTH_OLD_S
 from gcs.picture.plausible import plausible
 from gcs.picture.records import TrackRecord, VehicleRecord, age_s
 from gcs.picture.station_journal import HEARD_HERE, PRESENCE, REMARK, Presence, Remark
+from gcs.picture.team import Plans, counting
 from gcs.picture.values import GameView, LogLine, TrackView, VehicleView
 from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus import topics
@@ -36,6 +37,7 @@ from onboard.wire.bus.messages import (
     State,
     Track,
 )
+from onboard.wire.bus.team_messages import TeamPlan
 from onboard.wire.bus.topics import Delivery, Heard, Party, Topic
 
 LOG_LENGTH = 500
@@ -59,6 +61,7 @@ class Fleet:
         self._setup: Setup | None = None
         self._phase: PhaseChange | None = None
         self._outcome: Outcome | None = None
+        self._plans: Plans = {}
         self._brief: EvaderBrief | None = None
         self._master: Master | None = None
         self._master_ns: int | None = None
@@ -149,6 +152,9 @@ class Fleet:
             entry.drops["late"] += 1
             return
         entry.decision, entry.decision_ns = decision, now_ns
+
+    def _on_plan(self, plan: TeamPlan, now_ns: int) -> None:
+        self._plans[plan.id] = (plan, now_ns)
 
     def _on_health(self, health: Health, now_ns: int) -> None:
         entry = self._life(health.id, health.nonce, now_ns)
@@ -267,6 +273,7 @@ class Fleet:
             master=self._master,
             master_age_s=age_s(self._master_ns, now_ns),
             two_masters=alive > 1,
+            plan=None if over else counting(self._plans, now_ns),
         )
 
     def vehicles(self, now_ns: int) -> tuple[VehicleView, ...]:
@@ -297,6 +304,7 @@ _TAKERS: dict[Topic[Any], Callable[[Fleet, Any, int], None]] = {
     topics.EVADER_BRIEF: Fleet._on_brief,
     topics.STATE: Fleet._on_state,
     topics.DECISION: Fleet._on_decision,
+    topics.PLAN: Fleet._on_plan,
     topics.HEALTH: Fleet._on_health,
     topics.EVENTS: Fleet._on_event,
     topics.TRACK: Fleet._on_track,

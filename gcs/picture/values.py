@@ -26,6 +26,7 @@ from onboard.wire.bus.messages import (
     Triple,
 )
 from onboard.wire.bus.messages import Track as TrackMessage
+from onboard.wire.bus.team_messages import TeamPlan
 
 INF = float("inf")
 MASTER_OLD_S = 2.0  # a master that is silent for longer, and for its lease, keeps no clock
@@ -134,6 +135,7 @@ class GameView(Value, frozen=True):
     master: Master | None = None
     master_age_s: float = INF
     two_masters: bool = False
+    plan: TeamPlan | None = None  # that the pursuers fly by
 
     @property
     def clock(self) -> str:

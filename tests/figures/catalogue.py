@@ -56,6 +56,12 @@ FIGURES = (
         ("configs/scenarios/spatial/six.toml", "tests/benchmarks/choice_in_pursuit.py"),
     ),
     Figure(
+        "team-planning.md",
+        ("-m", "tests.benchmarks.team_planning"),
+        ("onboard.core.strategy.team",),
+        ("tests/benchmarks/team_planning.py",),
+    ),
+    Figure(
         "predictor.md",
         ("-m", "tests.benchmarks.predictor"),
         ("onboard.pilot.predictor", "onboard.core.game.advance", "onboard.core.strategy"),

@@ -15,7 +15,7 @@ from onboard.pilot.predictor.prediction import PredictorKind
 
 WITNESSES = 40.0  # no choice is held surer than by so many independent points
 FEW = 0.55  # Student's t: 68 % lie within 1 + 0.55 / n of the deviation that n errors gave
-ODDS = 0.6  # of what was learnt against what needs no learning, before any witness: a far horizon has few
+ODDS = 0.4  # of what was learnt against what needs no learning, before any witness: a far horizon has few
 HANDICAP = 1.2  # of what was learnt against what needs no learning, in mean square error
 
 
