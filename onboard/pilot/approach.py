@@ -1,7 +1,9 @@
 """To one's place in time for the start of a game: so that what is flown begins as what is computed does.
 
-A plane meets its place at t₀ with the heading that the scenario asks for, at its airspeed; until then it
-circles. A multicopter waits there with its nose that way. Both fly at the height of the place.
+A plane meets its place at t₀ with the heading that the scenario asks for, at the game's airspeed; until then
+it circles. Its path is planned in the air mass, which carries plane and place alike, and is flown a little
+slower than the aircraft can fly: what gusts take is made up for on the way. A multicopter waits at its place
+with its nose that way. Both fly at the height of the place.
 """
 
 from __future__ import annotations
@@ -11,28 +13,43 @@ from typing import NamedTuple
 
 from onboard.core.math.angles import wrap
 from onboard.core.math.vectors import Vec, clamp, sub
-from onboard.core.route.arrival import Path, Pose, arrive, at
+from onboard.core.route.arrival import Path, Pose, arrive, at, shortest
+from onboard.core.safety.envelope import bounded, slewed
+from onboard.core.safety.policy import Envelope
 from onboard.pilot.setup import Own
 
-FARTHEST = 1500.0  # [m] from its place a vehicle does not fly there by itself
-GAIN = 0.25  # [1/s] of leading back to the path, and
+FARTHEST = 1500.0  # [m] from its place a vehicle does not fly there by itself, or
+FARTHEST_TURNS = 3.0  # radii of a plane's turn
 HEIGHT_GAIN = 0.5  # [1/s] to the height
 CLIMB_SHARE = 0.3  # of the speed that climbing may use
-LEAD = 0.9  # [s] by which a plane's turn lags behind its course command
-LAST = 4.0  # [s] of straight flight before the place; what is planned again later may have less
-LAST_LEAST = 1.5  # [s]
+GAIN = 0.25  # [1/s] of leading back to the path near the end;
+GAIN_FAR = 0.1  # before, where a wind that is told anew moves the place by all the time that is left
+CALLS = 4.0  # GAIN of an error that there is this many times its reciprocal time for
+TRIM = 0.03  # [1/s²] by which a lasting error along the path is made up for
+AUTHORITY = 0.08  # of the speed that this may take and give
+MOST_ACROSS = 0.5  # of the speed
+LEAD = 0.9  # [s] by which a plane's turn lags behind its course command,
+SPEED_LEAD = 1.0  # and its airspeed behind what is commanded
+GATHER = 4.0  # [s] before t₀ a plane begins to take up the game's airspeed
+LAST = 4.0  # [s] of straight flight before the place, or a radius of its turn if that takes longer
+LAST_LEAST = 1.5  # [s] of what is planned again later
 LOOK_EVERY = 2.0  # [s] a plane looks whether it has lost its path
-ASTRAY = 0.6  # [s] of flight from it: then it looks for another one
+ASTRAY = 0.6  # [s] of flight from it: then it looks for another one,
+ASTRAY_FAR = 0.02  # [s] more for every second left
 PUT_OFF = 0.1  # [s] more time than before: t₀ was put off
-LOST = 2.5  # [s] of flight from it: then it takes another one, though it be late by it
+LOST = 2.5  # [s] of flight from it: then it says that it will be late
 TURNS = 0.05  # [rad] of a turn between two looks that tells how tightly a plane turns
-WIDENS = 2.0  # times at most in one look
+TURNING = 0.9  # of a look that is spent turning, for that
+WIDENS = 1.5  # times at most in one look
+WIDEST = 2.5  # times the radius that may be counted on, in all
 SLACK = 3.0  # [s] more than the shortest way that a plane asks for
 WIDER = 1.25  # times the radius that may be counted on: what lags in a turn is made up for within it
-PACES = (1.0, 0.95, 0.9, 0.85, 0.8)  # of its airspeed at which a plane looks for a path that fits
-SLOWER, FASTER = 0.95, 1.05  # of that pace where it is early, or late
+RESERVE = 0.93  # of its fastest: the airspeed of a path
+PACES = (1.0, 1.02, 0.98, 1.04, 0.96, 0.93, 0.9)  # of that at which a plane looks for a path that fits
+LONGEST = 600.0  # [s] that no way takes: who needs more cannot get there against the wind
 THERE = 2.0  # [m] from its place a multicopter is at it
 SETTLES = 3.0  # [s] for a multicopter to come to rest
+INSIDE = 0.999  # of what the limits let a step change
 
 
 class Place(NamedTuple):
@@ -42,9 +59,7 @@ class Place(NamedTuple):
     heading: float | None  # [rad]; None: any
     speed: float  # [m/s; air] that the game reckons with
     slowest: float  # [m/s; air] that a plane may fly
-    hovers: bool
-    radius: float  # [m] of a plane's turn that may be counted on
-    braking: float  # [m/s²] of a multicopter
+    envelope: Envelope  # what the supervisor lets pass
 
 
 class Approach:
@@ -52,15 +67,18 @@ class Approach:
 
     def __init__(self, place: Place) -> None:
         self.place = place
+        e = place.envelope
         self._path: Path | None = None
         self._looked_at = 0.0  # time left then [s]
-        self._start_left = 0.0  # time left at the path's start [s]
-        self._pace = place.speed  # [m/s; air] along the path
+        self._reserved = max(min(place.speed, RESERVE * e.speed_max), place.slowest)
+        self._pace = self._reserved  # [m/s; air] along the path, until the plane gathers speed
         self._left = 0.0  # time left in the last step [s]
         self._late = 0.0  # by which the path is too long [s]
-        self._wide = max(1.0, WIDER * place.radius)  # [m] radius of the paths; grows where it is not kept
+        self._radius = max(1.0, WIDER * e.turn_radius)  # [m] of the paths; grows where it is not kept
         self._course = 0.0  # [rad] through the air, at the last look
         self._astray = 0.0  # from where the path says that it is now [m]
+        self._trim = 0.0  # [m/s] that a lasting error along the path takes
+        self._demand: Vec | None = None  # the last velocity [m/s; air]
 
     def distance(self, own: Own) -> float:
         """To the place, as seen from above [m]."""
@@ -69,39 +87,59 @@ class Approach:
 
     def reaches(self, own: Own) -> bool:
         """Whether the vehicle flies there by itself: it is on its way, or not too far away."""
-        return self._path is not None or self.distance(own) <= FARTHEST
+        return self._path is not None or self.distance(own) <= self._farthest
 
     def needs(self, own: Own) -> float:
         """Time that the vehicle needs to be at its place [s]; 0 where it is there, or too far away."""
         way = self.distance(own)
         speed = max(0.1, self.place.speed)
-        if way > FARTHEST:
+        if way > self._farthest:
             return 0.0
-        if self.place.hovers:
-            return 0.0 if way <= THERE else way / speed + speed / self.place.braking + SETTLES
-        start, goal = self._poses(own, 0.0)
-        shortest = arrive(start, goal, self._wide, 0.0, LAST * speed).path.length
-        return shortest / speed + SLACK
+        if self.place.envelope.hovers:
+            braking = self.place.envelope.deceleration
+            return 0.0 if way <= THERE else way / speed + speed / braking + SETTLES
+        time = 0.0
+        while time < LONGEST:  # the place moves in the air while the plane is on its way
+            start, goal = self._poses(own, time)
+            length = shortest(start, goal, self._radius, self._last()).length
+            late = length / max(0.1, self._reserved) + SLACK - time
+            if late <= 0.0:
+                break
+            time += max(late, 0.5)
+        return time
 
     def misses(self, own: Own, left: float) -> float:
         """Time by which the vehicle would be late [s] with `left` seconds to t₀; 0 where a way fits."""
         path = self._path
-        if not self.place.hovers and path is not None and left <= self._left + PUT_OFF:
+        if not self.place.envelope.hovers and path is not None and left <= self._left + PUT_OFF:
             return self._late
         return max(0.0, self.needs(own) - left)
 
     def steer(self, own: Own, left: float) -> Vec:
-        """Velocity to fly [m/s]: a multicopter's over ground, a plane's through the air."""
+        """Velocity to fly [m/s]: a multicopter's over ground, a plane's through the air.
+
+        A plane's changes no faster than its envelope lets it.
+        """
         offset = sub(self.place.position, own.position)
         most = CLIMB_SHARE * self.place.speed
         down = 0.0 if isnan(offset.z) else clamp(HEIGHT_GAIN * offset.z, -most, most)
-        if self.place.hovers:
+        if self.place.envelope.hovers:
             way = max(1e-6, self.distance(own))
-            pace = min(self.place.speed, 0.8 * way, (self.place.braking * way) ** 0.5)
+            pace = min(self.place.speed, 0.8 * way, (self.place.envelope.deceleration * way) ** 0.5)
             return Vec(offset.x / way * pace, offset.y / way * pace, down)
-        return self._flown(own, left, down)
+        gone = self._left - left  # since the last step [s]
+        self._plan(own, left)
+        return self._kept(own, self._led(own, left, down, clamp(gone, 0.0, 1.0)), gone)
 
     # ------------------------------------------------------------------ planes
+
+    @property
+    def _farthest(self) -> float:
+        return max(FARTHEST, FARTHEST_TURNS * self.place.envelope.turn_radius)
+
+    def _last(self) -> float:
+        """The last straight line [m]: what turns and gusts have left behind dies away on it."""
+        return max(LAST * self.place.speed, self.place.envelope.turn_radius)
 
     def _poses(self, own: Own, left: float) -> tuple[Pose, Pose]:
         """The own pose and the goal's in the air, which carries both until t₀."""
@@ -111,26 +149,52 @@ class Approach:
         heading = start.heading if self.place.heading is None else self.place.heading
         return start, Pose(x - own.wind.x * left, y - own.wind.y * left, heading)
 
-    def _flown(self, own: Own, left: float, down: float) -> Vec:
-        self._plan(own, left)
+    def _to_go(self, left: float) -> float:
+        """Length of the path that is flown in the time that is left [m]: at its pace, then gathering speed."""
+        gains = self.place.speed - self._pace
+        if left <= GATHER:
+            return self.place.speed * left - gains * left * left / (2.0 * GATHER)
+        return self._pace * left + 0.5 * gains * GATHER
+
+    def _speed_at(self, left: float) -> float:
+        """Airspeed along the path [m/s]."""
+        share = clamp(1.0 - left / GATHER, 0.0, 1.0)
+        return self._pace + share * (self.place.speed - self._pace)
+
+    def _led(self, own: Own, left: float, down: float, dt: float) -> Vec:
+        """Velocity along the path and back to it."""
         assert self._path is not None
-        speed = self._pace
-        gone = speed * (self._start_left - left)
-        end = at(self._path, self._path.length)
-        here = at(self._path, gone)
-        later = at(self._path, gone + LEAD * speed)
+        path, speed = self._path, self.place.speed
+        gone = path.length - self._to_go(left)
+        end, here = at(path, path.length), at(path, gone)
+        later = at(path, gone + LEAD * self._speed_at(left)).heading
         _, goal = self._poses(own, left)
         # Where the path says that the plane is, from where it is: both are carried by the same air.
-        astray_x, astray_y = goal.x - (end.x - here.x), goal.y - (end.y - here.y)
-        self._astray = (astray_x * astray_x + astray_y * astray_y) ** 0.5
-        back = min(1.0, 0.5 * speed / max(1e-6, GAIN * self._astray))
-        x = speed * cos(later.heading) + back * GAIN * astray_x
-        y = speed * sin(later.heading) + back * GAIN * astray_y
-        size = max(1e-6, (x * x + y * y) ** 0.5)
-        fastest = self.place.speed
-        most = clamp(fastest * fastest - down * down, 0.0, fastest * fastest) ** 0.5
-        pace = clamp(size, SLOWER * speed, min(most, FASTER * speed))
-        return Vec(x / size * pace, y / size * pace, down)
+        x, y = goal.x - (end.x - here.x), goal.y - (end.y - here.y)
+        self._astray = (x * x + y * y) ** 0.5
+        c, s = cos(here.heading), sin(here.heading)
+        gain = clamp(CALLS / max(left, 1.0), GAIN_FAR, GAIN)
+        along, across = gain * (x * c + y * s), gain * (y * c - x * s)
+        most = AUTHORITY * speed
+        self._trim = clamp(self._trim + TRIM * (x * c + y * s) * dt, -most, most)
+        e = self.place.envelope
+        pace = self._speed_at(left - SPEED_LEAD) + clamp(along + self._trim, -most, most)
+        pace = clamp(pace, min(self.place.slowest, speed), max(speed, e.speed_max))
+        level = max(0.0, pace * pace - down * down) ** 0.5
+        across = clamp(across, -MOST_ACROSS * level, MOST_ACROSS * level)
+        ahead = max(0.0, level * level - across * across) ** 0.5
+        cross = later + atan2(across, ahead)
+        return Vec(level * cos(cross), level * sin(cross), down)
+
+    def _kept(self, own: Own, wanted: Vec, dt: float) -> Vec:
+        """The velocity within what the supervisor lets pass, after the last one."""
+        e, before = self.place.envelope, self._demand
+        air = sub(own.velocity, own.wind)
+        if before is None or not 0.0 <= dt <= 1.0:
+            before, dt = bounded(air, wanted, e).velocity, 0.0
+        kept = slewed(bounded(wanted, before, e).velocity, before, INSIDE * dt, e).velocity
+        self._demand = kept = bounded(kept, before, e).velocity
+        return kept
 
     def _plan(self, own: Own, left: float) -> None:
         """Make the path, and make it again where the plane has lost it, or t₀ was put off."""
@@ -140,30 +204,36 @@ class Approach:
         if path is not None and not put_off:
             if self._looked_at - left < LOOK_EVERY:
                 return
-            lost = self._astray > ASTRAY * speed
+            lost = self._astray > (ASTRAY + ASTRAY_FAR * left) * speed
             if lost:
                 self._widen(own, left, path)
             self._looked_at, self._course = left, self._poses(own, left)[0].heading
             if not lost:
+                self._late = 0.0
                 return
-        start, goal = self._poses(own, left)
-        self._looked_at, self._course = left, start.heading
-        last = LAST if path is None or put_off else LAST_LEAST
+        self._looked_at, self._course = left, self._poses(own, left)[0].heading
+        last = self._last() if path is None or put_off else LAST_LEAST * speed
+        before = self._pace
         for share in PACES:
-            pace = max(share * speed, min(speed, self.place.slowest))
-            found = arrive(start, goal, self._wide, pace * left, last * speed)
+            self._pace = clamp(share * self._reserved, min(self.place.slowest, speed), speed)
+            found = arrive(*self._poses(own, left), self._radius, self._to_go(left), last)
             if found.exact:
-                break
-        if path is not None and not (found.exact or put_off or self._astray > LOST * speed):
-            return  # there is none, and this one is not far
-        self._path, self._start_left, self._pace = found.path, left, pace if found.exact else speed
-        self._late = 0.0 if found.exact else max(0.0, found.path.length / speed + SLACK - left)
+                self._path, self._late, self._trim = found.path, 0.0, 0.0
+                return
+        # There is none. Who has one keeps it, and asks for more time where it is far from it.
+        if path is None or put_off:
+            self._path = found.path
+            self._late = max(0.0, self.needs(own) - left)
+        else:
+            self._pace = before
+            self._late = max(0.0, self.needs(own) - left) if self._astray > LOST * speed else 0.0
 
     def _widen(self, own: Own, left: float, path: Path) -> None:
         """Reckon with the turn that the plane has made since the last look, where it fell short."""
-        speed = self._pace
-        gone, before = speed * (self._start_left - left), speed * (self._start_left - self._looked_at)
+        gone, before = (path.length - self._to_go(time) for time in (left, self._looked_at))
         asked = abs(wrap(at(path, gone).heading - at(path, before).heading))
         made = abs(wrap(self._poses(own, left)[0].heading - self._course))
-        if asked > TURNS and made < asked:
-            self._wide *= min(asked / max(made, TURNS), WIDENS)
+        steady = asked * path.radius > TURNING * (gone - before)
+        if steady and asked > TURNS and made < asked:
+            widest = WIDEST * WIDER * self.place.envelope.turn_radius
+            self._radius = min(widest, self._radius * min(asked / max(made, TURNS), WIDENS))

@@ -159,7 +159,7 @@ class GamePlayer:
         if not flying.approach.reaches(own):
             return None
         place = flying.approach.place
-        return Way(flying.approach.steer(own, left), place.heading if place.hovers else None)
+        return Way(flying.approach.steer(own, left), place.heading if place.envelope.hovers else None)
 
     def place_s(self, now: Instant) -> float:
         """Time that the vehicle needs to its place [s]; before t₀, by which it will be late."""

@@ -41,4 +41,4 @@ def approach_of(member: Member, game: GameSetup, policy: Policy) -> Approach | N
     speed = member.speed if 0.0 < member.speed <= e.speed_max else e.speed_max
     place = Vec(member.start[0], member.start[1], -height)
     slowest = min(speed, SPARE * e.speed_min)
-    return Approach(Place(place, member.heading, speed, slowest, e.hovers, e.turn_radius, e.deceleration))
+    return Approach(Place(place, member.heading, speed, slowest, e))

@@ -103,10 +103,19 @@ def joined(start: Pose, goal: Pose, radius: float, first: float, second: float, 
     return Path(start, radius, first * a, sqrt(square), second * b, last)
 
 
+def shortest(start: Pose, goal: Pose, radius: float, last: float) -> Path:
+    """The shortest path with a last line of exactly `last` [m]."""
+    best = joined(start, goal, radius, 1.0, 1.0, last)
+    for first, second in ((-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0)):
+        path = joined(start, goal, radius, first, second, last)
+        if path.straight >= 0.0 and path.length < best.length:
+            best = path
+    return best
+
+
 def arrive(start: Pose, goal: Pose, radius: float, length: float, least: float) -> Arrival:
     """The path of exactly `length` [m] to the goal with the shortest last line of at least `least` [m]."""
-    best = Arrival(False, Path(start, radius, 0.0, -1.0, 0.0, 1e18))
-    shortest = best.path
+    best = Arrival(False, shortest(start, goal, radius, least))
     circle = TURN * radius
     step = circle / STEPS
     for first, second in ((1.0, 1.0), (-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0)):
@@ -119,15 +128,13 @@ def arrive(start: Pose, goal: Pose, radius: float, length: float, least: float) 
             if path.straight < 0.0:
                 spare = -1.0
                 continue
-            if k == 0 and path.length < shortest.length:
-                shortest = path
             now = (length - path.length) / circle  # circles that there is time for
             if spare >= 0.0 and floor(now) < floor(spare) and spare - now < 0.5:
                 found = _fitted(start, goal, radius, first, second, low, last, length)
                 if found.exact and (not best.exact or found.path.last < best.path.last):
                     best = found
             low, spare = last, now
-    return best if best.exact else Arrival(False, shortest)
+    return best
 
 
 def _fitted(  # noqa: PLR0913  (compiled code takes no bundles)
