@@ -12,7 +12,7 @@ from math import atan2, cos, isnan, sin
 from typing import NamedTuple
 
 from onboard.core.math.angles import wrap
-from onboard.core.math.vectors import Vec, clamp, sub
+from onboard.core.math.vectors import Vec, clamp, norm, sub
 from onboard.core.route.arrival import Path, Pose, arrive, at, shortest
 from onboard.core.safety.envelope import bounded, slewed
 from onboard.core.safety.policy import Envelope
@@ -25,8 +25,8 @@ CLIMB_SHARE = 0.3  # of the speed that climbing may use
 GAIN = 0.25  # [1/s] of leading back to the path near the end;
 GAIN_FAR = 0.1  # before, where a wind that is told anew moves the place by all the time that is left
 CALLS = 4.0  # GAIN of an error that there is this many times its reciprocal time for
-TRIM = 0.03  # [1/s²] by which a lasting error along the path is made up for
-AUTHORITY = 0.08  # of the speed that this may take and give
+DRIFT = 3.0  # [s] in which it is learned how gusts carry the plane along
+AUTHORITY = 0.1  # of the speed that making up for it may take and give, and for an error along the path
 MOST_ACROSS = 0.5  # of the speed
 LEAD = 0.9  # [s] by which a plane's turn lags behind its course command,
 SPEED_LEAD = 1.0  # and its airspeed behind what is commanded
@@ -44,9 +44,10 @@ WIDENS = 1.5  # times at most in one look
 WIDEST = 2.5  # times the radius that may be counted on, in all
 SLACK = 3.0  # [s] more than the shortest way that a plane asks for
 WIDER = 1.25  # times the radius that may be counted on: what lags in a turn is made up for within it
-RESERVE = 0.93  # of its fastest: the airspeed of a path
+RESERVE = 0.9  # of its fastest: the airspeed of a path
 PACES = (1.0, 1.02, 0.98, 1.04, 0.96, 0.93, 0.9)  # of that at which a plane looks for a path that fits
 LONGEST = 600.0  # [s] that no way takes: who needs more cannot get there against the wind
+LATEST = 120  # [s] that a plane says at most it will be late
 THERE = 2.0  # [m] from its place a multicopter is at it
 SETTLES = 3.0  # [s] for a multicopter to come to rest
 INSIDE = 0.999  # of what the limits let a step change
@@ -70,14 +71,16 @@ class Approach:
         e = place.envelope
         self._path: Path | None = None
         self._looked_at = 0.0  # time left then [s]
-        self._reserved = max(min(place.speed, RESERVE * e.speed_max), place.slowest)
+        most = max(RESERVE * e.speed_max, 0.5 * (place.slowest + e.speed_max))
+        self._reserved = max(min(place.speed, most), place.slowest)
         self._pace = self._reserved  # [m/s; air] along the path, until the plane gathers speed
         self._left = 0.0  # time left in the last step [s]
         self._late = 0.0  # by which the path is too long [s]
         self._radius = max(1.0, WIDER * e.turn_radius)  # [m] of the paths; grows where it is not kept
         self._course = 0.0  # [rad] through the air, at the last look
         self._astray = 0.0  # from where the path says that it is now [m]
-        self._trim = 0.0  # [m/s] that a lasting error along the path takes
+        self._flown = place.speed  # [m/s] that its airspeed should be by what was commanded
+        self._drift = 0.0  # [m/s] by which it is faster, as gusts carry it
         self._demand: Vec | None = None  # the last velocity [m/s; air]
 
     def distance(self, own: Own) -> float:
@@ -128,8 +131,9 @@ class Approach:
             pace = min(self.place.speed, 0.8 * way, (self.place.envelope.deceleration * way) ** 0.5)
             return Vec(offset.x / way * pace, offset.y / way * pace, down)
         gone = self._left - left  # since the last step [s]
+        self._learn(own, clamp(gone, 0.0, 1.0))
         self._plan(own, left)
-        return self._kept(own, self._led(own, left, down, clamp(gone, 0.0, 1.0)), gone)
+        return self._kept(own, self._led(own, left, down), gone)
 
     # ------------------------------------------------------------------ planes
 
@@ -149,19 +153,34 @@ class Approach:
         heading = start.heading if self.place.heading is None else self.place.heading
         return start, Pose(x - own.wind.x * left, y - own.wind.y * left, heading)
 
+    def _learn(self, own: Own, dt: float) -> None:
+        """How gusts carry the plane along: by how much it is faster than it was told to be."""
+        air, before, most = sub(own.velocity, own.wind), self._demand, AUTHORITY * self.place.speed
+        if before is None:
+            self._flown = norm(air)
+            return
+        self._flown += min(1.0, dt / SPEED_LEAD) * (norm(before) - self._flown)
+        more = clamp(norm(air) - self._flown, -most, most)
+        self._drift += min(1.0, dt / DRIFT) * (more - self._drift)
+
     def _to_go(self, left: float) -> float:
-        """Length of the path that is flown in the time that is left [m]: at its pace, then gathering speed."""
-        gains = self.place.speed - self._pace
+        """Length of the path that is flown in the time that is left [m]: at its pace, then gathering speed.
+
+        What carries the plane along then as now, nobody makes up for at the game's airspeed.
+        """
+        final = self.place.speed + self._drift
+        gains = final - self._pace
         if left <= GATHER:
-            return self.place.speed * left - gains * left * left / (2.0 * GATHER)
+            return final * left - gains * left * left / (2.0 * GATHER)
         return self._pace * left + 0.5 * gains * GATHER
 
     def _speed_at(self, left: float) -> float:
-        """Airspeed along the path [m/s]."""
+        """Airspeed that flies along the path in time [m/s], the game's at t₀."""
         share = clamp(1.0 - left / GATHER, 0.0, 1.0)
-        return self._pace + share * (self.place.speed - self._pace)
+        pace = self._pace - self._drift
+        return pace + share * (self.place.speed - pace)
 
-    def _led(self, own: Own, left: float, down: float, dt: float) -> Vec:
+    def _led(self, own: Own, left: float, down: float) -> Vec:
         """Velocity along the path and back to it."""
         assert self._path is not None
         path, speed = self._path, self.place.speed
@@ -176,9 +195,8 @@ class Approach:
         gain = clamp(CALLS / max(left, 1.0), GAIN_FAR, GAIN)
         along, across = gain * (x * c + y * s), gain * (y * c - x * s)
         most = AUTHORITY * speed
-        self._trim = clamp(self._trim + TRIM * (x * c + y * s) * dt, -most, most)
         e = self.place.envelope
-        pace = self._speed_at(left - SPEED_LEAD) + clamp(along + self._trim, -most, most)
+        pace = self._speed_at(left - SPEED_LEAD) + clamp(along, -most, most)
         pace = clamp(pace, min(self.place.slowest, speed), max(speed, e.speed_max))
         level = max(0.0, pace * pace - down * down) ** 0.5
         across = clamp(across, -MOST_ACROSS * level, MOST_ACROSS * level)
@@ -218,15 +236,24 @@ class Approach:
             self._pace = clamp(share * self._reserved, min(self.place.slowest, speed), speed)
             found = arrive(*self._poses(own, left), self._radius, self._to_go(left), last)
             if found.exact:
-                self._path, self._late, self._trim = found.path, 0.0, 0.0
+                self._path, self._late = found.path, 0.0
                 return
         # There is none. Who has one keeps it, and asks for more time where it is far from it.
         if path is None or put_off:
-            self._path = found.path
-            self._late = max(0.0, self.needs(own) - left)
+            self._path, self._pace = found.path, self._reserved
+            self._late = self._longer(own, left)
         else:
             self._pace = before
-            self._late = max(0.0, self.needs(own) - left) if self._astray > LOST * speed else 0.0
+            self._late = self._longer(own, left) if self._astray > LOST * speed else 0.0
+
+    def _longer(self, own: Own, left: float) -> float:
+        """Time by which t₀ is too early for any path [s]."""
+        for more in range(1, LATEST):
+            start, goal = self._poses(own, left + more)
+            length = self._reserved * (left + more) + 0.5 * GATHER * (self.place.speed - self._reserved)
+            if arrive(start, goal, self._radius, length, self._last()).exact:
+                return more + SLACK
+        return float(LATEST)
 
     def _widen(self, own: Own, left: float, path: Path) -> None:
         """Reckon with the turn that the plane has made since the last look, where it fell short."""

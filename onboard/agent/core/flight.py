@@ -16,12 +16,12 @@ from onboard.agent.core.hold_alert import HoldAlert
 from onboard.agent.core.journal import Journal
 from onboard.agent.core.part import Part, PartState
 from onboard.agent.core.takeoff import TakeOff
-from onboard.agent.core.to_place import circling, own_state
+from onboard.agent.core.to_place import by_itself, circling, own_state
 from onboard.agent.core.vehicle_link import Control, VehicleLink
 from onboard.autopilot.base import Adapter, ReleaseMode, Stage, Telemetry
 from onboard.config.printable import named
 from onboard.core.math.constants import NEVER
-from onboard.core.math.vectors import ZERO, Vec, sub
+from onboard.core.math.vectors import ZERO, Vec
 from onboard.core.safety.policy import Action, Cause, Command, Policy, SupervisorInput
 from onboard.core.safety.supervisor import (
     SupervisorOutput,
@@ -318,7 +318,7 @@ class Flight:
         hovers = not adapter.holds_airspeed
         own = own_state(now, t, hovers=hovers)
         seen = self._input(now, t)._replace(over=state.over, wind=own.wind)
-        still = ZERO if hovers else sub(t.velocity, own.wind)
+        still = ZERO if hovers else by_itself(own, self.part.policy.envelope)
         free = not (climbs or unasked or held)
         lives = adapter.kind is Kind.PX4_PLANE  # in OFFBOARD by its targets alone
         near = adapter.stage is Stage.ACTIVE or (lives and adapter.stage is Stage.ENTERING)
@@ -326,7 +326,7 @@ class Flight:
         if way is not None:
             still, self.vehicle.facing = way.velocity, way.heading
         elif lives:
-            still = circling(own, self.part.policy.envelope.turn_radius)
+            still = circling(own, self.part.policy.envelope)
         if climbs and not (held or ours or wanted):  # what keeps it on the ground is no end of a flight
             if supervise(still, seen, self._thresholds(), before).command is Command.STREAM:
                 self.take_off.step(now, self.vehicle)

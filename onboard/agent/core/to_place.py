@@ -5,8 +5,9 @@ from __future__ import annotations
 from math import cos, sin
 
 from onboard.autopilot.base import Telemetry
-from onboard.core.math.vectors import ZERO, Vec, along
-from onboard.core.safety.policy import Policy
+from onboard.core.math.vectors import ZERO, Vec, along, sub
+from onboard.core.safety.envelope import bounded
+from onboard.core.safety.policy import Envelope, Policy
 from onboard.pilot.approach import LEAD, WIDER, Approach, Place
 from onboard.pilot.setup import GameSetup, Own
 from onboard.wire.bus.messages import Member
@@ -23,9 +24,15 @@ def own_state(now: float, t: Telemetry, *, hovers: bool) -> Own:
     return Own(position, t.velocity, wind)
 
 
-def circling(own: Own, radius: float) -> Vec:
-    """Velocity through the air [m/s] that keeps a plane turning to the right with a radius [m]."""
-    air = Vec(own.velocity.x - own.wind.x, own.velocity.y - own.wind.y, 0.0)
+def by_itself(own: Own, envelope: Envelope) -> Vec:
+    """Velocity through the air [m/s] of a plane that is not led, within its limits: gusts are no decision."""
+    air = sub(own.velocity, own.wind)
+    return bounded(air, air, envelope).velocity
+
+
+def circling(own: Own, envelope: Envelope) -> Vec:
+    """Velocity through the air [m/s] that keeps a plane turning to the right, within its limits."""
+    air, radius = by_itself(own, envelope)._replace(z=0.0), envelope.turn_radius
     speed = (air.x * air.x + air.y * air.y) ** 0.5
     lead = min(1.0, LEAD * speed / max(1.0, WIDER * radius))
     c, s = cos(lead), sin(lead)

@@ -3,7 +3,8 @@
 Kernel style, in the air mass as seen from above, where a plane flies at constant airspeed and the wind is
 nothing: places are (north, east) [m] from where the plane is now. The shortest such paths are Dubins' (1957,
 Am. J. Math. 79). Who has time left circles first, and the last line is drawn out until the path takes exactly
-as long as there is time: a holding pattern timed to the instant.
+as long as there is time: a holding pattern timed to the instant. Where drawing it out makes no difference, as
+for who flies straight in, the path turns away first and comes back.
 """
 
 from __future__ import annotations
@@ -30,7 +31,8 @@ class Path(NamedTuple):
     """Turn, straight, turn: then the last line to the goal. Turns to the right are positive."""
 
     start: Pose
-    radius: float  # [m] of both turns
+    radius: float  # [m] of all turns
+    away: float  # [rad, signed] flown before, to the other side than the first turn
     first: float  # [rad, signed] with the circles that are flown before
     straight: float  # [m]
     second: float  # [rad, signed]
@@ -39,7 +41,8 @@ class Path(NamedTuple):
     @property
     def length(self) -> float:
         """[m]."""
-        return self.radius * (abs(self.first) + abs(self.second)) + self.straight + self.last
+        turns = abs(self.away) + abs(self.first) + abs(self.second)
+        return self.radius * turns + self.straight + self.last
 
 
 class Arrival(NamedTuple):
@@ -70,7 +73,7 @@ def at(path: Path, length: float) -> Pose:
     here = path.start
     if length <= 0.0:
         return ahead(here, length)
-    for angle, line in ((path.first, path.straight), (path.second, path.last)):
+    for angle, line in ((path.away, 0.0), (path.first, path.straight), (path.second, path.last)):
         arc = path.radius * abs(angle)
         if length <= arc:
             return turned(here, path.radius, angle * length / arc)
@@ -96,11 +99,11 @@ def joined(start: Pose, goal: Pose, radius: float, first: float, second: float, 
     if first != second:
         square -= 4.0 * radius * radius
         if square < 0.0:
-            return Path(start, radius, 0.0, -1.0, 0.0, last)
+            return Path(start, radius, 0.0, 0.0, -1.0, 0.0, last)
         course += first * atan2(2.0 * radius, sqrt(square))
     a = _sweep(first * (course - start.heading))
     b = _sweep(second * (entry.heading - course))
-    return Path(start, radius, first * a, sqrt(square), second * b, last)
+    return Path(start, radius, 0.0, first * a, sqrt(square), second * b, last)
 
 
 def shortest(start: Pose, goal: Pose, radius: float, last: float) -> Path:
@@ -113,47 +116,81 @@ def shortest(start: Pose, goal: Pose, radius: float, last: float) -> Path:
     return best
 
 
+class Goal(NamedTuple):
+    """What a path is to be: how it turns (1 right, −1 left), where to, and how long."""
+
+    start: Pose
+    goal: Pose
+    radius: float  # [m]
+    first: float
+    second: float
+    least: float  # last line [m]
+    length: float  # [m] in all
+
+
 def arrive(start: Pose, goal: Pose, radius: float, length: float, least: float) -> Arrival:
-    """The path of exactly `length` [m] to the goal with the shortest last line of at least `least` [m]."""
+    """The path of exactly `length` [m] to the goal with the shortest last line of at least `least` [m].
+
+    Where no last line makes it so long, one that turns away first.
+    """
     best = Arrival(False, shortest(start, goal, radius, least))
-    circle = TURN * radius
-    step = circle / STEPS
     for first, second in ((1.0, 1.0), (-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0)):
-        low, spare = 0.0, -1.0
-        for k in range(STEPS + 2):
-            last = least + k * step
-            if best.exact and last >= best.path.last:
-                break
-            path = joined(start, goal, radius, first, second, last)
-            if path.straight < 0.0:
-                spare = -1.0
-                continue
-            now = (length - path.length) / circle  # circles that there is time for
-            if spare >= 0.0 and floor(now) < floor(spare) and spare - now < 0.5:
-                found = _fitted(start, goal, radius, first, second, low, last, length)
-                if found.exact and (not best.exact or found.path.last < best.path.last):
-                    best = found
-            low, spare = last, now
+        wanted = Goal(start, goal, radius, first, second, least, length)
+        best = _searched(wanted, best, False)
+    if best.exact:
+        return best
+    for first, second in ((1.0, 1.0), (-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0)):
+        wanted = Goal(start, goal, radius, first, second, least, length)
+        best = _searched(wanted, best, True)
     return best
 
 
-def _fitted(  # noqa: PLR0913  (compiled code takes no bundles)
-    start: Pose, goal: Pose, radius: float, first: float, second: float, low: float, high: float,
-    length: float,
-) -> Arrival:  # fmt: skip
-    """The last line between two lengths at which the time left makes whole circles."""
-    circle = TURN * radius
-    whole = floor((length - joined(start, goal, radius, first, second, low).length) / circle)
+def _one(wanted: Goal, share: float, away: bool) -> Path:
+    """A path of the family: drawn out by `share` of a circle on its last line, or turning away by as much."""
+    g = wanted
+    if not away:
+        last = g.least + share * TURN * g.radius
+        return joined(g.start, g.goal, g.radius, g.first, g.second, last)
+    angle = -g.first * share * TURN
+    path = joined(turned(g.start, g.radius, angle), g.goal, g.radius, g.first, g.second, g.least)
+    return path._replace(start=g.start, away=angle)
+
+
+def _searched(wanted: Goal, best: Arrival, away: bool) -> Arrival:
+    """The best path, or a better one of a family."""
+    circle = TURN * wanted.radius
+    low, spare = 0.0, -1.0
+    for k in range(STEPS + 2):
+        share = k / STEPS
+        if best.exact and (away or wanted.least + share * circle >= best.path.last):
+            break
+        path = _one(wanted, share, away)
+        if path.straight < 0.0:
+            spare = -1.0
+            continue
+        now = (wanted.length - path.length) / circle  # circles that there is time for
+        if spare >= 0.0 and floor(now) < floor(spare) and spare - now < 0.5:
+            found = _fitted(wanted, low, share, away)
+            if found.exact and (away or not best.exact or found.path.last < best.path.last):
+                best = found
+        low, spare = share, now
+    return best
+
+
+def _fitted(wanted: Goal, low: float, high: float, away: bool) -> Arrival:
+    """The path of a family between two at which the time left makes whole circles."""
+    circle, length = TURN * wanted.radius, wanted.length
+    whole = floor((length - _one(wanted, low, away).length) / circle)
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        path = joined(start, goal, radius, first, second, middle)
+        path = _one(wanted, middle, away)
         if path.straight >= 0.0 and path.length + whole * circle < length:
             low = middle
         else:
             high = middle
-    path = joined(start, goal, radius, first, second, low)
-    path = path._replace(first=path.first + first * whole * TURN)
-    return Arrival(abs(path.length - length) < 1e-3 * radius, path)
+    path = _one(wanted, low, away)
+    path = path._replace(first=path.first + wanted.first * whole * TURN)
+    return Arrival(abs(path.length - length) < 1e-3 * wanted.radius, path)
 
 
 def _sweep(angle: float) -> float:
