@@ -63,9 +63,7 @@ def turned(start: Pose, radius: float, angle: float) -> Pose:
 
 def ahead(start: Pose, length: float) -> Pose:
     """Where a straight line ends [m]."""
-    return Pose(
-        start.x + length * cos(start.heading), start.y + length * sin(start.heading), start.heading
-    )
+    return Pose(start.x + length * cos(start.heading), start.y + length * sin(start.heading), start.heading)
 
 
 def at(path: Path, length: float) -> Pose:
