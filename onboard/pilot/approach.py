@@ -12,7 +12,7 @@ from math import atan2, cos, isnan, sin
 from typing import NamedTuple
 
 from onboard.core.math.angles import wrap
-from onboard.core.math.vectors import Vec, clamp, norm, sub
+from onboard.core.math.vectors import Vec, along, clamp, norm, sub
 from onboard.core.route.arrival import Path, Pose, arrive, at, shortest
 from onboard.core.safety.envelope import bounded, slewed
 from onboard.core.safety.policy import Envelope
@@ -25,26 +25,30 @@ CLIMB_SHARE = 0.3  # of the speed that climbing may use
 GAIN = 0.25  # [1/s] of leading back to the path near the end;
 GAIN_FAR = 0.1  # before, where a wind that is told anew moves the place by all the time that is left
 CALLS = 4.0  # GAIN of an error that there is this many times its reciprocal time for
+AVERAGED = 60.0  # [s] over which the wind is averaged: what the air does until t₀ is not what it does now;
+FIRST = 20.0  # [s] that count for the first word on it
 DRIFT = 3.0  # [s] in which it is learned how gusts carry the plane along
-AUTHORITY = 0.1  # of the speed that making up for it may take and give, and for an error along the path
+AUTHORITY = 0.12  # of the speed that making up for it may take and give, and for an error along the path
 MOST_ACROSS = 0.5  # of the speed
 LEAD = 0.9  # [s] by which a plane's turn lags behind its course command,
 SPEED_LEAD = 1.0  # and its airspeed behind what is commanded
 GATHER = 4.0  # [s] before t₀ a plane begins to take up the game's airspeed
 LAST = 4.0  # [s] of straight flight before the place, or a radius of its turn if that takes longer
-LAST_LEAST = 1.5  # [s] of what is planned again later
+LAST_LEAST = 1.5  # [s] of what is planned again later, or
+SHORTER = 0.5  # of the last line: what makes a plane late is so made up for
 LOOK_EVERY = 2.0  # [s] a plane looks whether it has lost its path
-ASTRAY = 0.6  # [s] of flight from it: then it looks for another one,
-ASTRAY_FAR = 0.02  # [s] more for every second left
+ASTRAY = 0.3  # [s] of flight from it: then it looks for another one,
+ASTRAY_FAR = 0.01  # [s] more for every second left
 PUT_OFF = 0.1  # [s] more time than before: t₀ was put off
-LOST = 2.5  # [s] of flight from it: then it says that it will be late
+LOST = 2.0  # [s] of flight from it, and what it can make up for on the way: then it says that it will be late
 TURNS = 0.05  # [rad] of a turn between two looks that tells how tightly a plane turns
 TURNING = 0.9  # of a look that is spent turning, for that
 WIDENS = 1.5  # times at most in one look
 WIDEST = 2.5  # times the radius that may be counted on, in all
 SLACK = 3.0  # [s] more than the shortest way that a plane asks for
 WIDER = 1.25  # times the radius that may be counted on: what lags in a turn is made up for within it
-RESERVE = 0.9  # of its fastest: the airspeed of a path
+RESERVE = 0.65  # of its range of airspeeds that a plane keeps for making up for lost time: who is early
+# can also turn away and back
 PACES = (1.0, 1.02, 0.98, 1.04, 0.96, 0.93, 0.9)  # of that at which a plane looks for a path that fits
 LONGEST = 600.0  # [s] that no way takes: who needs more cannot get there against the wind
 LATEST = 120  # [s] that a plane says at most it will be late
@@ -71,7 +75,7 @@ class Approach:
         e = place.envelope
         self._path: Path | None = None
         self._looked_at = 0.0  # time left then [s]
-        most = max(RESERVE * e.speed_max, 0.5 * (place.slowest + e.speed_max))
+        most = e.speed_max - RESERVE * (e.speed_max - min(place.slowest, e.speed_max))
         self._reserved = max(min(place.speed, most), place.slowest)
         self._pace = self._reserved  # [m/s; air] along the path, until the plane gathers speed
         self._left = 0.0  # time left in the last step [s]
@@ -79,6 +83,8 @@ class Approach:
         self._radius = max(1.0, WIDER * e.turn_radius)  # [m] of the paths; grows where it is not kept
         self._course = 0.0  # [rad] through the air, at the last look
         self._astray = 0.0  # from where the path says that it is now [m]
+        self._wind: Vec | None = None  # in the mean [m/s]
+        self._heard = 0.0  # [s] of wind in that
         self._flown = place.speed  # [m/s] that its airspeed should be by what was commanded
         self._drift = 0.0  # [m/s] by which it is faster, as gusts carry it
         self._demand: Vec | None = None  # the last velocity [m/s; air]
@@ -96,6 +102,7 @@ class Approach:
         """Time that the vehicle needs to be at its place [s]; 0 where it is there, or too far away."""
         way = self.distance(own)
         speed = max(0.1, self.place.speed)
+        own = own if self._wind is None else own._replace(wind=self._wind)
         if way > self._farthest:
             return 0.0
         if self.place.envelope.hovers:
@@ -109,7 +116,7 @@ class Approach:
             if late <= 0.0:
                 break
             time += max(late, 0.5)
-        return time
+        return time + self._longer(own, time)
 
     def misses(self, own: Own, left: float) -> float:
         """Time by which the vehicle would be late [s] with `left` seconds to t₀; 0 where a way fits."""
@@ -131,9 +138,10 @@ class Approach:
             pace = min(self.place.speed, 0.8 * way, (self.place.envelope.deceleration * way) ** 0.5)
             return Vec(offset.x / way * pace, offset.y / way * pace, down)
         gone = self._left - left  # since the last step [s]
-        self._learn(own, clamp(gone, 0.0, 1.0))
+        raw, own = own, self._learn(own, clamp(gone, 0.0, 1.0))
         self._plan(own, left)
-        return self._kept(own, self._led(own, left, down), gone)
+        wanted = self._led(own, left, down)
+        return self._kept(raw, through(wanted, own.wind, raw.wind), gone)
 
     # ------------------------------------------------------------------ planes
 
@@ -143,7 +151,7 @@ class Approach:
 
     def _last(self) -> float:
         """The last straight line [m]: what turns and gusts have left behind dies away on it."""
-        return max(LAST * self.place.speed, self.place.envelope.turn_radius)
+        return max(LAST * self.place.speed, WIDER * self.place.envelope.turn_radius)
 
     def _poses(self, own: Own, left: float) -> tuple[Pose, Pose]:
         """The own pose and the goal's in the air, which carries both until t₀."""
@@ -153,15 +161,22 @@ class Approach:
         heading = start.heading if self.place.heading is None else self.place.heading
         return start, Pose(x - own.wind.x * left, y - own.wind.y * left, heading)
 
-    def _learn(self, own: Own, dt: float) -> None:
-        """How gusts carry the plane along: by how much it is faster than it was told to be."""
+    def _learn(self, own: Own, dt: float) -> Own:
+        """The own state in the wind's mean; learns by how much gusts make it faster."""
+        if self._wind is None:
+            self._wind = own.wind
+        self._heard += dt
+        share = dt / clamp(self._heard, FIRST, AVERAGED)
+        self._wind = along(self._wind, sub(own.wind, self._wind), share)
+        own = own._replace(wind=self._wind)
         air, before, most = sub(own.velocity, own.wind), self._demand, AUTHORITY * self.place.speed
         if before is None:
             self._flown = norm(air)
-            return
+            return own
         self._flown += min(1.0, dt / SPEED_LEAD) * (norm(before) - self._flown)
         more = clamp(norm(air) - self._flown, -most, most)
         self._drift += min(1.0, dt / DRIFT) * (more - self._drift)
+        return own
 
     def _to_go(self, left: float) -> float:
         """Length of the path that is flown in the time that is left [m]: at its pace, then gathering speed.
@@ -218,11 +233,12 @@ class Approach:
         """Make the path, and make it again where the plane has lost it, or t₀ was put off."""
         path, speed = self._path, self.place.speed
         put_off = left > self._left + PUT_OFF
+        allowed = (ASTRAY + ASTRAY_FAR * left) * speed
         self._left = left
         if path is not None and not put_off:
             if self._looked_at - left < LOOK_EVERY:
                 return
-            lost = self._astray > (ASTRAY + ASTRAY_FAR * left) * speed
+            lost = self._astray > allowed
             if lost:
                 self._widen(own, left, path)
             self._looked_at, self._course = left, self._poses(own, left)[0].heading
@@ -230,7 +246,8 @@ class Approach:
                 self._late = 0.0
                 return
         self._looked_at, self._course = left, self._poses(own, left)[0].heading
-        last = self._last() if path is None or put_off else LAST_LEAST * speed
+        first = path is None or put_off
+        last = self._last() if first else max(LAST_LEAST * speed, SHORTER * self._last())
         before = self._pace
         for share in PACES:
             self._pace = clamp(share * self._reserved, min(self.place.slowest, speed), speed)
@@ -241,18 +258,18 @@ class Approach:
         # There is none. Who has one keeps it, and asks for more time where it is far from it.
         if path is None or put_off:
             self._path, self._pace = found.path, self._reserved
-            self._late = self._longer(own, left)
+            self._late = self._longer(own, left + SLACK) + SLACK
         else:
-            self._pace = before
-            self._late = self._longer(own, left) if self._astray > LOST * speed else 0.0
+            self._pace, late = before, (LOST + AUTHORITY * left) * speed
+            self._late = self._longer(own, left) if self._astray > late else 0.0
 
     def _longer(self, own: Own, left: float) -> float:
         """Time by which t₀ is too early for any path [s]."""
-        for more in range(1, LATEST):
+        for more in range(LATEST):
             start, goal = self._poses(own, left + more)
             length = self._reserved * (left + more) + 0.5 * GATHER * (self.place.speed - self._reserved)
             if arrive(start, goal, self._radius, length, self._last()).exact:
-                return more + SLACK
+                return float(more)
         return float(LATEST)
 
     def _widen(self, own: Own, left: float, path: Path) -> None:
@@ -264,3 +281,18 @@ class Approach:
         if steady and asked > TURNS and made < asked:
             widest = WIDEST * WIDER * self.place.envelope.turn_radius
             self._radius = min(widest, self._radius * min(asked / max(made, TURNS), WIDENS))
+
+
+def through(air: Vec, mean: Vec, now: Vec) -> Vec:
+    """The velocity through the air of now [m/s] that flies over ground where `air` does in the mean wind."""
+    x, y = air.x + mean.x, air.y + mean.y
+    ground = (x * x + y * y) ** 0.5
+    level = (air.x * air.x + air.y * air.y) ** 0.5
+    if ground < 1e-6:
+        return air
+    x, y = x / ground, y / ground
+    across = now.y * x - now.x * y
+    if abs(across) >= level:
+        return air
+    ahead = (level * level - across * across) ** 0.5
+    return Vec(ahead * x + across * y, ahead * y - across * x, air.z)

@@ -16,6 +16,7 @@ from onboard.core.math.angles import TURN, wrap
 
 STEPS = 32  # of one search for the length of the last line
 HALVINGS = 30  # that then find it
+AWAY = (0.0, 0.2, 0.4, 0.8, 1.4, 2.0)  # [rad] of the turns away that are tried
 ROUNDING = 1e-9  # [rad] a turn this close to a full circle is none
 
 
@@ -32,7 +33,8 @@ class Path(NamedTuple):
 
     start: Pose
     radius: float  # [m] of all turns
-    away: float  # [rad, signed] flown before, to the other side than the first turn
+    away: float  # [rad, signed] flown before, to the other side than the first turn, and
+    out: float  # [m] straight on
     first: float  # [rad, signed] with the circles that are flown before
     straight: float  # [m]
     second: float  # [rad, signed]
@@ -42,7 +44,7 @@ class Path(NamedTuple):
     def length(self) -> float:
         """[m]."""
         turns = abs(self.away) + abs(self.first) + abs(self.second)
-        return self.radius * turns + self.straight + self.last
+        return self.radius * turns + self.out + self.straight + self.last
 
 
 class Arrival(NamedTuple):
@@ -71,7 +73,7 @@ def at(path: Path, length: float) -> Pose:
     here = path.start
     if length <= 0.0:
         return ahead(here, length)
-    for angle, line in ((path.away, 0.0), (path.first, path.straight), (path.second, path.last)):
+    for angle, line in ((path.away, path.out), (path.first, path.straight), (path.second, path.last)):
         arc = path.radius * abs(angle)
         if length <= arc:
             return turned(here, path.radius, angle * length / arc)
@@ -97,11 +99,11 @@ def joined(start: Pose, goal: Pose, radius: float, first: float, second: float, 
     if first != second:
         square -= 4.0 * radius * radius
         if square < 0.0:
-            return Path(start, radius, 0.0, 0.0, -1.0, 0.0, last)
+            return Path(start, radius, 0.0, 0.0, 0.0, -1.0, 0.0, last)
         course += first * atan2(2.0 * radius, sqrt(square))
     a = _sweep(first * (course - start.heading))
     b = _sweep(second * (entry.heading - course))
-    return Path(start, radius, 0.0, first * a, sqrt(square), second * b, last)
+    return Path(start, radius, 0.0, 0.0, first * a, sqrt(square), second * b, last)
 
 
 def shortest(start: Pose, goal: Pose, radius: float, last: float) -> Path:
@@ -114,81 +116,80 @@ def shortest(start: Pose, goal: Pose, radius: float, last: float) -> Path:
     return best
 
 
-class Goal(NamedTuple):
-    """What a path is to be: how it turns (1 right, −1 left), where to, and how long."""
+class Family(NamedTuple):
+    """Paths to a goal that differ in the length of one line: the last, or where they turn away, that away."""
 
     start: Pose
     goal: Pose
     radius: float  # [m]
-    first: float
+    first: float  # 1 right, −1 left
     second: float
     least: float  # last line [m]
-    length: float  # [m] in all
+    length: float  # [m] that is wanted
+    away: float  # [rad] by which they turn away first
 
 
 def arrive(start: Pose, goal: Pose, radius: float, length: float, least: float) -> Arrival:
     """The path of exactly `length` [m] to the goal with the shortest last line of at least `least` [m].
 
-    Where no last line makes it so long, one that turns away first.
+    Where no last line makes it so long, one that turns away first, and no further than it must.
     """
     best = Arrival(False, shortest(start, goal, radius, least))
-    for first, second in ((1.0, 1.0), (-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0)):
-        wanted = Goal(start, goal, radius, first, second, least, length)
-        best = _searched(wanted, best, False)
-    if best.exact:
-        return best
-    for first, second in ((1.0, 1.0), (-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0)):
-        wanted = Goal(start, goal, radius, first, second, least, length)
-        best = _searched(wanted, best, True)
+    for away in AWAY:
+        for first, second in ((1.0, 1.0), (-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0)):
+            best = _searched(Family(start, goal, radius, first, second, least, length, away), best)
+        if best.exact:
+            break
     return best
 
 
-def _one(wanted: Goal, share: float, away: bool) -> Path:
-    """A path of the family: drawn out by `share` of a circle on its last line, or turning away by as much."""
-    g = wanted
-    if not away:
-        last = g.least + share * TURN * g.radius
-        return joined(g.start, g.goal, g.radius, g.first, g.second, last)
-    angle = -g.first * share * TURN
-    path = joined(turned(g.start, g.radius, angle), g.goal, g.radius, g.first, g.second, g.least)
-    return path._replace(start=g.start, away=angle)
+def _one(family: Family, line: float) -> Path:
+    """The path of a family whose line is so much longer than it must be [m]."""
+    f = family
+    if f.away == 0.0:
+        return joined(f.start, f.goal, f.radius, f.first, f.second, f.least + line)
+    angle = -f.first * f.away
+    out = ahead(turned(f.start, f.radius, angle), line)
+    path = joined(out, f.goal, f.radius, f.first, f.second, f.least)
+    return path._replace(start=f.start, away=angle, out=line)
 
 
-def _searched(wanted: Goal, best: Arrival, away: bool) -> Arrival:
+def _searched(family: Family, best: Arrival) -> Arrival:
     """The best path, or a better one of a family."""
-    circle = TURN * wanted.radius
+    circle = TURN * family.radius
     low, spare = 0.0, -1.0
     for k in range(STEPS + 2):
-        share = k / STEPS
-        if best.exact and (away or wanted.least + share * circle >= best.path.last):
+        line = k * circle / STEPS
+        path = _one(family, line)
+        if best.exact and path.out + path.last >= best.path.out + best.path.last:
             break
-        path = _one(wanted, share, away)
         if path.straight < 0.0:
             spare = -1.0
             continue
-        now = (wanted.length - path.length) / circle  # circles that there is time for
+        now = (family.length - path.length) / circle  # circles that there is time for
         if spare >= 0.0 and floor(now) < floor(spare) and spare - now < 0.5:
-            found = _fitted(wanted, low, share, away)
-            if found.exact and (away or not best.exact or found.path.last < best.path.last):
+            found = _fitted(family, low, line)
+            shorter = found.path.out + found.path.last < best.path.out + best.path.last
+            if found.exact and (shorter or not best.exact):
                 best = found
-        low, spare = share, now
+        low, spare = line, now
     return best
 
 
-def _fitted(wanted: Goal, low: float, high: float, away: bool) -> Arrival:
-    """The path of a family between two at which the time left makes whole circles."""
-    circle, length = TURN * wanted.radius, wanted.length
-    whole = floor((length - _one(wanted, low, away).length) / circle)
+def _fitted(family: Family, low: float, high: float) -> Arrival:
+    """The path of a family between two lines at which the time left makes whole circles."""
+    circle, length = TURN * family.radius, family.length
+    whole = floor((length - _one(family, low).length) / circle)
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        path = _one(wanted, middle, away)
+        path = _one(family, middle)
         if path.straight >= 0.0 and path.length + whole * circle < length:
             low = middle
         else:
             high = middle
-    path = _one(wanted, low, away)
-    path = path._replace(first=path.first + wanted.first * whole * TURN)
-    return Arrival(abs(path.length - length) < 1e-3 * wanted.radius, path)
+    path = _one(family, low)
+    path = path._replace(first=path.first + family.first * whole * TURN)
+    return Arrival(abs(path.length - length) < 1e-3 * family.radius, path)
 
 
 def _sweep(angle: float) -> float:
