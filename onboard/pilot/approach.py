@@ -42,7 +42,7 @@ ASTRAY_FAR = 0.01  # [s] more for every second left
 PUT_OFF = 0.1  # [s] more time than before: t₀ was put off
 LOST = 2.0  # [s] of flight from it, and what it can make up for on the way: then it says that it will be late
 TURNS = 0.05  # [rad] of a turn between two looks that tells how tightly a plane turns
-TURNING = 0.9  # of a look that is spent turning, for that
+FELL_SHORT = 0.7  # of the turn that was told, for that
 WIDENS = 1.5  # times at most in one look
 WIDEST = 2.5  # times the radius that may be counted on, in all
 SLACK = 3.0  # [s] more than the shortest way that a plane asks for
@@ -81,7 +81,7 @@ class Approach:
         self._left = 0.0  # time left in the last step [s]
         self._late = 0.0  # by which the path is too long [s]
         self._radius = max(1.0, WIDER * e.turn_radius)  # [m] of the paths; grows where it is not kept
-        self._course = 0.0  # [rad] through the air, at the last look
+        self._course = self._told = 0.0  # [rad] through the air at the last look, flown and told
         self._astray = 0.0  # from where the path says that it is now [m]
         self._wind: Vec | None = None  # in the mean [m/s]
         self._heard = 0.0  # [s] of wind in that
@@ -240,12 +240,12 @@ class Approach:
                 return
             lost = self._astray > allowed
             if lost:
-                self._widen(own, left, path)
-            self._looked_at, self._course = left, self._poses(own, left)[0].heading
+                self._widen(own)
+            self._looked_at, (self._course, self._told) = left, self._headings(own)
             if not lost:
                 self._late = 0.0
                 return
-        self._looked_at, self._course = left, self._poses(own, left)[0].heading
+        self._looked_at, (self._course, self._told) = left, self._headings(own)
         first = path is None or put_off
         last = self._last() if first else max(LAST_LEAST * speed, SHORTER * self._last())
         before = self._pace
@@ -272,15 +272,18 @@ class Approach:
                 return float(more)
         return float(LATEST)
 
-    def _widen(self, own: Own, left: float, path: Path) -> None:
-        """Reckon with the turn that the plane has made since the last look, where it fell short."""
-        gone, before = (path.length - self._to_go(time) for time in (left, self._looked_at))
-        asked = abs(wrap(at(path, gone).heading - at(path, before).heading))
-        made = abs(wrap(self._poses(own, left)[0].heading - self._course))
-        steady = asked * path.radius > TURNING * (gone - before)
-        if steady and asked > TURNS and made < asked:
+    def _widen(self, own: Own) -> None:
+        """Reckon with the turn that the plane has made since the last look, where that fell short."""
+        course, told = self._headings(own)
+        asked, made = wrap(told - self._told), wrap(course - self._course)
+        if abs(asked) > TURNS and made * asked < FELL_SHORT * asked * asked:
             widest = WIDEST * WIDER * self.place.envelope.turn_radius
-            self._radius = min(widest, self._radius * min(asked / max(made, TURNS), WIDENS))
+            self._radius = min(widest, self._radius * min(abs(asked) / max(abs(made), TURNS), WIDENS))
+
+    def _headings(self, own: Own) -> tuple[float, float]:
+        """The course through the air, and that which was told last [rad]."""
+        course = self._poses(own, 0.0)[0].heading
+        return course, course if self._demand is None else atan2(self._demand.y, self._demand.x)
 
 
 def through(air: Vec, mean: Vec, now: Vec) -> Vec:
