@@ -23,6 +23,7 @@ from onboard.core.strategy.team.plan_types import (
     Member,
     Plan,
     Situation,
+    nearest_staged,
 )
 from onboard.core.strategy.team.planner import no_plan, plan
 from onboard.pilot.setup import GameSetup, Own, Side
@@ -30,7 +31,7 @@ from onboard.pilot.setup import GameSetup, Own, Side
 EVERY_S = 0.5  # between two plans
 LEASE_S = 1.0  # for which a member's or a planner's last word counts
 OLD_S = 5.0  # beyond which a plan is no plan
-DELAY_S = 0.2  # from a measurement to the pursuers' answer to it, through sensor, decision and autopilot
+DELAY_S = 0.17  # from a measurement to the pursuers' answer to it: a sensor's 0.12 s and a control step
 
 
 class Known(NamedTuple):
@@ -151,5 +152,5 @@ def situation_of(id: int, field: Field, known: Known, evader: Vehicle) -> Situat
         field.heights,
         Margin(DELAY_S, field.sigma),
         evader.position,
-        game.rules.rho,
+        nearest_staged(game.rules),
     )

@@ -8,7 +8,7 @@ from onboard.core.game.advance import Conditions, Game, begin
 from onboard.core.game.rules import NO_TARGET, Control, Target
 from onboard.core.math.states import Vehicle
 from onboard.core.math.vectors import Vec, scale
-from onboard.core.strategy.team.plan_types import Heights, Margin
+from onboard.core.strategy.team.plan_types import Heights, Margin, nearest_staged
 from onboard.game.scenario import AirframeKind, Scenario, vec
 from onboard.game.staging import places_of, start_headings
 
@@ -70,10 +70,6 @@ def margin_of(scenario: Scenario) -> Margin:
     return Margin(sensor.delay_s + 1.0 / flight.control_rate_hz, sensor.sigma)
 
 
-NEAREST = 10.0  # safety distances ρ that a plane game's pursuers stage away from the evader, and
-NEAREST_IN_SPACE = 17.0  # those in space: 1.5 km with the 88 m of the shipped scenarios
-
-
 def nearest_of(scenario: Scenario) -> float:
     """How near to the evader pursuers may be when it sets out [m]."""
-    return (NEAREST if scenario.planar else NEAREST_IN_SPACE) * scenario.rules.rho
+    return nearest_staged(scenario.rules)

@@ -14,6 +14,8 @@ from onboard.core.game.rules import Rules, Target
 from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import ZERO, Vec
 
+NEAREST = 10.0  # safety distances ρ that a plane game's pursuers stage away from the evader, and
+NEAREST_IN_SPACE = 17.0  # those in space: 1.5 km with the 88 m of the shipped scenarios
 NOBODY = -1  # where a member is asked for and there is none
 
 
@@ -115,3 +117,8 @@ IDLE = Assignment(Role.RESERVE, ZERO, 0.0, inf, Reason.NONE)
 def idle(_member: Member, _index: int, _shared: float) -> Assignment:
     """A member without a part (for `each`)."""
     return IDLE
+
+
+def nearest_staged(rules: Rules) -> float:
+    """How near to the evader pursuers may be when it sets out [m]."""
+    return (NEAREST if rules.planar else NEAREST_IN_SPACE) * rules.rho
