@@ -177,6 +177,7 @@ def table_of(world: World, games: int) -> Table:
         np.zeros((games, players, 3)), np.zeros((games, players, 3)), np.zeros((games, 3)),
         np.zeros(games, np.int64), np.zeros(games, np.int64), np.zeros((games, 2)), np.zeros((games, 4)),
         np.zeros((games, players, 2)), np.zeros((tracked, players, 6)),
+        np.zeros((tracked, players, 2), np.int64),
         np.zeros((tracked, slots, players, 7)),
         np.zeros((tracked, players, WIDTH)), np.full((tracked, players), -1.0),
     )  # fmt: skip

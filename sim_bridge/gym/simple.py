@@ -37,6 +37,7 @@ from onboard.core.game.views import (
     heading_at,
     pursuer_view,
     sighted,
+    with_limits,
 )
 from onboard.core.math.each import each, each_pair
 from onboard.core.math.states import Vehicle
@@ -45,7 +46,7 @@ from onboard.core.strategy.features import Turn, answer, evader_features, pursue
 from onboard.core.strategy.knowledge import Decision, RuleId
 from sim_bridge.campaign.spatial_game import in_air
 from sim_bridge.campaign.tracks import Eye, Tracks, hear, measure, track_of
-from sim_bridge.draws import Key, Purpose, key_of
+from sim_bridge.draws import Key
 from sim_bridge.gym.exchange import Exchange
 from sim_bridge.gym.starts import Here, Table, World, loaded, restart, store, vec_of, wind_of, write
 
@@ -63,15 +64,14 @@ class Heard(NamedTuple):
 
 def key_at(_vehicle: Vehicle, index: int, here: Here) -> Key:
     """The key of pursuer `index`'s measurements (for `each`)."""
-    world = here.world
-    return key_of(here.table.seeds[here.game] + world.seed, world.ids[index + 1], Purpose.SENSOR)
+    row = here.table.keys[here.game, index + 1]
+    return Key(row[0], row[1])
 
 
 def eye_at(here: Here) -> Eye:
     """The sensor with the game's random numbers."""
-    eye, world = here.world.eye, here.world
-    own = key_of(here.table.seeds[here.game] + world.seed, world.ids[0], Purpose.SENSOR)
-    keys = (own, *each(key_at, world.template.pursuers, here))
+    eye, row = here.world.eye, here.table.keys[here.game, 0]
+    keys = (Key(row[0], row[1]), *each(key_at, here.world.template.pursuers, here))
     return Eye(eye.period, eye.delay, eye.sigma, eye.sigma_velocity, eye.dropout, eye.floor, eye.density,
                eye.learning, keys)  # fmt: skip
 
@@ -175,6 +175,7 @@ def look_all(game: Game, here: Here, exchange: Exchange, parts: Parts) -> None:
     rules, target = world.conditions.rules, world.conditions.target
     others = parts.others(game, here)
     view = evader_view(game.evader, game.evader_limits, others, target, wind_of(here), rules)
+    view = with_limits(view, game.pursuer_limits)
     if world.learns[0]:
         turn = evader_features(view, world.form, exchange.evader_sees[g])
         t.turns[g, 0, 0] = turn.x

@@ -55,6 +55,7 @@ class Table(NamedTuple):
     decided: Array  # (games, 4): decided direction and speed of an evader that does not learn
     turns: Array  # (games, players, 2): axes of the observation
     states: Array  # (games, players, 6) places and velocities over ground, for the sensor
+    keys: NDArray[np.int64]  # (games, players, 2) of the sensor's random numbers
     waiting: Array  # (games, slots, players, 7) measurements under way
     filters: Array  # (games, players, WIDTH)
     stamps: Array  # (games, players)
@@ -168,3 +169,6 @@ def restart(here: Here) -> None:
     if world.noisy:
         for i in range(t.stamps.shape[1]):
             t.stamps[g, i] = -1.0
+            key = key_of(t.seeds[g] + world.seed, world.ids[i], Purpose.SENSOR)
+            t.keys[g, i, 0] = key.a
+            t.keys[g, i, 1] = key.b
