@@ -15,9 +15,7 @@ Floats = NDArray[np.float32]
 class Rewards(NamedTuple):
     """What a step earns; the four are added."""
 
-    outcome: float = (
-        1.0  # of a game captured or denied: to every pursuer; else to the evader; the reverse to the others
-    )
+    outcome: float = 1.0  # captured or denied: to every pursuer, else to the evader; the reverse to others
     closing: float = 0.01  # a metre: a pursuer nearer to the evader, the evader nearer to its target
     time: float = 0.0  # a second of the game: to the evader, from every pursuer
     unsafe: float = 0.0  # a second within the safety distance ρ: to every pursuer, from the evader

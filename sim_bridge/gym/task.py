@@ -48,11 +48,11 @@ class Wish(msgspec.Struct, frozen=True, kw_only=True):
     learn: str | Sequence[str] = "pursuers"  # "pursuers", "evader", "all", or names as "pursuer_1"
     evader: str = ""  # its strategy where it does not learn; "" = the scenario's
     pursuers: str = ""  # strategy of those who do not learn; "" = the scenario's
-    motion: str = "simple"
-    actions: str = "heading"  # or "velocity", "acceleration"
-    axes: str = "ned"  # or "sight"
-    rewards: Rewards = Rewards()
-    spread: float | None = None  # [m]; None = a fifth of the nearest pursuer's distance
+    motion: str = "simple"  # how vehicles move: at once as decided, in the mean wind
+    actions: str = "heading"  # or "velocity", "acceleration": see above
+    axes: str = "ned"  # north, east, down; "sight": along the line of sight, right of it, down
+    rewards: Rewards = Rewards()  # see above
+    spread: float | None = None  # of the starts, σ [m]; None: a fifth of the nearest distance
 
 
 def agents_of(scenario: Scenario) -> tuple[str, ...]:
