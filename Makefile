@@ -9,7 +9,7 @@ export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
-.PHONY: help install demo test check check-long check-pythons bench figures bench-predictor check-aarch64 golden fuzz soak mutants mavproxy clean three lock
+.PHONY: help install demo test check check-long check-pythons bench bench-page figures bench-predictor check-aarch64 golden fuzz soak mutants mavproxy clean three lock
 
 help:
 	@echo "make install   the environment only"
@@ -19,6 +19,7 @@ help:
 	@echo "make check-long   the long tests, and every property with five times other examples"
 	@echo "make check-pythons   a share of the tests on the later Pythons that this machine has"
 	@echo "make bench     benchmarks; results go to benchmarks/results/"
+	@echo "make bench-page  the page before a browser, with 200 and 1000 vehicles"
 	@echo "make figures   the committed tables of games, routes and predictors again, in one sweep"
 	@echo "make bench-predictor   the comparison with LSTM and GRU"
 	@echo "make golden    what whole games, agents and campaigns do, against what was recorded of them"
@@ -114,6 +115,9 @@ $(MUTANTS)/.installed: locks/mutants.in $(STAMP)
 
 mutants: install $(MUTANTS)/.installed
 	$(MUTANTS)/bin/python -m tests.mutants
+
+bench-page: install
+	$(BIN)/python -m tests.benchmarks.page
 
 mavproxy: .venv-mavproxy/bin/mavproxy.py
 

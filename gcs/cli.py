@@ -178,33 +178,23 @@ def export(
 
 @app.command(
     epilog="Examples: gcs page | gcs page --control"
-    " | gcs page --host 0.0.0.0 --control --tls-certificate page.crt --tls-key page.key"
+    " | gcs page --host 0.0.0.0 --config gcs.toml"
 )
 @takes(*BUS, "operator", "runs", "record")
 def page(
     options: Options,
-    host: Annotated[str, typer.Option("--host", help="Address to listen at.")] = "127.0.0.1",
-    port: Annotated[int, value(HttpPort, "--port", words="Port to listen at; 0 = any.", unit="PORT")] = 8765,
+    host: Annotated[str | None, typer.Option("--host", help="Address to listen at [127.0.0.1].")] = None,
+    port: Annotated[
+        int | None, value(HttpPort, "--port", words="Port to listen at; 0 = any [8765].", unit="PORT")
+    ] = None,
     control: Annotated[
-        bool, typer.Option("--control", help="Let who opens the address it prints command vehicles.")
-    ] = False,
-    token_file: Annotated[
-        Path | None, typer.Option("--token-file", help="A token of your own, in a file of mode 0600.")
-    ] = None,
-    tls_certificate: Annotated[
-        Path | None, typer.Option("--tls-certificate", help="Serve by TLS with this certificate (PEM).")
-    ] = None,
-    tls_key: Annotated[Path | None, typer.Option("--tls-key", help="Its key (PEM).")] = None,
-    tls_clients: Annotated[
-        Path | None,
-        typer.Option("--tls-clients", help="Let in who has a certificate of this authority (PEM)."),
+        bool | None, typer.Option("--control", help="Let who opens the address it prints command vehicles.")
     ] = None,
 ) -> int:
     """Serve the game as a page for any browser: 3-D scene, plan, tables, alerts, orders."""
     from gcs.page import program
 
-    how = program.PageOptions(host, port, control, token_file, tls_certificate, tls_key, tls_clients)
-    return _play(program.live(options.settings(), how))
+    return _play(program.live(options.settings(host=host, port=port, control=control)))
 
 
 @app.command(epilog="Examples: gcs fence area.plan | gcs fence area.kml --scenario mine.toml")

@@ -26,9 +26,11 @@ class Options(NamedTuple):
     runs: Path | None = None
     record: bool | None = None
     plain: bool | None = None
+    page: bool | None = None
 
-    def settings(self) -> Settings:
-        """The settings of the file (or the defaults) with the options over them. Raises ConfigError."""
+    def settings(self, **page: object) -> Settings:
+        """The settings of the file (or the defaults) with the options over them; `page`: of the page, None =
+        not given. Raises ConfigError."""
         found = settings.load(self.config)
         bus = {"endpoint": self.bus, "zenoh": None if self.zenoh is None else str(self.zenoh)}
         recording = {"folder": None if self.runs is None else str(self.runs), "enabled": self.record}
@@ -36,6 +38,7 @@ class Options(NamedTuple):
             found,
             bus=msgspec.structs.replace(found.bus, **_given(bus)),
             recording=msgspec.structs.replace(found.recording, **_given(recording)),
+            page=msgspec.structs.replace(found.page, **_given({"enabled": self.page} | page)),
             **_given({"game": self.game, "operator": self.operator}),
         )
         return settings.check(found, "options")
@@ -55,10 +58,11 @@ DECLARED: dict[str, Any] = {
     "operator": Annotated[str | None, typer.Option("--operator", help="Who signs the commands.")],
     "runs": Annotated[Path | None, typer.Option("--runs", help="Folder for recordings.")],
     "record": Annotated[bool | None, typer.Option("--record/--no-record", help="Record everything heard.")],
+    "page": Annotated[bool | None, typer.Option("--page", help="Serve the page for browsers beside it.")],
     "plain": Annotated[bool | None, typer.Option("--plain", help="Lines in place of the console.")],
 }
 BUS = ("config", "game", "bus", "zenoh")
-STATION = (*BUS, "operator", "runs", "record", "plain")
+STATION = (*BUS, "operator", "runs", "record", "plain", "page")
 
 
 def takes(*names: str) -> Callable[[Callable[..., int]], Callable[..., int]]:

@@ -6,7 +6,7 @@ import asyncio
 import signal
 import sys
 from collections.abc import Callable, Sequence
-from contextlib import suppress
+from contextlib import AbstractAsyncContextManager, nullcontext, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -40,11 +40,21 @@ async def watch(settings: Settings, *, record: bool, plain: bool) -> int:
     _demand_terminal(plain)
     async with on_air(settings, listen=settings.bus.listen, record=record) as session:
         try:
-            if plain:
-                return await print_lines(session)
-            return await show_console(session)
+            async with _page(session, settings):
+                if plain:
+                    return await print_lines(session)
+                return await show_console(session)
         finally:
             _say_farewell(session)
+
+
+def _page(session: Session, settings: Settings) -> AbstractAsyncContextManager[None]:
+    """The page beside a console, where it is asked for."""
+    if not settings.page.enabled:
+        return nullcontext()
+    from gcs.page.program import beside
+
+    return beside(session, settings.page)
 
 
 def _say_farewell(session: Session) -> None:
@@ -135,7 +145,7 @@ async def play(
         master = FieldMaster(session.station, scenario, auto_start=auto_start, takes_over=takes_over)
         session.extra = master.status
         session.leaving = "leave the console? the game then ends for want of its master"
-        async with asyncio.TaskGroup() as tasks:
+        async with _page(session, settings), asyncio.TaskGroup() as tasks:
             task = tasks.create_task(master.run(), name="master")
             try:
                 if plain:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from gcs.picture.alert_rules import Thresholds
 from onboard.config import strict as config
+from onboard.config.bounds import HttpPort
 from onboard.config.names import GameName
 from onboard.config.strict import StrictConfig
 from onboard.wire.bus.topics import DEFAULT_GAME
@@ -29,6 +30,19 @@ class RecordingSettings(StrictConfig, frozen=True):
     mavlink: tuple[str, ...] = ()  # links to log beside it, such as udpin://0.0.0.0:14550
 
 
+class PageSettings(StrictConfig, frozen=True):
+    """The page for browsers: `gcs page`, or `gcs --page` beside the console."""
+
+    enabled: bool = False  # serve it beside the console too
+    host: str = "127.0.0.1"  # address to listen at
+    port: HttpPort = 8765  # 0 = any
+    control: bool = False  # let who has the token command vehicles
+    token_file: str = ""  # a token of one's own, mode 0600; "" = drawn at the start and printed
+    tls_certificate: str = ""  # PEM; "" = no TLS
+    tls_key: str = ""  # PEM; "" = in the certificate's file
+    tls_clients: str = ""  # PEM of the authority whose client certificates are let in
+
+
 class Settings(StrictConfig, frozen=True):
     """Everything a ground station can be told."""
 
@@ -36,6 +50,7 @@ class Settings(StrictConfig, frozen=True):
     operator: str = ""  # signs the commands; "" = the user's name
     bus: BusSettings = BusSettings()
     recording: RecordingSettings = RecordingSettings()
+    page: PageSettings = PageSettings()
     alerts: Thresholds = Thresholds()
 
     @property

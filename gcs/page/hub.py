@@ -229,5 +229,3 @@ class Hub:
 
 def _json(document: documents.Document) -> str:
     return msgspec.json.encode(document).decode()
-
-

@@ -184,7 +184,7 @@ async def served(server: PageServer, address: Address) -> AsyncIterator[int]:
             await site.start()
         except OSError as error:
             raise ConfigError(
-                f"--port: found {address.host}:{address.port}, which cannot be listened at"
+                f"page.port: found {address.host}:{address.port}, which cannot be listened at"
                 f" ({(error.strerror or str(error)).lower()}), expected a free one"
             ) from None
         bound = runner.addresses[0]
