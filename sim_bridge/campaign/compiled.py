@@ -70,6 +70,7 @@ KERNELS = (
 OUT_OF_LINE = frozenset(
     {"free_ray_limited", "allow", "restart", "listen", "foreseen", "hunted", "two_legs", "chase"}
     | {"assigned", "engaged", "way_out_at", "least_gap"}
+    | {"blow", "fly_ordered", "fly_commanded", "measure", "hear"}
 )
 
 Array = NDArray[np.float64]

@@ -27,7 +27,7 @@ from importlib import metadata
 from pathlib import Path
 from time import sleep
 from types import FunctionType
-from typing import IO, Any
+from typing import IO, Any, Literal
 
 import numba
 from numba.core import compiler, serialize
@@ -46,19 +46,26 @@ MAKERS = ("sim_bridge.campaign.compiled", "sim_bridge.campaign.fingerprint", __n
 _dumps: Callable[[Any], bytes] = serialize.dumps
 _rebuilt: Callable[..., Any] = compiler.CompileResult._rebuild
 
+ErrorModel = Literal["python", "numpy"]
 log = logging.getLogger(__name__)
 
 
-def kernel(function: Callable[..., Any], counted: bool = True) -> Callable[..., Any]:
+def kernel(
+    function: Callable[..., Any], counted: bool = True, error_model: ErrorModel = "python"
+) -> Callable[..., Any]:
     """A function in kernel style compiled at its first call, or taken from disk; holds no interpreter lock.
 
     What it calls must be registered (`sim_bridge.campaign.compiled.register`). With `counted` False it counts
-    no references to arrays and may make neither arrays nor lists: worth it where it handles many arrays.
+    no references to arrays and may make neither arrays nor lists: worth it where it handles many arrays. By
+    the error model `python` a division by zero raises ZeroDivisionError; by that of `numpy` it is inf or
+    NaN, and loops can become vector instructions.
     """
-    options: Any = {"nogil": True} if counted else {"nogil": True, "_nrt": False}
+    options: Any = {"nogil": True, "error_model": error_model}
+    if not counted:
+        options["_nrt"] = False
     machine: Any = numba.njit(**options)(function)
     if isinstance(function, FunctionType) and hasattr(machine, "_cache"):  # not with NUMBA_DISABLE_JIT
-        machine._cache = KernelCache(function, counted)
+        machine._cache = KernelCache(function, repr(options))
     found: Callable[..., Any] = machine
     return found
 
@@ -79,10 +86,10 @@ def folder() -> Path | None:
 class KernelCache(NullCache):
     """What numba asks before it compiles a function, and tells afterwards."""
 
-    def __init__(self, function: FunctionType, counted: bool = True) -> None:
-        """`function` as written, not compiled; `counted` as for `kernel`."""
+    def __init__(self, function: FunctionType, options: str) -> None:
+        """`function` as written, not compiled; `options` in words, by which it is compiled."""
         self._function = function
-        self._counted = counted
+        self._options = options
         self._lock: IO[bytes] | None = None
         self._named: str | None = None
 
@@ -131,7 +138,7 @@ class KernelCache(NullCache):
         except UnknownContentError as error:
             log.debug("%s is not kept: it contains %s", self._function.__qualname__, error)
             return None
-        parts = (self._named, _surroundings(), repr(codegen.magic_tuple()), str(sig), str(self._counted))
+        parts = (self._named, self._options, _surroundings(), repr(codegen.magic_tuple()), str(sig))
         name = hashlib.sha256("\0".join(parts).encode()).hexdigest()
         return home / f"{self._function.__name__}-{name[:40]}.kernel"
 

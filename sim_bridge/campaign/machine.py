@@ -10,11 +10,10 @@ from onboard.core.game.advance import EvaderStrategy, PursuerStrategy
 from onboard.core.strategy.knowledge import Decision
 from onboard.core.strategy.team.flying import pursuer_team
 from onboard.core.strategy.team.planner import engaged
-from sim_bridge.campaign.aboard import Aboard
-from sim_bridge.campaign.plane_in_wind import Flown
-from sim_bridge.campaign.spatial_game import Array, Chosen, SpatialPlay, Start, Ways, play
+from sim_bridge.campaign.spatial_game import Array, Chosen, SpatialPlay, Start, Ways
+from sim_bridge.campaign.spatial_lanes import InLanes, moved_in_lanes
+from sim_bridge.campaign.spatial_play import approach, moved_one_by_one, play
 from sim_bridge.campaign.team_play import stand_by
-from sim_bridge.campaign.tracks import Tracks
 
 
 def among(strategies: tuple[Callable[[Any], Decision], ...]) -> Callable[[Any, int], Decision]:
@@ -45,18 +44,23 @@ def _either(
 
 @cache
 def machine(
-    evaders: tuple[EvaderStrategy, ...], pursuers: tuple[PursuerStrategy, ...]
+    evaders: tuple[EvaderStrategy, ...], pursuers: tuple[PursuerStrategy, ...], in_lanes: bool
 ) -> Callable[..., SpatialPlay]:
-    """The game of these strategies: `play` of a start, `Chosen`, players, crew, tracks and log.
+    """The game of these strategies: `play` of a start, `Chosen`, a sky and a log.
 
-    One compiled kernel holds all of them, so that a matrix of strategies is compiled once.
+    One compiled kernel holds all of them, so that a matrix of strategies is compiled once. `in_lanes`: the
+    sky is `InLanes`, for a kernel that is compiled, else `OneByOne`.
     """
     evade, pursue = among(evaders), among(pursuers)
     planner = engaged if pursuer_team in pursuers else stand_by
+    motion = moved_in_lanes if in_lanes else moved_one_by_one
 
-    def played(
-        start: Start, chosen: Chosen, players: list[Flown], crew: list[Aboard], seen: Tracks, log: Array
-    ) -> SpatialPlay:
-        return play(start, Ways(evade, pursue, chosen, planner), players, crew, seen, log)
+    def played(start: Start, chosen: Chosen, sky: Any, log: Array) -> SpatialPlay:
+        return play(start, Ways(evade, pursue, chosen, planner), motion(), sky, log)
 
     return played
+
+
+def approach_in_lanes(start: Start, sky: InLanes) -> None:
+    """`approach` for a kernel that is compiled."""
+    approach(start, moved_in_lanes(), sky)

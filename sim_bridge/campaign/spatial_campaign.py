@@ -14,10 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from onboard.core.game.referee import GameResult
+from onboard.core.math.angles import wrap
 from onboard.game.scenario import Scenario
 from onboard.runtime.progress import Tell, over, part, silent
 from onboard.runtime.run_folder import made
-from sim_bridge.campaign.spatial_draw import T0, Draw, draw, kernel_of, typed
+from sim_bridge.campaign.spatial_draw import T0, Draw, compiled_kernel, draw, kernel_of, sky_of
 from sim_bridge.campaign.spatial_game import Evasion, SpatialPlay
 
 REVERSAL = radians(10.0)  # a turn one way, then the other
@@ -50,35 +51,41 @@ def play_drawn(d: Draw, evasion: int, compiled: bool = True) -> Played:
     log = np.zeros((d.steps, len(d.players), 6))
     sides = d.sides
     chosen = sides.chosen._replace(evader=int(evasion))
-    found = kernel_of(sides.evaders, sides.pursuers, compiled)(
-        d.start, chosen, typed(d.players, compiled), typed(d.crew, compiled), d.tracks, log
-    )
+    found = kernel_of(sides.evaders, sides.pursuers, compiled)(d.start, chosen, sky_of(d, compiled), log)
     log = log[: found.steps]
+    count = compiled_kernel(reversals) if compiled else reversals
     span = round(WITHIN / d.start.conditions.control.dt)
     return Played(
         GameResult(found.game.score.verdict),
         found.game.score.time,
         found.game.score.smallest,
-        reversals(log[:, 0, 3], span),
-        reversals(log[:, 0, 4], span),
+        count(log[:, 0, 3], span),
+        count(log[:, 0, 4], span),
         found,
         log,
     )
 
 
 def reversals(course: Array, span: int) -> int:
-    """How often a course turned by more than 10° and back by more than 10° within `span` samples.
+    """How often a course [rad] turned by more than 10° and back by more than 10° within `span` samples.
 
-    Counted once each: a window that holds one is left behind.
+    Counted once each: a window that holds one is left behind. Kernel style.
     """
-    angle = np.unwrap(course)
+    angle = np.empty(course.shape[0])
+    turned = 0.0
+    for k in range(course.shape[0]):
+        if k > 0:
+            turned += wrap(course[k] - course[k - 1])
+        angle[k] = turned
     count = 0
     k = 0
-    while k < len(angle) - span:
-        window = angle[k : k + span + 1]
-        high, low = int(np.argmax(window)), int(np.argmin(window))
-        up_down = min(window[high] - window[0], window[high] - window[-1])
-        down_up = min(window[0] - window[low], window[-1] - window[low])
+    while k < angle.shape[0] - span:
+        high = low = angle[k]
+        for j in range(k + 1, k + span + 1):
+            high = max(high, angle[j])
+            low = min(low, angle[j])
+        up_down = high - max(angle[k], angle[k + span])
+        down_up = min(angle[k], angle[k + span]) - low
         if max(up_down, down_up) > REVERSAL:
             count += 1
             k += span

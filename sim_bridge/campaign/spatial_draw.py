@@ -28,9 +28,12 @@ from sim_bridge.campaign.aboard import Aboard, autopilot_of, boarded, policy_of
 from sim_bridge.campaign.compiled import KERNELS as CORE
 from sim_bridge.campaign.compiled import in_arrays, register, register_strategies
 from sim_bridge.campaign.kernel_cache import kernel
-from sim_bridge.campaign.machine import machine
+from sim_bridge.campaign.lanes import twins
+from sim_bridge.campaign.machine import approach_in_lanes, machine
 from sim_bridge.campaign.plane_in_wind import Flown, climate_of, drawn_wind, launched, wind_at
-from sim_bridge.campaign.spatial_game import Chosen, Fleet, Pace, Start, approach
+from sim_bridge.campaign.spatial_game import Chosen, Fleet, Pace, Start
+from sim_bridge.campaign.spatial_lanes import InLanes, in_lanes_of, players_of, tracks_of
+from sim_bridge.campaign.spatial_play import OneByOne, approach, moved_one_by_one, one_by_one
 from sim_bridge.campaign.team_play import Planning
 from sim_bridge.campaign.tracks import Eye, Tracks, no_tracks
 from sim_bridge.draws import Purpose, Stream, key_of
@@ -63,10 +66,15 @@ KERNELS = (
     "sim_bridge.campaign.plane_in_wind",
     "sim_bridge.campaign.aboard",
     "sim_bridge.campaign.tracks",
+    "sim_bridge.campaign.lane_math",
+    "sim_bridge.campaign.lanes",
+    "sim_bridge.campaign.flight_lanes",
     "sim_bridge.campaign.ledger",
     "sim_bridge.campaign.envelope",
     "sim_bridge.campaign.team_play",
     "sim_bridge.campaign.spatial_game",
+    "sim_bridge.campaign.spatial_play",
+    "sim_bridge.campaign.spatial_lanes",
 )
 T0 = 6.5  # [s] from the beginning of the world to that of the game, as `fly --fast` has it
 DECIDES = 2  # samples after a multiple of 50 ms at which positions come and everybody decides
@@ -178,11 +186,24 @@ def draw(scenario: Scenario, seed: int, t0: float = T0, compiled: bool = True) -
         players.append(launched(plane, gust_noise(keys[index], 0)))
         level.append(Command(Steer.COURSE, yaw, 0.0, spec.speed))
     tracks = no_tracks(len(players), start.eye)
-    flown = typed(players, compiled)
-    (compiled_kernel(approach) if compiled else approach)(start, flown, tracks, typed(level, compiled))
+    if compiled:
+        lanes = in_lanes_of(start, players, level, [], tracks)
+        compiled_kernel(approach_in_lanes)(start, lanes)
+        flown, tracks = players_of(lanes), tracks_of(lanes)
+    else:
+        sky = one_by_one(players, level, [], tracks)
+        approach(start, moved_one_by_one(), sky)
+        flown = sky.players
     crew = [aboard_of(flown[i].plane, start, specs[i].speed, i) for i in range(len(players))]
     steps = int(conditions.rules.horizon / (control * dt)) + 8
-    return Draw(start, list(flown), crew, tracks, steps, sides_of(scenario))
+    return Draw(start, flown, crew, tracks, steps, sides_of(scenario))
+
+
+def sky_of(d: Draw, compiled: bool) -> InLanes | OneByOne:
+    """A draw's vehicles as its game moves them: in lanes where compiled. It shares the draw's tracks."""
+    if compiled:
+        return in_lanes_of(d.start, d.players, [], d.crew, d.tracks)
+    return one_by_one(d.players, [], d.crew, d.tracks)
 
 
 def planning_of(scenario: Scenario, step: float) -> Planning:
@@ -269,9 +290,10 @@ def aboard_of(plane: PlaneState, start: Start, speed: float, index: int) -> Aboa
 def compiled_kernel(function: Callable[..., Any]) -> Callable[..., Any]:
     """A kernel of the game compiled; once for each number of pursuers."""
     register(KERNELS)
+    register_strategies(twins())
     for cell in function.__closure__ or ():
         register_strategies((cell.cell_contents,))
-    return kernel(function)
+    return kernel(function, error_model="numpy")
 
 
 @cache
@@ -280,19 +302,7 @@ def kernel_of(
 ) -> Callable[..., Any]:
     """The whole game of these strategies (`machine`), compiled or not; once for each number of pursuers."""
     if not compiled:
-        return machine(evaders, pursuers)
+        return machine(evaders, pursuers, in_lanes=False)
     evaders, pursuers = in_arrays(evaders), in_arrays(pursuers)
     register_strategies((*evaders, *pursuers))
-    return compiled_kernel(machine(evaders, pursuers))
-
-
-def typed(items: list[Any], compiled: bool) -> Any:
-    """A list as a kernel takes it."""
-    if not compiled:
-        return list(items)
-    from numba.typed import List
-
-    typed = List()
-    for item in items:
-        typed.append(item)
-    return typed
+    return compiled_kernel(machine(evaders, pursuers, in_lanes=True))

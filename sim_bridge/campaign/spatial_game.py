@@ -15,8 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from onboard.core.game.advance import Conditions, Game, judged, positions
-from onboard.core.game.referee import GameResult
+from onboard.core.game.advance import Conditions, Game, positions
 from onboard.core.game.views import (
     EvaderView,
     Nearest,
@@ -32,23 +31,26 @@ from onboard.core.game.views import (
 )
 from onboard.core.math.each import each
 from onboard.core.math.states import Mate, Vehicle
-from onboard.core.math.vectors import ZERO, Vec, scale
+from onboard.core.math.vectors import Vec, scale
 from onboard.core.safety.policy import Policy
 from onboard.core.strategy.knowledge import Decision
 from onboard.core.strategy.team.plan_types import Plan, Situation
-from onboard.core.strategy.team.planner import no_plan
 from sim_bridge.campaign.aboard import NOBODY, Aboard, Autopilot, Instant, aware, commanded, ordered
-from sim_bridge.campaign.envelope import UNMOVED, Envelope, widened
-from sim_bridge.campaign.ledger import held_by, known, known_wind, note, note_wind, write_down
+from sim_bridge.campaign.envelope import Envelope
+from sim_bridge.campaign.lanes import packing
+from sim_bridge.campaign.ledger import held_by, known, known_wind, write_down
 from sim_bridge.campaign.plane_in_wind import Climate, Flown, blown, fly, gust_at, gust_tick, wind_at
-from sim_bridge.campaign.team_play import Planning, Talk, arrived, opened, posted, seat, stand_by
-from sim_bridge.campaign.tracks import Eye, Tracks, track_of, watched
+from sim_bridge.campaign.team_play import Planning, Talk, arrived, posted, seat, stand_by
+from sim_bridge.campaign.tracks import Eye, Tracks, track_of
 from sim_bridge.draws import Key
-from sim_bridge.vehicle.flight.plane import Command, PlaneModel, nose_yaw, placed, true_airspeed
+from sim_bridge.vehicle.flight.plane import Command, PlaneModel, nose_yaw, true_airspeed
 from sim_bridge.vehicle.wind.dryden import gust_noise
 from sim_bridge.vehicle.wind.estimate import ARDUPILOT, Errors, Sensed, estimated
 
 Array = NDArray[np.float64]
+ABOARD = packing(Aboard, 1)
+load_aboard, store_aboard = ABOARD.load, ABOARD.store
+ABOARD_ROW = ABOARD.width  # numbers of a row of the crew
 WIND_EVERY = 10  # samples between two updates of an estimate of the wind: `EVERY` of it
 
 
@@ -221,7 +223,7 @@ def situation(team: Deciding) -> Situation:
     )  # fmt: skip
 
 
-def decide_all(team: Deciding, crew: list[Aboard], step: int) -> None:
+def decide_all(team: Deciding, crew: Array, step: int) -> None:
     """Everybody's decision into `crew`, evader first, and into the team's `decided` (players, 8): course and
     pitch [rad], the sample (of the evader), rule, aim [m; NED] and time until then [s]."""
     start, ways, seen, states, now = team.start, team.ways, team.seen, team.states, team.now
@@ -238,11 +240,12 @@ def decide_all(team: Deciding, crew: list[Aboard], step: int) -> None:
     view = evader_view(me, game.evader_limits, others, conditions.target, wind, conditions.rules)
     view = with_limits(view, game.pursuer_limits)
     decision = ways.evader(view, ways.chosen.evader)
-    crew[0] = order(start, crew[0], decision, states, (0, now))
+    store_aboard(crew, 0, order(start, load_aboard(crew, 0), decision, states, (0, now)))
     write_down(decided, 0, decision)
     decisions = each(decide_pursuer, game.pursuers, team)
     for i in range(len(decisions)):
-        crew[i + 1] = order(start, crew[i + 1], decisions[i], states, (i + 1, now))
+        row = (i + 1) * ABOARD_ROW
+        store_aboard(crew, row, order(start, load_aboard(crew, row), decisions[i], states, (i + 1, now)))
         write_down(decided, i + 1, decisions[i])
 
 
@@ -270,91 +273,6 @@ def commanded_on(start: Start, index: int, aboard: Aboard, flown: Flown, sample:
     down = wind_at(start.climate, flown.plane.position).z
     told = commanded(aboard, flown.plane, model, start.autopilots[index], down)
     return moved_on(start, index, flown, told, sample)
-
-
-def approach(start: Start, players: list[Flown], seen: Tracks, level: list[Command]) -> None:
-    """Fly on the start's heading until t₀ and be at the start's place then. Changes its lists in place.
-
-    What gusts make of an aircraft in that time is so what they make of it in flight before t₀, and the tracks
-    are not new.
-    """
-    pace, eye = start.pace, start.eye
-    dt = start.fleet.evader.dt
-    states = np.empty((len(players), 6))
-    places = np.empty((len(players), 3))
-    for i in range(len(players)):
-        note(states, i, players[i])
-        for axis in range(3):
-            places[i, axis] = states[i, axis]
-    for sample in range(pace.t0):
-        watched(seen, eye, sample, states, dt)
-        for i in range(len(players)):
-            players[i] = moved_on(start, i, players[i], level[i], sample)
-            note(states, i, players[i])
-    for i in range(len(players)):
-        plane = players[i].plane
-        place = Vec(places[i, 0], places[i, 1], places[i, 2])
-        for axis in range(3):
-            off = places[i, axis] - states[i, axis]
-            seen.filters[i, 5 * axis] += off
-            for slot in range(seen.waiting.shape[0]):
-                seen.waiting[slot, i, axis] += off
-        players[i] = Flown(placed(plane, place), players[i].gusts)
-
-
-def play(
-    start: Start, ways: Ways, players: list[Flown], crew: list[Aboard], seen: Tracks, log: Array
-) -> SpatialPlay:
-    """Play a game out from t₀. Kernel style but for the lists and arrays, which it changes in place.
-
-    `players` and `crew`: evader first; `log` (steps, players, 6): position [m; NED], flown and decided
-    course [rad], rule.
-    """
-    game, pace, eye = start.game, start.pace, start.eye
-    dt = start.fleet.evader.dt
-    reach = UNMOVED
-    count = len(players)
-    here = np.empty((count, 8))
-    before = np.empty((count, 8))
-    decided = np.zeros((count, 8))
-    for i in range(count):
-        note(here, i, players[i])
-        note_wind(here, i, crew[i].wind)
-        before[i] = here[i]
-    talk = opened(no_plan(each(seat, game.pursuers, start.planning), 0.0))
-    steps = 0
-    sample = pace.t0
-    while game.score.verdict == GameResult.RUNNING:
-        for _ in range(pace.control):
-            watched(seen, eye, sample, here, dt)
-            if sample % pace.control == pace.decides:
-                decide_all(Deciding(start, before, seen, sample, ways, decided, talk), crew, steps)
-                for i in range(count):
-                    log[steps, i, 0] = here[i, 0]
-                    log[steps, i, 1] = here[i, 1]
-                    log[steps, i, 2] = here[i, 2]
-                    log[steps, i, 3] = players[i].plane.course
-                    log[steps, i, 4] = decided[i, 0]
-                    log[steps, i, 5] = decided[i, 3]
-            for i in range(count):
-                if sample % WIND_EVERY == 0:
-                    crew[i] = weathered(start, i, crew[i], players[i])
-                    note_wind(here, i, crew[i].wind)
-                before[i] = here[i]
-                players[i] = commanded_on(start, i, crew[i], players[i], sample)
-                note(here, i, players[i])
-            sample += 1
-        for i in range(count):
-            model = start.fleet.pursuer if i else start.fleet.evader
-            reach = widened(reach, players[i], model, start.policies[i].envelope.speed_max)
-        game = judged(
-            game,
-            in_air(known(here, 0), ZERO, game.evader.speed),
-            each(standing, game.pursuers, here),
-            start.conditions,
-        )
-        steps += 1
-    return SpatialPlay(game, steps, sample - pace.t0, reach)
 
 
 def standing(vehicle: Vehicle, index: int, states: Array) -> Vehicle:

@@ -37,9 +37,7 @@ class Figure4(NamedTuple):
     predicted: Array  # (n, 2); the first five are NaN
 
 
-def example(
-    seed: int = 3, epochs: int = 1000, printed: bool = False, tell: Tell = silent
-) -> Figure4:
+def example(seed: int = 3, epochs: int = 1000, printed: bool = False, tell: Tell = silent) -> Figure4:
     """Predict the next point of a smooth plane trajectory, a network for x and one for y (3.5.2)."""
     clock = RealClock()
     t = STEP * np.arange(FIGURE4_POINTS)

@@ -15,7 +15,7 @@ from onboard.core.geometry.cones import blocked_cones
 from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import ZERO, Vec
 from onboard.core.strategy.evasion import evader
-from sim_bridge.campaign.spatial_draw import draw, kernel_of, spatial, typed
+from sim_bridge.campaign.spatial_draw import draw, kernel_of, spatial
 from sim_bridge.vehicle.flight.aircraft import named
 from sim_bridge.vehicle.flight.plane import Command, Steer, start_state, step_plane, trimmed
 from tests.benchmarks import plain_aircraft
@@ -77,10 +77,10 @@ def test_the_compiled_game_of_six_aircraft_beside_a_plain_kernel() -> None:
         conditions = d.start.conditions
         rules = conditions.rules._replace(R=0.0, epsilon_min=0.0, horizon=count * conditions.control.dt)
         endless = d.start._replace(conditions=conditions._replace(rules=rules))
-        log = np.zeros((d.steps, 6, 5))
-        players, crew = typed(d.players, True), typed(d.crew, True)
+        log = np.zeros((d.steps, 6, 6))
+        sky = sky_of(d, True)
         start = process_time()
-        found = compiled(endless, d.sides.chosen, players, crew, d.tracks, log)
+        found = compiled(endless, d.sides.chosen, sky, log)
         spent = process_time() - start
         assert found.steps == count
         return spent

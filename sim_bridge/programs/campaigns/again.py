@@ -91,6 +91,3 @@ def fly(game: Game, runs: Path, report: bool) -> str:
         path = Path(place) / "scenario.toml"
         path.write_text(scenario_file(game), encoding="utf-8")
         return room.story(room.fly(path, room.Options(fast=True, runs=runs, report=report, quiet=True)))
-
-
-

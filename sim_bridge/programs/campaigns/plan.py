@@ -23,8 +23,19 @@ FORMAT = 1
 AS_WRITTEN = ""  # the strategies that the scenario names
 SPREAD_SHARE = 0.15  # of the nearest pursuer's distance: by how much a seed moves the starts of simple motion
 PLAYER_KEYS = frozenset(
-    ("position", "speed", "speed_min", "speed_max", "pitch_min_deg", "pitch_max_deg", "yaw_min_deg",
-     "yaw_max_deg", "turn_rate_deg", "heading_deg", "target")
+    (
+        "position",
+        "speed",
+        "speed_min",
+        "speed_max",
+        "pitch_min_deg",
+        "pitch_max_deg",
+        "yaw_min_deg",
+        "yaw_max_deg",
+        "turn_rate_deg",
+        "heading_deg",
+        "target",
+    )
 )
 SPATIAL_FLIGHT = ("flight.wind.speed", "flight.wind.gust_sigma", "flight.wind.shear", "flight.airframe",
                   "flight.control_rate_hz", "flight.sensor.")  # fmt: skip
@@ -128,9 +139,7 @@ def chosen(label: str, scenario: Scenario) -> Chosen:
     """A scenario as a plan keeps it. Raises ConfigError for what a campaign cannot keep."""
     if scenario.flight.wind.recorded:
         found = scenario.flight.wind.recorded
-        raise ConfigError(
-            f"{label}: flight.wind.recorded: found {found!r}, expected a modelled wind"
-        )
+        raise ConfigError(f"{label}: flight.wind.recorded: found {found!r}, expected a modelled wind")
     return Chosen(label, without_none(msgspec.to_builtins(scenario)))
 
 

@@ -167,6 +167,4 @@ def estimated_by_drag(s: Estimate, errors: Errors, lean: Lean) -> Estimate:
     north = lean.velocity.x + (lean.acceleration.x - forward * c + right * d) / drag
     east = lean.velocity.y + (lean.acceleration.y - forward * d - right * c) / drag
     share = EVERY / (SMOOTHING + EVERY)
-    return Estimate(
-        s.north + share * (north - s.north), s.east + share * (east - s.east), s.nn, s.ne, s.ee
-    )
+    return Estimate(s.north + share * (north - s.north), s.east + share * (east - s.east), s.nn, s.ne, s.ee)

@@ -55,9 +55,7 @@ def test_a_wrong_scenario_is_one_line_and_leaves_no_folder(
     ],
     ids=lambda value: " ".join(value) if isinstance(value, list) else "",
 )
-def test_a_wrong_option_is_one_line_and_exit_code_2(
-    arguments: list[str], said: str, tmp_path: Path
-) -> None:
+def test_a_wrong_option_is_one_line_and_exit_code_2(arguments: list[str], said: str, tmp_path: Path) -> None:
     if arguments[-2:-1] == ["--bus"]:
         arguments = [*arguments, "--runs", str(tmp_path)]
     run = bridge(*arguments)

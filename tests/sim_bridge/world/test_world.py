@@ -34,7 +34,10 @@ def three(kind: Kind, **flight: object) -> Scenario:
         VehicleSpec(position=(500.0, 300.0 * side, 100.0), speed=22.0 if fast else 5.0) for side in (-1, 1)
     )
     return Scenario(
-        name="three", evader=evader, pursuers=pursuers, flight=Flight(autopilot=kind, **flight)  # type: ignore[arg-type]
+        name="three",
+        evader=evader,
+        pursuers=pursuers,
+        flight=Flight(autopilot=kind, **flight),  # type: ignore[arg-type]
     )
 
 
