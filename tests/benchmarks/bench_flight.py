@@ -15,7 +15,7 @@ from onboard.core.geometry.cones import blocked_cones
 from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import ZERO, Vec
 from onboard.core.strategy.evasion import evader
-from sim_bridge.campaign.spatial_draw import draw, kernel_of, spatial
+from sim_bridge.campaign.spatial_draw import draw, kernel_of, sky_of, spatial
 from sim_bridge.vehicle.flight.aircraft import named
 from sim_bridge.vehicle.flight.plane import Command, Steer, start_state, step_plane, trimmed
 from tests.benchmarks import plain_aircraft
