@@ -149,12 +149,11 @@ def play_on_dask(plan: Plan, shards: list[Shard], address: str) -> Played:
     with client:
         told = manifest(plan)
         asked: Callable[..., Any] = dask_bytes
-        futures = client.map(
-            asked, [told] * len(shards), [shard.number for shard in shards], pure=False, retries=RETRIES
-        )
+        numbered = [shard.number for shard in shards]
+        futures = client.map(asked, numbered, plan=told, pure=False, retries=RETRIES)
         numbers = {future.key: shard for future, shard in zip(futures, shards, strict=True)}
         try:
-            for future, found in completed(futures, with_results=True):
+            for future, found in completed(futures, loop=client.loop, with_results=True):
                 sources, data = found
                 if sources != plan.fingerprint.sources:
                     raise ConfigError(f"--dask: {address}: found a worker with other sources, expected these")
@@ -164,7 +163,7 @@ def play_on_dask(plan: Plan, shards: list[Shard], address: str) -> Played:
             client.cancel(futures)
 
 
-def dask_bytes(plan: bytes, number: int) -> tuple[str, bytes]:
+def dask_bytes(number: int, plan: bytes) -> tuple[str, bytes]:
     """A shard of a plan, and the sources that a worker of the cluster has played it by."""
     from sim_bridge.programs.campaigns.fingerprint import COMPUTED, FLOWN, sources
 

@@ -11,8 +11,6 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import psutil
@@ -29,6 +27,7 @@ from sim_bridge.programs.campaigns.command import Options, all_of, plan_of
 from sim_bridge.programs.campaigns.play import drawn, rows
 from sim_bridge.programs.campaigns.run import Ways, run
 from tests.support.campaign_runs import begin, contents, duel, environment, ran, wait_for_shard
+from tests.support.dask_cluster import cluster
 from tests.support.real_time import patience
 
 pytestmark = [pytest.mark.real, pytest.mark.timeout(1200)]
@@ -128,36 +127,6 @@ def test_ctrl_c_leaves_whole_shards_and_says_how_it_goes_on(
     assert f"shards are whole in {folder}; the same command goes on" in lines[0]
     assert all(path.suffix in (".parquet", ".json") for path in folder.iterdir())
     assert wanted.items() - contents(folder).items() or len(contents(folder)) > 2
-
-
-@contextmanager
-def cluster(home: Path) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]]]:
-    """A scheduler of Dask and two workers, each a process of its own."""
-    program = [sys.executable, "-m", "distributed.cli.dask_scheduler"]
-    told = home / "scheduler.json"
-    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-    begun = [
-        subprocess.Popen(
-            [*program, "--port", "0", "--no-dashboard", "--host", "127.0.0.1", "--scheduler-file", str(told)],
-            env=environment(), cwd=home, **quiet,
-        )
-    ]  # fmt: skip
-    try:
-        end = time.monotonic() + patience(30.0)
-        while not told.exists():
-            assert time.monotonic() < end, "the scheduler did not come"
-            time.sleep(0.05)
-        for _ in range(2):
-            worker = [sys.executable, "-m", "distributed.cli.dask_worker", "--scheduler-file", str(told)]
-            more = ["--no-nanny", "--nthreads", "1", "--no-dashboard"]
-            begun.append(subprocess.Popen([*worker, *more], env=environment(), cwd=home, **quiet))
-        import json
-
-        yield json.loads(told.read_text("utf-8"))["address"], begun[1:]
-    finally:
-        for process in begun:
-            process.kill()
-            process.wait()
 
 
 @pytest.mark.long
