@@ -154,7 +154,8 @@ def sentence(vehicle: VehicleView | None) -> str:
     clipped = "; the supervisor brought it within the limits"
     clipped = clipped if decision.supervisor is SupervisorAction.CLIP else ""
     who = f"Strategy {decision.strategy} ({level}rule “{rule}”)"
-    return f"{who} aims at the marked place{meets}{miss}{clipped}."
+    part = f" As {decision.reason}." if decision.reason and not clipped else ""
+    return f"{who} aims at the marked place{meets}{miss}{clipped}.{part}"
 
 
 def _game(game: GameView) -> Document:
