@@ -73,8 +73,10 @@ class TeamSeat:
         self._planned_at = -1e9
 
     def heard(self, planner: int, made: Plan, now: float) -> None:
-        """A mate's plan came at `now` [s, monotonic]; one of another team is left out."""
-        if planner in self.field.team and len(made.assignments) == len(self.field.team):
+        """A mate's plan came at `now` [s, monotonic]; one of another team is left out, and one overtaken."""
+        before = self._heard.get(planner)
+        overtaken = before is not None and made.time < before.plan.time
+        if planner in self.field.team and len(made.assignments) == len(self.field.team) and not overtaken:
             self._heard[planner] = Dated(planner, made, now)
 
     def counts(self, now: float) -> Dated | None:

@@ -76,6 +76,7 @@ class TeamTalk:
         self.seat = TeamSeat(id, field)
         self.fit = False  # whether this vehicle follows the game
         self._key, self._bus, self._out, self._journal = PLAN.key(game, id), bus, out, journal
+        bus.plans.clear()  # of another game
         self._taken: dict[int, TeamPlan] = {}
         self._dated: Dated | None = None  # the plan that counted when it was last asked
         self._planner = 0  # whose plan counted when it was last asked

@@ -145,3 +145,15 @@ def test_a_target_that_the_rules_keep_secret_is_guarded_by_nobody() -> None:
     team = Squadron(game=setup(known=False))
     team.planners(2.0)
     assert Role.GOALKEEPER not in team.roles(3)
+
+
+def test_a_plan_that_was_overtaken_on_its_way_does_not_count() -> None:
+    team = Squadron()
+    team.planners(1.0)
+    old = team.seats[2].counts(team.now)
+    team.planners(1.0)
+    new = team.seats[3].counts(team.now)
+    assert old is not None
+    assert new is not None
+    team.seats[3].heard(2, old.plan, team.now)
+    assert team.seats[3].counts(team.now) == new
