@@ -5,13 +5,20 @@ from __future__ import annotations
 import tempfile
 from math import isnan
 from pathlib import Path
-from typing import NamedTuple
+from types import SimpleNamespace
+from typing import Any, NamedTuple
 
 import msgspec
+import numpy as np
 
 from onboard.config.strict import ConfigError
+from onboard.core.game.referee import GameResult
+from onboard.game.plugins import evader_strategy, pursuer_strategy
 from onboard.game.scenario import Scenario
 from onboard.runtime.run_folder import made
+from sim_bridge.campaign.compiled import campaign, starts_of
+from sim_bridge.plane_game.setup import conditions_of
+from sim_bridge.plane_game.setup import game_of as begun
 from sim_bridge.programs.campaigns import shards
 from sim_bridge.programs.campaigns.plan import Cell, Plan, is_spatial
 from sim_bridge.programs.campaigns.play import Row, drawn, simple_games, spatial_game, spatial_row
@@ -58,16 +65,26 @@ def replay(game: Game, folder: Path) -> tuple[Row, list[Path]]:
         played = spatial_game(game.plan, cell, seed)
         return spatial_row(cell, seed, played), draw_stages(drawn(cell, seed), played, folder, name)
     [row] = simple_games(cell, range(seed, seed + 1))
-    return row, _simple_picture(drawn(cell, seed), folder)
+    scenario = drawn(cell, seed)
+    if scenario.planar:
+        from sim_bridge.plane_game.figures import draw_game
+        from sim_bridge.plane_game.program import play
+
+        return row, draw_game(play(scenario, scenario.pursuers[0].strategy), folder)
+    return row, draw_stages(scenario, _in_space(scenario, row), folder, name)
 
 
-def _simple_picture(scenario: Scenario, folder: Path) -> list[Path]:
-    from sim_bridge.plane_game.figures import draw_game
-    from sim_bridge.plane_game.program import play
-
-    if not scenario.planar:
-        return []
-    return draw_game(play(scenario, scenario.pursuers[0].strategy), folder)
+def _in_space(scenario: Scenario, row: Row) -> Any:
+    """A game of simple motion in space as its picture wants it: the paths, and how it ended."""
+    conditions = conditions_of(scenario)
+    starts = starts_of([begun(scenario)], [conditions.target.position])
+    steps = int(row.time / conditions.control.dt) + 1
+    decide = evader_strategy(scenario.evader.strategy), pursuer_strategy(scenario.pursuers[0].strategy)
+    ends = campaign(*decide, len(scenario.pursuers), compiled=False)(starts, conditions, keep=steps)
+    places = ends.trace[0]
+    log = places[~np.isnan(places[:, 0, 0])]
+    verdict = GameResult(int(ends.verdicts[0]))
+    return SimpleNamespace(log=log, verdict=verdict, time=row.time, smallest=row.smallest)
 
 
 def agrees(game: Game, row: Row) -> bool:

@@ -181,6 +181,19 @@ def test_what_show_and_replay_tell_and_draw(
             again.game_of(reference.folder, wrong)
 
 
+@pytest.mark.long
+def test_a_game_of_simple_motion_in_space_is_drawn_as_it_was_played(tmp_path: Path) -> None:
+    scenario = duel(tmp_path)
+    text = scenario.read_text("utf-8").replace("0]", "0, 50]")
+    scenario.write_text(text, "utf-8")
+    plan = plan_of(Options((scenario,), games=3), until=False)
+    run(tmp_path / "folder", plan, Ways(), print)
+    game = again.game_of(tmp_path / "folder", "0:2")
+    row, pictures = again.replay(game, tmp_path / "pictures")
+    assert again.agrees(game, row)
+    assert [path.suffix for path in pictures] == [".png", ".svg"]
+
+
 def test_a_game_that_its_folder_has_otherwise_is_told(reference: Reference) -> None:
     game = again.game_of(reference.folder, "0:3")
     assert game.kept is not None

@@ -15,6 +15,7 @@ from sim_bridge.programs.campaigns.show import results
 from sim_bridge.programs.leaderboard.command import Options, bench, seeds_of
 from sim_bridge.programs.leaderboard.ratings import ELO, PRIOR, board, fit
 from tests.support.campaign_runs import duel
+from tests.support.paths import ROOT
 
 pytestmark = pytest.mark.timeout(240)
 
@@ -98,6 +99,23 @@ def test_a_small_leaderboard_twice_gives_the_same_bytes_and_counts_as_its_games_
         for name, one in zip(("paper", "straight"), found.cells, strict=True)
     }
     assert {score.name: score.share for score in compared.evader_scores} == pytest.approx(points)
+
+
+@pytest.mark.long
+def test_the_strategy_of_another_distribution_is_ranked_by_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.syspath_prepend(str(ROOT / "examples" / "strategy-plugin"))
+    info = tmp_path / "site" / "apollonius_flank-1.0.dist-info"
+    info.mkdir(parents=True)
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: apollonius-flank\nVersion: 1.0\n", "utf-8")
+    points = "[apollonius.strategies]\nflank = apollonius_flank:FLANK\n"
+    (info / "entry_points.txt").write_text(points, "utf-8")
+    monkeypatch.syspath_prepend(str(tmp_path / "site"))
+    told = Options((duel(tmp_path),), ("paper",), ("paper", "flank"), games=10, out=tmp_path / "b", workers=2)
+    made = bench(told, print)
+    assert {score.name for score in made.board.pursuer_scores} == {"paper", "flank"}
+    assert "flank (apollonius-flank 1.0)" in made.page.read_text("utf-8")
 
 
 def test_a_key_hides_the_seeds_and_proves_them(tmp_path: Path) -> None:
