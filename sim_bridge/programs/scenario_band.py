@@ -10,10 +10,11 @@ from typing import NamedTuple
 import msgspec
 
 from onboard.config.strict import ConfigError
+from onboard.core.geometry.lead import lead
 from onboard.core.math.angles import wrap
 from onboard.core.math.vectors import ZERO, Vec, distance, yaw_of
 from onboard.core.strategy.team.closure import least_number, past, pitch_band, way_out
-from onboard.core.strategy.team.parts import front_line, lead, setting_out
+from onboard.core.strategy.team.parts import front_line, setting_out
 from onboard.core.strategy.team.plan_types import NOBODY, Band, Member, Situation
 from onboard.core.strategy.team.ring import TURNED, closing, laid
 from onboard.game.scenario import Scenario, load

@@ -33,9 +33,11 @@ class RuleId(IntEnum):
     PREDICTED_PLACE = 14
     STRAIGHT_AT_EVADER = 15
     PURE_PURSUIT = 16
-    CONSTANT_BEARING = 17
+    PARALLEL_PURSUIT = 17
     PROPORTIONAL_NAVIGATION = 18
     POINT_BY_POINT = 19
+    KEEP_GOAL = 20
+    HOLD_LINE = 21
     STEADY_RAY_TO_TARGET = 30
     STEADY_RAY_FROM_PURSUERS = 31
     TWO_LEGS = 32
@@ -55,11 +57,13 @@ class Level(IntEnum):
     EXECUTIVE = 3
 
 
-STRATEGIC = (RuleId.RING_SLOT, RuleId.GUARD_TARGET, RuleId.BLOCK_CORRIDOR)  # rules that follow a team's plan
+STRATEGIC = (
+    RuleId.KEEP_GOAL, RuleId.HOLD_LINE, RuleId.RING_SLOT, RuleId.GUARD_TARGET, RuleId.BLOCK_CORRIDOR
+)  # rules that place a pursuer for its team  # fmt: skip
 
 
 def level_of(rule: RuleId) -> Level:
-    """The level on which a rule speaks: what follows a team's plan is strategic, all else tactical."""
+    """The level on which a rule speaks: what places a pursuer for its team is strategic, else tactical."""
     return Level.STRATEGIC if rule in STRATEGIC else Level.TACTICAL
 
 

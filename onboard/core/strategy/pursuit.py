@@ -5,15 +5,19 @@ The pursuers know the evader's direction (2.2). "Moving away" is cos φ ≤ 0.
 
 from __future__ import annotations
 
-from math import sqrt
+from math import atan2, cos, sin, sqrt
 
 from onboard.core.game.views import PursuerView
 from onboard.core.geometry.apollonius import closest_approach, intercept
 from onboard.core.geometry.cones import within
+from onboard.core.geometry.lead import lead
+from onboard.core.math.angles import wrap
 from onboard.core.math.vectors import TINY, Vec, add, along, cross, distance, dot, scale, sub, unit
+from onboard.core.strategy.denial import hold_line, keep_goal
 from onboard.core.strategy.knowledge import Decision, Module, Rule, RuleId, fold, silent
 
 NAVIGATION_GAIN = 3.0  # N of proportional navigation
+TURNING = 1.0  # [s] of turning that a decision of parallel pursuit reckons with
 
 
 def heading_for(view: PursuerView, aim: Vec, rule: RuleId, time: float, miss: float) -> Decision:
@@ -90,30 +94,40 @@ def pure_pursuit(view: PursuerView) -> Decision:
     return heading_for(view, view.evader.position, RuleId.PURE_PURSUIT, 0.0, 0.0)
 
 
-def constant_bearing(view: PursuerView) -> Decision:
-    """For comparison: match the evader's velocity across the line of sight, close along it.
+def parallel_pursuit(view: PursuerView) -> Decision:
+    """Parallel pursuit (constant bearing, [7]): u = v⊥ + ℓ·sqrt(v_p² − |v⊥|²).
 
-    Where the evader's cross speed exceeds the own speed, all of it goes across.
+    The evader's velocity across the line of sight ℓ is matched, so that the line keeps its direction, and
+    what is left of the speed closes along it. Where the evader crosses faster than that, all of it goes
+    across. The course changes by no more than the vehicle turns within TURNING.
     """
     own = view.own
     e = view.evader
-    sight = unit(sub(e.position, own.position), view.heading)
     motion = scale(view.heading, e.speed)
-    across = along(motion, sight, -dot(motion, sight))
-    lateral = dot(across, across)
-    square = own.speed * own.speed
-    if lateral >= square:
-        ahead = unit(across, sight)
-        closing = 0.0
-    else:
-        closing = sqrt(max(0.0, square - lateral))
-        ahead = unit(along(across, sight, closing), sight)
-    ahead = within(ahead, view.limits, view.rules.planar)
-    rate = closing - dot(motion, sight)
+    ahead = within(lead(own.position, own.speed, e.position, motion), view.limits, view.rules.planar)
+    ahead = turned(own.velocity, ahead, view.limits.turn_rate * TURNING)
+    sight = unit(sub(e.position, own.position), view.heading)
+    rate = own.speed * dot(ahead, sight) - dot(motion, sight)
     far = distance(e.position, own.position)
     time = far / rate if rate > TINY else 0.0
     aim = along(own.position, ahead, own.speed * time)
-    return Decision(True, ahead, own.speed, RuleId.CONSTANT_BEARING, aim, time, 0.0)
+    return Decision(True, ahead, own.speed, RuleId.PARALLEL_PURSUIT, aim, time, 0.0)
+
+
+def turned(velocity: Vec, ahead: Vec, most: float) -> Vec:
+    """The direction nearest to `ahead` (unit) whose course is at most `most` [rad] from that of a velocity.
+
+    0 or less is no limit, and a vehicle that does not move level has no course.
+    """
+    level = sqrt(ahead.x * ahead.x + ahead.y * ahead.y)
+    if most <= 0.0 or level <= TINY or velocity.x * velocity.x + velocity.y * velocity.y <= TINY:
+        return ahead
+    course = atan2(velocity.y, velocity.x)
+    turn = wrap(atan2(ahead.y, ahead.x) - course)
+    if abs(turn) <= most:
+        return ahead
+    course += most if turn > 0.0 else -most
+    return Vec(level * cos(course), level * sin(course), ahead.z)
 
 
 def proportional_navigation(view: PursuerView) -> Decision:
@@ -182,9 +196,50 @@ _STRAIGHT: Rule[PursuerView] = Rule(
     straight_at_evader,
 )
 
+_PARALLEL_PURSUIT: Rule[PursuerView] = Rule(
+    RuleId.PARALLEL_PURSUIT,
+    "always",
+    "across with the evader, with the rest of the speed along the line of sight",
+    "[7], parallel pursuit",
+    Module.GEOMETRIC,
+    parallel_pursuit,
+)
+_KEEP_GOAL: Rule[PursuerView] = Rule(
+    RuleId.KEEP_GOAL,
+    "the target is known, the evader has a free ray, and this pursuer is first at the target",
+    "onto the target, or before it in a circle",
+    "time to block: |p − g| / v_p ≤ |e − g| / v_e",
+    Module.INTELLIGENT,
+    keep_goal,
+)
+_BLOCK: Rule[PursuerView] = Rule(
+    RuleId.HOLD_LINE,
+    "the target is kept by another, the evader has a free ray, and this pursuer is in time",
+    "beside the keeper across the corridor, so near that their cones overlap",
+    "time to block; overlap of cones",
+    Module.INTELLIGENT,
+    hold_line,
+)
+
 PURSUER: tuple[Rule[PursuerView], ...] = (_KEEP_OFF, _INTERCEPT, _APPROACH, _PARALLEL)
 PURSUER_PREDICTIVE: tuple[Rule[PursuerView], ...] = (_KEEP_OFF, _INTERCEPT, _APPROACH, _PREDICTED, _PARALLEL)
 PURSUER_EARLIER: tuple[Rule[PursuerView], ...] = (_KEEP_OFF, _INTERCEPT, _STRAIGHT)
+PURSUER_PARALLEL: tuple[Rule[PursuerView], ...] = (_KEEP_OFF, _PARALLEL_PURSUIT)
+PURSUER_KEEPER: tuple[Rule[PursuerView], ...] = (
+    _KEEP_OFF,
+    _KEEP_GOAL,
+    _INTERCEPT,
+    _APPROACH,
+    _PARALLEL_PURSUIT,
+)
+PURSUER_LINE: tuple[Rule[PursuerView], ...] = (
+    _KEEP_OFF,
+    _KEEP_GOAL,
+    _BLOCK,
+    _INTERCEPT,
+    _APPROACH,
+    _PARALLEL_PURSUIT,
+)
 
 
 def _comparison(rule: RuleId, then: str, apply: object) -> tuple[Rule[PursuerView], ...]:
@@ -192,7 +247,6 @@ def _comparison(rule: RuleId, then: str, apply: object) -> tuple[Rule[PursuerVie
 
 
 PURE = _comparison(RuleId.PURE_PURSUIT, "straight at the evader", pure_pursuit)
-BEARING = _comparison(RuleId.CONSTANT_BEARING, "on a collision triangle", constant_bearing)
 NAVIGATION = _comparison(
     RuleId.PROPORTIONAL_NAVIGATION, "turn at N times the sight line's rate", proportional_navigation
 )
@@ -201,5 +255,7 @@ pursuer = fold(PURSUER)
 pursuer_predictive = fold(PURSUER_PREDICTIVE)
 pursuer_earlier = fold(PURSUER_EARLIER)
 pursuer_pure = fold(PURE)
-pursuer_bearing = fold(BEARING)
+pursuer_parallel = fold(PURSUER_PARALLEL)
+pursuer_keeper = fold(PURSUER_KEEPER)
+pursuer_line = fold(PURSUER_LINE)
 pursuer_navigation = fold(NAVIGATION)

@@ -27,6 +27,11 @@ class NamedEvader(NamedTuple):
     words: str  # what it does, in one line
 
 
+PARALLEL = NamedPursuer(
+    pursuit.pursuer_parallel,
+    pursuit.PURSUER_PARALLEL,
+    "parallel pursuit: the line of sight keeps its direction",
+)
 PURSUERS: dict[str, NamedPursuer] = {
     "paper": NamedPursuer(
         pursuit.pursuer, pursuit.PURSUER, "rules 4 to 6 of 3.4.2: intercept, greatest approach, parallel"
@@ -45,8 +50,13 @@ PURSUERS: dict[str, NamedPursuer] = {
     "pure-pursuit": NamedPursuer(
         pursuit.pursuer_pure, pursuit.PURE, "for comparison: always straight at the evader"
     ),
-    "constant-bearing": NamedPursuer(
-        pursuit.pursuer_bearing, pursuit.BEARING, "for comparison: the line of sight keeps its direction"
+    "parallel-pursuit": PARALLEL,
+    "constant-bearing": PARALLEL._replace(words="the same by its older name"),
+    "goalkeeper": NamedPursuer(
+        pursuit.pursuer_keeper, pursuit.PURSUER_KEEPER, "one keeps a known target, the others chase"
+    ),
+    "blocking-line": NamedPursuer(
+        pursuit.pursuer_line, pursuit.PURSUER_LINE, "goalkeeper; who is in time blocks beside it"
     ),
     "team": NamedPursuer(
         flying.pursuer_team, flying.TEAM, "its part of the team's plan: ring, goalkeeper, blocker, chase"

@@ -2,25 +2,12 @@
 
 from __future__ import annotations
 
-from math import atan2, sqrt
+from math import atan2
 
 from onboard.core.game.views import heading_at
-from onboard.core.math.vectors import TINY, Vec, along, distance, dot, scale, sub, unit, yaw_of
+from onboard.core.geometry.lead import lead
+from onboard.core.math.vectors import TINY, Vec, distance, scale, sub, unit, yaw_of
 from onboard.core.strategy.team.plan_types import Assignment, Member, Reason, Role, Situation
-
-
-def lead(place: Vec, speed: float, evader: Vec, velocity: Vec) -> Vec:
-    """The direction of parallel pursuit (unit): the evader's velocity across the line of sight is matched.
-
-    From `place` [m] at `speed` [m/s], of an evader there with that velocity [m/s]. Where the evader crosses
-    faster than the pursuer flies, all of the speed goes across.
-    """
-    sight = unit(sub(evader, place), unit(velocity, Vec(1.0, 0.0, 0.0)))
-    across = along(velocity, sight, -dot(velocity, sight))
-    lateral = dot(across, across)
-    if lateral >= speed * speed:
-        return unit(across, sight)
-    return unit(along(across, sight, sqrt(max(0.0, speed * speed - lateral))), sight)
 
 
 def setting_out(s: Situation) -> Vec:

@@ -8,12 +8,13 @@ from __future__ import annotations
 from math import asin, atan2, cos, inf, pi, sin, sqrt
 from typing import NamedTuple
 
+from onboard.core.geometry.lead import lead
 from onboard.core.math.angles import wrap
 from onboard.core.math.each import each
 from onboard.core.math.vectors import TINY, Vec, clamp, distance, yaw_of
 from onboard.core.strategy.team.assignment import FORBIDDEN, assigned
 from onboard.core.strategy.team.closure import SIGMAS, WayOut, past, pitch_band, sight_cone
-from onboard.core.strategy.team.parts import front_line, lead, lost, setting_out
+from onboard.core.strategy.team.parts import front_line, lost, setting_out
 from onboard.core.strategy.team.plan_types import (
     NOBODY,
     Assignment,

@@ -33,9 +33,9 @@ from onboard.core.strategy.pursuit import (
     PURSUER,
     PURSUER_EARLIER,
     pursuer,
-    pursuer_bearing,
     pursuer_earlier,
     pursuer_navigation,
+    pursuer_parallel,
     pursuer_predictive,
     pursuer_pure,
 )
@@ -190,14 +190,30 @@ class TestComparisons:
 
     @settings(max_examples=300, deadline=None)
     @given(points(), headings(), st.floats(1.0, 9.0))
-    def test_constant_bearing_keeps_the_line_of_sight_parallel(self, place, heading, speed):
+    def test_parallel_pursuit_keeps_the_line_of_sight_parallel(self, place, heading, speed):
         view = seen_by_pursuer(place, heading, speed=speed, planar=False)
         sight = unit(sub(ZERO, place), NORTH)
         across = sub(scale(heading, 5.0), scale(sight, dot(scale(heading, 5.0), sight)))
-        decision = pursuer_bearing(view)
+        decision = pursuer_parallel(view)
         if norm(across) < 0.999 * speed and distance(place, ZERO) > 1.0:
             relative = sub(scale(heading, 5.0), scale(decision.direction, speed))
             assert norm(cross(relative, sight)) < 1e-6
+
+    @settings(max_examples=200, deadline=None)
+    @given(points(), headings(), headings())
+    def test_parallel_pursuit_asks_for_no_course_that_the_vehicle_cannot_turn_to(self, place, heading, own):
+        """A second's turn at 4.5 deg/s, and towards the side where the line of sight stays parallel."""
+        limits = VehicleLimits(turn_rate=radians(4.5))
+        velocity = scale(unit(Vec(own.x, own.y, 0.0), NORTH), 4.0)
+        place, heading = Vec(place.x, place.y, 0.0), unit(Vec(heading.x, heading.y, 0.0), NORTH)
+        free = pursuer_parallel(seen_by_pursuer(place, heading, velocity=velocity))
+        held = pursuer_parallel(seen_by_pursuer(place, heading, velocity=velocity, limits=limits))
+        turn = angle_between(held.direction, unit(velocity, NORTH))
+        assert turn <= radians(4.5) + 1e-9
+        wanted = angle_between(free.direction, unit(velocity, NORTH))
+        assert angle_between(held.direction, free.direction) == pytest.approx(
+            max(0.0, wanted - radians(4.5)), abs=1e-7
+        )
 
     def test_proportional_navigation_turns_thrice_as_fast_as_the_line_of_sight(self):
         place, velocity = Vec(0.0, -400.0, 0.0), scale(EAST, 4.0)
