@@ -112,6 +112,15 @@ def test_on_the_ground_nothing_is_known() -> None:
     assert filter_.wind == ZERO
 
 
+@pytest.mark.parametrize("kind", PLANES)
+def test_after_a_take_off_the_first_minute_of_circling_finds_it(kind: Kind) -> None:
+    filter_ = WindFilter(kind, EXACT)
+    still = Motion(ZERO, ZERO, 0.0, 0.0, 0.0, 0.4)
+    for k in range(20):
+        filter_.step(round(k * 1e8), still, Air(Vec(*WIND, 0.0), ZERO), landed=True)
+    assert flown(filter_, 60.0, 0.4, 0.15, WIND, 2.0) == pytest.approx(WIND, abs=0.5)
+
+
 def test_the_errors_of_many_vehicles_are_as_large_as_stated() -> None:
     """1 % of airspeed, 1° of compass, half a metre a second at the start, 10 % of the drag: one sigma."""
     drawn = np.array([drawn_errors(key_of(seed, 2, Purpose.ESTIMATE)) for seed in range(4000)])

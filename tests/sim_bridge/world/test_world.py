@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import asyncio
-from math import hypot
+from math import cos, hypot, radians, sin
 
 import pytest
 
 from onboard.config.strict import FieldError
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import ZERO, Vec, distance, norm
-from onboard.game.scenario import WINGED, AirframeKind, Flight, Kind, Scenario, VehicleSpec
+from onboard.game.scenario import WINGED, AirframeKind, Flight, Kind, Scenario, VehicleSpec, WindSpec
 from onboard.runtime.clock import VirtualClock
 from onboard.runtime.links import MemoryLink, memory_pair
 from onboard.runtime.loop import EPOCH_NS, run_virtual, virtual_clock
@@ -19,6 +19,7 @@ from onboard.wire.mavlink.commands import VelocityTarget, set_message_interval, 
 from onboard.wire.mavlink.dialect import dialect
 from onboard.wire.mavlink.modes import ARDUCOPTER_MODES
 from sim_bridge.vehicle.motion import Air, Motion
+from sim_bridge.world.staging import wind_of
 from sim_bridge.world.world import BEHIND_MAX, World
 from tests.support.scripted_companion import Companion
 from tests.support.virtual_time import virtual
@@ -224,3 +225,27 @@ def test_an_aircraft_under_the_wrong_autopilot_is_one_clear_line() -> None:
         three(Kind.PX4, airframe=AirframeKind.COORDINATED)
     with pytest.raises(FieldError, match=r"flight\.ground_start: found true with airframe nose"):
         three(Kind.ARDUPLANE, airframe=AirframeKind.NOSE, ground_start=True)
+
+
+@pytest.mark.parametrize("kind", [Kind.ARDUPLANE, Kind.PX4_PLANE])
+def test_planes_tell_the_wind_as_they_estimate_it_each_with_errors_of_its_own(kind: Kind) -> None:
+    @virtual
+    async def story() -> None:
+        scenario = three(kind, wind=WindSpec(speed=7.0, from_deg=250.0, gust_sigma=1.0))
+        sky = Sky(scenario, wind=wind_of(scenario, scenario.seed))
+        await sky.fly(30.0)
+        told = []
+        for id, companion in sky.companions.items():
+            last = companion.heard("WIND_COV" if kind is Kind.PX4_PLANE else "WIND")[-1]
+            if kind is Kind.PX4_PLANE:
+                wind = (last.wind_x, last.wind_y)
+            else:
+                angle = radians(last.direction + 180.0)
+                wind = (last.speed * cos(angle), last.speed * sin(angle))
+            true = sky.world.vehicles[id].air.wind
+            off = hypot(wind[0] - true.x, wind[1] - true.y)
+            assert 0.01 < off < 2.0, (wind, true)  # not the truth, and no fancy
+            told.append(wind)
+        assert len({round(north, 3) for north, _ in told}) == 3
+
+    story()
