@@ -1,15 +1,16 @@
 """One pursuer's seat in its team: it plans where the plan is its to make, and knows the plan that counts.
 
-One planner by lease: the member with the lowest id that is fit and was heard within `LEASE_S`. Whoever
-becomes the planner goes on from the plan that it heard last. The plan that counts is the one of the lowest
-planner among those heard within `LEASE_S`, else the newest; older than `OLD_S` none counts, and a pursuer
-chases alone. Who hears no mate at all plans for nobody: it is cut off, and flies on the last plan. No input
+One planner by lease: the member with the lowest id that is fit, was heard within `LEASE_S` and makes plans.
+Whoever becomes the planner goes on from the plan that it heard last. The plan that counts is the one of the
+lowest planner among those heard within `LEASE_S`, else the newest; older than `OLD_S` none counts, and a
+pursuer chases alone. Who hears no mate at all plans for nobody: it is cut off, and flies on the last plan. No input
 and no output.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import inf
 from typing import NamedTuple
 
 from onboard.core.game.views import level, told
@@ -71,6 +72,7 @@ class TeamSeat:
         self.field = field
         self._heard: dict[int, Dated] = {}  # by planner
         self._planned_at = -1e9
+        self._began = inf  # when it first looked at its team
 
     def heard(self, planner: int, made: Plan, now: float) -> None:
         """A mate's plan came at `now` [s, monotonic]; one of another team is left out, and one overtaken."""
@@ -94,20 +96,25 @@ class TeamSeat:
             return IDLE
         return dated.plan.assignments[self.field.team.index(self.id)]
 
-    def planner(self, known: Known) -> int:
-        """Whose the plan is to make now: the lowest fit id; 0 where nobody is fit, or no mate is heard."""
+    def turn(self, known: Known) -> bool:
+        """Whether the plan is this member's to make now.
+
+        It is where no lower id is fit, or where those have let their plans lapse: a planner that has lost
+        the track, say. The next one waits for twice the lease, the one after it for twice as long."""
         team = self.field.team
         heard = {m.id for m in known.mates if m.age <= LEASE_S and m.id in team}
-        if not heard and team != (self.id,):  # cut off: the others may well fly by a plan
-            return 0
-        if known.fit:
-            heard.add(self.id)
-        return min((id for id in heard - known.unfit if id in team), default=0)
+        cut_off = not heard and team != (self.id,)  # the others may well fly by a plan
+        if cut_off or not known.fit or self.id not in team:
+            return False
+        lower = [id for id in heard - known.unfit if id < self.id]
+        last = max((self._heard[id].at for id in lower if id in self._heard), default=self._began)
+        return known.now - max(last, self._began) > 2.0 * LEASE_S * len(lower) or not lower
 
     def work(self, known: Known) -> Plan | None:
         """Make a plan where one is due and it is this member's to make; it counts at once."""
+        self._began = min(self._began, known.now)
         due = known.now - self._planned_at >= EVERY_S - 1e-6
-        if not due or known.evader is None or self.planner(known) != self.id:
+        if not due or known.evader is None or not self.turn(known):
             return None
         self._planned_at = known.now
         situation = situation_of(self.id, self.field, known, known.evader)

@@ -34,6 +34,7 @@ class Squadron:
     game: GameSetup = field(default_factory=setup)
     silent: set[int] = field(default_factory=set)  # nobody hears them, they hear nobody
     unfit: set[int] = field(default_factory=set)
+    blind: set[int] = field(default_factory=set)  # without a track of the evader
     heard_at: dict[int, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -64,7 +65,7 @@ class Squadron:
             for other in TEAM
             if other != id and id not in self.silent
         )
-        evader = Vehicle(Vec(0.0, 0.0, -500.0), Vec(50.0, 0.0, 0.0), 50.0)
+        evader = None if id in self.blind else Vehicle(Vec(0.0, 0.0, -500.0), Vec(50.0, 0.0, 0.0), 50.0)
         own = Own(PLACES[id], Vec(40.0, 0.0, 0.0))
         unfit = frozenset(self.unfit)
         return Known(self.now, self.now, own, id not in self.unfit, mates, unfit, evader)
@@ -157,3 +158,15 @@ def test_a_plan_that_was_overtaken_on_its_way_does_not_count() -> None:
     assert new is not None
     team.seats[3].heard(2, old.plan, team.now)
     assert team.seats[3].counts(team.now) == new
+
+
+def test_a_planner_without_a_track_lets_its_plans_lapse_and_the_next_one_takes_over() -> None:
+    team = Squadron()
+    team.planners(2.0)
+    team.blind.add(2)
+    assert set(team.planners(4.0)) == {3}
+    assert team.roles(5)[0] is Role.GOALKEEPER  # it flies on as the plan says
+    team.blind.add(3)
+    assert set(team.planners(6.0)[-2:]) == {5}
+    team.blind.clear()
+    assert set(team.planners(2.0)[2:]) == {2}
