@@ -3,8 +3,8 @@
 One planner by lease: the member with the lowest id that is fit, was heard within `LEASE_S` and makes plans.
 Whoever becomes the planner goes on from the plan that it heard last. The plan that counts is the one of the
 lowest planner among those heard within `LEASE_S`, else the newest; older than `OLD_S` none counts, and a
-pursuer chases alone. Who hears no mate at all plans for nobody: it is cut off, and flies on the last plan. No input
-and no output.
+pursuer chases alone. Who hears no mate at all plans for nobody: it is cut off, and flies on the last plan. No
+input and no output.
 """
 
 from __future__ import annotations
@@ -107,8 +107,8 @@ class TeamSeat:
         if cut_off or not known.fit or self.id not in team:
             return False
         lower = [id for id in heard - known.unfit if id < self.id]
-        last = max((self._heard[id].at for id in lower if id in self._heard), default=self._began)
-        return known.now - max(last, self._began) > 2.0 * LEASE_S * len(lower) or not lower
+        last = max((dated.at for dated in self._heard.values() if dated.planner < self.id), default=0.0)
+        return not lower or known.now - max(last, self._began) > 2.0 * LEASE_S * len(lower)
 
     def work(self, known: Known) -> Plan | None:
         """Make a plan where one is due and it is this member's to make; it counts at once."""
