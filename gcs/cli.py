@@ -177,12 +177,15 @@ def export(
 
 
 @app.command(
-    epilog="Examples: gcs page | gcs page --control"
+    epilog="Examples: gcs page | gcs page --control | gcs page runs/2026-… | gcs page runs/2026-… runs/2026-…"
     " | gcs page --host 0.0.0.0 --config gcs.toml"
 )
 @takes(*BUS, "operator", "runs", "record")
 def page(
     options: Options,
+    recordings: Annotated[
+        list[Path] | None, typer.Argument(metavar="[RUN [RUN]]", help="Recordings, in place of a live game.")
+    ] = None,
     host: Annotated[str | None, typer.Option("--host", help="Address to listen at [127.0.0.1].")] = None,
     port: Annotated[
         int | None, value(HttpPort, "--port", words="Port to listen at; 0 = any [8765].", unit="PORT")
@@ -194,7 +197,13 @@ def page(
     """Serve the game as a page for any browser: 3-D scene, plan, tables, alerts, orders."""
     from gcs.page import program
 
-    return _play(program.live(options.settings(host=host, port=port, control=control)))
+    found = options.settings(host=host, port=port, control=control)
+    if not recordings:
+        return _play(program.live(found))
+    options.refuse(("game", "bus", "zenoh", "operator", "runs", "record"), "a recording")
+    if len(recordings) > 2:
+        raise ConfigError(f"RUN: found {len(recordings)}, expected one, or two to see beside each other")
+    return _play(program.replay(found, tuple(recordings)))
 
 
 @app.command(epilog="Examples: gcs fence area.plan | gcs fence area.kml --scenario mine.toml")

@@ -36,7 +36,11 @@ class Timeline(Protocol):
         ...
 
     def timeline(self) -> documents.Document:
-        """Begin, end and marks; the place, speed and whether it plays."""
+        """Length, place, speed and whether it plays."""
+        ...
+
+    def marks(self) -> documents.Document:
+        """What does not change: marks on the timeline, curves."""
         ...
 
 
@@ -90,6 +94,8 @@ class Hub:
         picture = self.source.picture()
         browser.put("field", _json(documents.field(picture)))
         browser.put("trails", _json(documents.trails(picture)))
+        if self._timeline is not None:
+            browser.put("marks", _json(self._timeline.marks()))
         browser.put("board", self._board(picture))
         self.browsers.add(browser)
         return browser

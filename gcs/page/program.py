@@ -6,17 +6,28 @@ import asyncio
 import secrets
 import signal
 import ssl
+import sys
 from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager
+from contextlib import ExitStack, asynccontextmanager
+from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from gcs.page.access import Doors, loopback
+from gcs.picture.alert_rules import Thresholds
 from gcs.session import Session, on_air
 from gcs.settings import PageSettings, Settings
 from onboard.config.strict import ConfigError
 from onboard.config.version import version
+from onboard.runtime.clock import RealClock
+from onboard.runtime.off_loop import off_loop
+from onboard.runtime.progress import Progress
 from onboard.runtime.secret_files import read_secret
 from onboard.wire.bus.messages import Severity
+
+if TYPE_CHECKING:
+    from gcs.page.hub import Hub
+    from gcs.page.replay import PageReplay
 
 TOKEN_BYTES = 24
 TOKEN_LEAST = 16  # characters of a user's own
@@ -26,21 +37,62 @@ async def live(settings: Settings) -> int:
     """Serve the page of what is on the bus, until ctrl-C or SIGTERM."""
     doors, tls = guarded(settings.page)
     record = settings.recording.enabled
-    stop = asyncio.Event()
-    loop = asyncio.get_running_loop()
     async with on_air(settings, listen=settings.bus.listen, record=record) as session:
         try:
             async with _serving(session, settings.page, doors, tls) as address:
                 print(address, flush=True)
-                for number in (signal.SIGINT, signal.SIGTERM):
-                    loop.add_signal_handler(number, stop.set)
-                await stop.wait()
+                await _told_to_stop()
         finally:
-            for number in (signal.SIGINT, signal.SIGTERM):
-                loop.remove_signal_handler(number)
             if session.farewell():
                 print(session.farewell(), flush=True)
     return 0
+
+
+async def replay(settings: Settings, runs: tuple[Path, ...]) -> int:
+    """Serve the page of one recording, or of two beside each other, until ctrl-C or SIGTERM."""
+    from gcs.page.hub import Hub
+
+    if settings.page.control:
+        raise ConfigError("page.control: found with a recording, which nobody can command")
+    doors, tls = guarded(settings.page)
+    with ExitStack() as stack:
+        hubs = []
+        for run in runs:
+            source = await off_loop(partial(_source, run, settings.alerts, stack))
+            hubs.append(Hub(source, version(), source))
+        async with _hubs_served(hubs, settings.page, doors, tls) as address:
+            print(address, flush=True)
+            await _told_to_stop()
+    return 0
+
+
+def _source(run: Path, limits: Thresholds, stack: ExitStack) -> PageReplay:
+    """The recording of a run, played through once; it is read long after, until `stack` closes it."""
+    from gcs.page.replay import PageReplay, marks_of, opened
+    from gcs.replay.source import open_run
+    from gcs.report.program import read_run
+
+    recording = open_run(run)
+    stack.callback(recording.close)
+    for remark in recording.remarks:
+        print(f"gcs: {remark}", file=sys.stderr)
+    with Progress("gcs") as progress:
+        found = opened(recording, limits, version(), lambda share: progress.show(share, "reading"))
+    told = marks_of(recording, found, read_run(run, limits, version()))
+    return PageReplay(found.player, run.resolve().name, RealClock().monotonic_ns, told)
+
+
+async def _told_to_stop() -> None:
+    """Return at ctrl-C or SIGTERM."""
+    stop, loop = asyncio.Event(), asyncio.get_running_loop()
+    numbers = (signal.SIGINT, signal.SIGTERM)
+    for number in numbers:
+        loop.add_signal_handler(number, stop.set)
+    try:
+        await stop.wait()
+    finally:
+        for number in numbers:
+            loop.remove_signal_handler(number)
 
 
 @asynccontextmanager
@@ -67,18 +119,29 @@ async def _serving(
     session: Session, settings: PageSettings, doors: Doors, tls: ssl.SSLContext | None
 ) -> AsyncIterator[str]:
     from gcs.page.hub import Hub
+
+    async with _hubs_served([Hub(session, version())], settings, doors, tls) as address:
+        yield address
+
+
+@asynccontextmanager
+async def _hubs_served(
+    hubs: list[Hub], settings: PageSettings, doors: Doors, tls: ssl.SSLContext | None
+) -> AsyncIterator[str]:
+    """Serve one hub or two within the block; it yields the line that tells the address."""
     from gcs.page.server import Address, PageServer, served
 
-    hub = Hub(session, version())
+    server = PageServer(hubs[0], doors, *hubs[1:])
     async with (
-        served(PageServer(hub, doors), Address(settings.host, settings.port, tls)) as port,
+        served(server, Address(settings.host, settings.port, tls)) as port,
         asyncio.TaskGroup() as tasks,
     ):
-        feeding = tasks.create_task(hub.run(), name="page")
+        feeding = [tasks.create_task(hub.run(), name="page") for hub in hubs]
         try:
             yield address_line(settings, doors, port)
         finally:
-            feeding.cancel()
+            for task in feeding:
+                task.cancel()
 
 
 def address_line(settings: PageSettings, doors: Doors, port: int) -> str:

@@ -57,7 +57,7 @@ def policy(nonce: str) -> dict[str, str]:
     rules = (
         "default-src 'none'", f"script-src 'self' 'nonce-{nonce}'", "style-src 'self'",
         "img-src 'self' data: blob:", "connect-src 'self'", "base-uri 'none'", "form-action 'none'",
-        "frame-ancestors 'none'",
+        "frame-ancestors 'self'", "frame-src 'self'",
     )  # fmt: skip
     return {
         "Content-Security-Policy": "; ".join(rules), "X-Content-Type-Options": "nosniff",
@@ -67,10 +67,11 @@ def policy(nonce: str) -> dict[str, str]:
 
 
 class PageServer:
-    """Serves one hub to browsers."""
+    """Serves a hub to browsers; of two recordings beside each other, two."""
 
-    def __init__(self, hub: Hub, doors: Doors) -> None:
+    def __init__(self, hub: Hub, doors: Doors, second: Hub | None = None) -> None:
         self.hub = hub
+        self.second = second
         self.doors = doors
         self._files = static_files()
         self._sockets: set[web.WebSocketResponse] = set()
@@ -105,7 +106,8 @@ class PageServer:
             )  # fmt: skip
             return answer
         nonce = secrets.token_urlsafe(16)
-        text = self._files["index.html"].content.decode().replace("NONCE", nonce)
+        both = self.second is not None and "run" not in request.query
+        text = self._files["both.html" if both else "index.html"].content.decode().replace("NONCE", nonce)
         return web.Response(text=text, content_type="text/html", headers=policy(nonce))
 
     async def _file(self, request: web.Request) -> web.Response:
@@ -123,23 +125,24 @@ class PageServer:
             return _refused(found.reason)
         socket = web.WebSocketResponse(max_msg_size=MESSAGE_MAX, heartbeat=PING_S, compress=False)
         await socket.prepare(request)
-        browser = self.hub.join(found)
+        hub = self.second if request.query.get("run") == "2" and self.second is not None else self.hub
+        browser = hub.join(found)
         if browser is None:
             await socket.close(code=1013, message=b"too many browsers")
             return socket
         self._sockets.add(socket)
         sending = asyncio.create_task(_send(socket, browser), name="page-send")
         try:
-            await self._hear(socket, browser)
+            await self._hear(socket, hub, browser)
         finally:
-            self.hub.leave(browser)
+            hub.leave(browser)
             self._sockets.discard(socket)
             sending.cancel()
             with suppress(asyncio.CancelledError):
                 await sending
         return socket
 
-    async def _hear(self, socket: web.WebSocketResponse, browser: Browser) -> None:
+    async def _hear(self, socket: web.WebSocketResponse, hub: Hub, browser: Browser) -> None:
         loop = asyncio.get_running_loop()
         left, at = BURST, loop.time()
         async for message in socket:
@@ -151,7 +154,7 @@ class PageServer:
                 browser.say("too many at once: the page hears 30 a second")
                 left = 0.0
                 continue
-            self.hub.take(browser, message.data)
+            hub.take(browser, message.data)
 
 
 async def _send(socket: web.WebSocketResponse, browser: Browser) -> None:

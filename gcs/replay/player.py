@@ -6,7 +6,7 @@ what is seen at an instant of the recording.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from copy import deepcopy
 
 from gcs.picture.alert_rules import Thresholds
@@ -16,8 +16,8 @@ from gcs.recording.reader import Entry, Recording
 from onboard.core.math.constants import NS_PER_S
 
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0)
-CHECKPOINT_NS = 30 * NS_PER_S
-CHECKPOINTS = 100  # at most, however long the recording
+CHECKPOINT_NS = 4 * NS_PER_S  # a jump plays at most so much again
+CHECKPOINTS = 400  # at most, however long the recording
 
 
 class Player:
@@ -80,16 +80,29 @@ class Player:
         return self.speed
 
     def seek(self, at_ns: int) -> None:
-        """Go to an instant (the nearest there is); backwards from the checkpoint before it."""
+        """Go to an instant (the nearest there is), from the checkpoint before it."""
         at_ns = max(self.start_ns, min(at_ns, self.end_ns))
         self._remainder = 0.0
-        if at_ns < self._at_ns:
-            place_ns, reducer = self.start_ns - 1, self._new
-            for checkpoint_ns, saved in self.checkpoints:
-                if checkpoint_ns <= at_ns:
-                    place_ns, reducer = checkpoint_ns, saved
+        place_ns, reducer = self.start_ns - 1, self._new
+        for checkpoint_ns, saved in self.checkpoints:
+            if checkpoint_ns <= at_ns:
+                place_ns, reducer = checkpoint_ns, saved
+        if at_ns < self._at_ns or place_ns > self._at_ns:
             self._place(place_ns, deepcopy(reducer))
         self._run_to(at_ns)
+
+    def index(self, told: Callable[[float, Picture], None] = lambda share, picture: None) -> Picture:
+        """Play through once, so that every later jump is a short one; the picture at the end, then back.
+
+        `told` is called each second of the recording with the share that is done and the picture there.
+        """
+        back_ns, length_ns = self._at_ns, max(1, self.end_ns - self.start_ns)
+        while not self.ended:
+            self._run_to(min(self._at_ns + NS_PER_S, self.end_ns))
+            told((self._at_ns - self.start_ns) / length_ns, self.picture())
+        last = self.picture()
+        self.seek(back_ns)
+        return last
 
     def step(self, steps: int = 1) -> None:
         """Pause, and move by steps of 0.1 s: the grid on which alerts are judged."""

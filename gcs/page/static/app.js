@@ -77,6 +77,7 @@ const hear = {
     page.field = message;
     scene.setField(message);
   },
+  marks: (message) => timeline.setMarks(message),
   trails(message) {
     scene.setTrails(message);
   },
@@ -84,7 +85,10 @@ const hear = {
     page.board = message;
     drawBoard(message);
     scene.setBoard(message);
-    if (message.timeline) timeline.show(message.timeline, message);
+    if (message.timeline) {
+      page.replay = { ...message.timeline, now_ms: message.now_ms };
+      timeline.show(message.timeline);
+    }
   },
   detail(message) {
     if (message.id !== page.selected) return;
@@ -108,7 +112,7 @@ const hear = {
 
 function connect() {
   const scheme = location.protocol === "https:" ? "wss" : "ws";
-  socket = new WebSocket(`${scheme}://${location.host}/live`);
+  socket = new WebSocket(`${scheme}://${location.host}/live${location.search}`);
   socket.binaryType = "arraybuffer";
   socket.onmessage = (event) => {
     page.heard = performance.now();
@@ -117,6 +121,7 @@ function connect() {
       if (hear[message.what]) hear[message.what](message);
     } else if (read) {
       scene.setFrame(read(event.data), page.hello.roles);
+      if (page.replay) timeline.draw(page.replay.at_ms + page.scene.frame.ms - page.replay.now_ms);
     }
   };
   socket.onopen = () => { if (page.selected !== null) send({ do: "select", id: page.selected }); };
@@ -324,4 +329,15 @@ document.addEventListener("keydown", (event) => {
   else if (!timeline.key(key)) return;
   event.preventDefault();
 });
+
+// Two runs beside each other have one time: what is done in one is done in the other, since t₀.
+if (window.parent !== window) {
+  document.body.classList.add("half");
+  const other = new BroadcastChannel("apollonius-time");
+  timeline.moved = (what) => other.postMessage(what);
+  other.onmessage = ({ data }) => {
+    if (data.action) say({ do: "act", action: data.action });
+    else say({ do: "seek", at_ms: Math.max(0, Math.round(data.since_ms + (timeline.marks ? timeline.marks.zero_ms : 0))) });
+  };
+}
 connect();
