@@ -223,23 +223,27 @@ def situation(team: Deciding) -> Situation:
     )  # fmt: skip
 
 
+def evader_sees(team: Deciding) -> EvaderView:
+    """The situation as the evader sees it."""
+    start, states = team.start, team.states
+    game, conditions = start.game, start.conditions
+    wind = known_wind(states, 0)
+    others = each(opponent, game.pursuers, Watch(team.seen, team.now, wind, start.fleet.evader.dt))
+    me = in_air(known(states, 0), wind, game.evader.speed)
+    view = evader_view(me, game.evader_limits, others, conditions.target, wind, conditions.rules)
+    return with_limits(view, game.pursuer_limits)
+
+
 def decide_all(team: Deciding, crew: Array, step: int) -> None:
     """Everybody's decision into `crew`, evader first, and into the team's `decided` (players, 8): course and
     pitch [rad], the sample (of the evader), rule, aim [m; NED] and time until then [s]."""
-    start, ways, seen, states, now = team.start, team.ways, team.seen, team.states, team.now
-    game, conditions, planning, decided = start.game, start.conditions, start.planning, team.decided
-    dt = start.fleet.evader.dt
+    start, ways, states, now = team.start, team.ways, team.states, team.now
+    game, planning, decided = start.game, start.planning, team.decided
     decided[0, 2] = now
     if step % planning.every == 0:
         posted(team.talk, planning, ways.planner(situation(team), team.talk.made[0]), step)
     arrived(team.talk, planning, step)
-    own = known(states, 0)
-    wind = known_wind(states, 0)
-    others = each(opponent, game.pursuers, Watch(seen, now, wind, dt))
-    me = in_air(own, wind, game.evader.speed)
-    view = evader_view(me, game.evader_limits, others, conditions.target, wind, conditions.rules)
-    view = with_limits(view, game.pursuer_limits)
-    decision = ways.evader(view, ways.chosen.evader)
+    decision = ways.evader(evader_sees(team), ways.chosen.evader)
     store_aboard(crew, 0, order(start, load_aboard(crew, 0), decision, states, (0, now)))
     write_down(decided, 0, decision)
     decisions = each(decide_pursuer, game.pursuers, team)

@@ -12,6 +12,7 @@ from typing import Any
 IDS: dict[str, dict[str, Any]] = {
     "apollonius/Plane-v0": {"scenario": "plane"},
     "apollonius/Space-v0": {"scenario": "space"},
+    "apollonius/Aircraft-v0": {"scenario": "spatial/five", "motion": "aircraft"},
 }
 """What is registered with Gymnasium, and what each presets."""
 

@@ -28,6 +28,8 @@ from sim_bridge.gym.starts import Table, World
 from sim_bridge.gym.task import HEIGHT_SHARE, Task, agents_of
 from sim_bridge.plane_game.setup import conditions_of, game_of
 
+ROOMS = ("sim_bridge.gym.starts", "sim_bridge.gym.simple", "sim_bridge.gym.flown")
+
 
 def first_seed(seed: int) -> int:
     """The seed of a reset's first game, spread over 62 bits: seeds beside each other share no game."""
@@ -58,15 +60,20 @@ class BatchedGames:
         if arrays is not None:
             demand_shapes(arrays, expected)
         self.arrays = expected if arrays is None else arrays
-        self._world = world_of(task)
-        self._table = table_of(self._world, games)
         evader, pursuers = task.evader or idle_evader, task.pursuers or idle_pursuer
         if compiled:
             evader, pursuers = getattr(evader, "kernel", evader), getattr(pursuers, "kernel", pursuers)
-        self._kernels = _kernels(evader, pursuers, self._world.noisy, compiled)
+        self._world, self._table, self._kernels = self._make(evader, pursuers, compiled)
         self._edges = np.linspace(0, games, min(workers, games) + 1).astype(int).tolist()
         self._pool = ThreadPoolExecutor(workers) if workers > 1 else None
         self._begun = False
+
+    def _make(
+        self, evader: EvaderStrategy, pursuers: PursuerStrategy, compiled: bool
+    ) -> tuple[World, Table, tuple[Callable[..., Any], ...]]:
+        """What the games share, where they stand, and the kernels: the step, the check of actions."""
+        world = world_of(self.task)
+        return world, table_of(world, self.games), _kernels(evader, pursuers, world.noisy, compiled)
 
     @property
     def places(self) -> NDArray[np.float64]:
@@ -183,6 +190,13 @@ def table_of(world: World, games: int) -> Table:
     )  # fmt: skip
 
 
+def register_games() -> None:
+    """Register what games for learners are compiled of; idempotent."""
+    from sim_bridge.campaign.compiled import register
+
+    register((*KERNELS, "onboard.core.strategy.features", "onboard.core.strategy.policy", *ROOMS))
+
+
 @cache
 def _kernels(
     decide_evader: EvaderStrategy, decide_pursuer: PursuerStrategy, noisy: bool, compiled: bool
@@ -197,14 +211,13 @@ def _kernels(
 
     if not compiled:
         return steps, unfit
-    from sim_bridge.campaign.compiled import register, register_strategies
+    from sim_bridge.campaign.compiled import register_strategies
     from sim_bridge.campaign.kernel_cache import kernel
 
-    register((*KERNELS, "onboard.core.strategy.features", "onboard.core.strategy.policy",
-              "sim_bridge.gym.starts", simple.__name__))  # fmt: skip
+    register_games()
     register_strategies((decide_evader, decide_pursuer))
     counted = bool({decide_evader, decide_pursuer} - _OWN)  # a plug-in may make lists
-    return tuple(kernel(function, counted) for function in (steps, unfit))
+    return tuple(kernel(function, counted, "numpy") for function in (steps, unfit))
 
 
 _OWN = frozenset((

@@ -7,9 +7,10 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from sim_bridge.gym.aircraft import AircraftGames
 from sim_bridge.gym.batch import BatchedGames
 from sim_bridge.gym.exchange import Exchange
-from sim_bridge.gym.task import Task
+from sim_bridge.gym.task import Motion, Task
 
 
 class Games(Protocol):
@@ -38,4 +39,6 @@ def games_of(
     task: Task, games: int, arrays: Exchange | None = None, workers: int = 1, compiled: bool = True
 ) -> Games:
     """So many games of a task, stepped together: see `BatchedGames`."""
+    if task.motion is Motion.AIRCRAFT:
+        return AircraftGames(task, games, arrays, workers, compiled)
     return BatchedGames(task, games, arrays, workers, compiled)

@@ -25,6 +25,7 @@ HEIGHT_SHARE = 0.2  # of the spread of places, by which starts differ in height
 class Motion(Enum):
     """How vehicles move."""
 
+    AIRCRAFT = "aircraft"  # as flown: transfer functions, gusts, sensor, filters, supervisor, autopilot
     SIMPLE = "simple"  # (7)–(8): at once as decided, in the mean wind
 
 
@@ -48,7 +49,7 @@ class Wish(msgspec.Struct, frozen=True, kw_only=True):
     learn: str | Sequence[str] = "pursuers"  # "pursuers", "evader", "all", or names as "pursuer_1"
     evader: str = ""  # its strategy where it does not learn; "" = the scenario's
     pursuers: str = ""  # strategy of those who do not learn; "" = the scenario's
-    motion: str = "simple"  # how vehicles move: at once as decided, in the mean wind
+    motion: str = "simple"  # vehicles fly at once as decided, in the mean wind; "aircraft": as flown
     actions: str = "heading"  # or "velocity", "acceleration": see above
     axes: str = "ned"  # north, east, down; "sight": along the line of sight, right of it, down
     rewards: Rewards = Rewards()  # see above

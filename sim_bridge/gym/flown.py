@@ -1,0 +1,234 @@
+"""Games with the aircraft as flown, one control step a call: those of `sim_bridge.campaign.spatial_play`.
+
+Views, supervisor, autopilot, aircraft, gusts, sensor and filters are its functions, called in its order; a
+step here begins where everybody decides. Kernel style, but for lists and arrays, which are changed in place.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from onboard.core.game.advance import EvaderStrategy, Game, PursuerStrategy, judged
+from onboard.core.game.referee import GameResult, Score
+from onboard.core.game.views import EvaderView, PursuerView
+from onboard.core.math.each import each
+from onboard.core.math.states import Vehicle
+from onboard.core.math.vectors import ZERO, Vec
+from onboard.core.strategy.features import answer, evader_features, pursuer_features
+from onboard.core.strategy.knowledge import Decision
+from onboard.core.strategy.team.planner import no_plan
+from sim_bridge.campaign.ledger import known
+from sim_bridge.campaign.spatial_game import (
+    WIND_EVERY,
+    Chosen,
+    Deciding,
+    Start,
+    Ways,
+    decide_all,
+    decide_pursuer,
+    evader_sees,
+    in_air,
+    standing,
+)
+from sim_bridge.campaign.spatial_lanes import InLanes
+from sim_bridge.campaign.spatial_play import Motion
+from sim_bridge.campaign.team_play import opened, seat, stand_by
+from sim_bridge.campaign.tracks import Tracks
+from sim_bridge.gym.exchange import Exchange
+from sim_bridge.gym.simple import Run, idle_evader, idle_pursuer, note_end, reward, turn_at
+from sim_bridge.gym.starts import Here, Table, World, vec_of, write
+
+Array = NDArray[np.float64]
+
+
+class Skies(NamedTuple):
+    """What the games fly in, beside their table."""
+
+    starts: Any  # list of `Start`, one a game
+    skies: Any  # list of `OneByOne`; in lanes: `InLanes` with one more axis, the games, in front
+    before: Array  # (games, players, 8): as the agents know everybody when they decide
+    now: Array  # (games, players, 8): as everybody is
+    decided: Array  # (games, players, 8): see `decide_all`
+    samples: NDArray[np.int64]  # (games,) of the aircraft, since the beginning of the world
+
+
+class Chair(NamedTuple):
+    """Who is asked: in place of the number of a strategy."""
+
+    here: Here
+    exchange: Exchange
+    player: int
+    evade: EvaderStrategy
+    pursue: PursuerStrategy
+
+
+class Craft(NamedTuple):
+    """What a kernel is made of."""
+
+    decide_evader: EvaderStrategy
+    decide_pursuer: PursuerStrategy
+    motion: Motion
+    sky_at: Callable[[Any, int], Any]
+
+
+def sky_in_list(skies: Any, game: int) -> Any:
+    """The sky of a game, one by one."""
+    return skies[game]
+
+
+def sky_in_lanes(skies: InLanes, game: int) -> InLanes:
+    """The sky of a game, in lanes."""
+    seen = Tracks(skies.seen.waiting[game], skies.seen.filters[game], skies.seen.stamps[game])
+    return InLanes(
+        skies.air[game], skies.gusts[game], skies.sensor[game], skies.waiting[game], skies.crew[game], seen
+    )
+
+
+def ways_of(evader: Any, pursuer: Any, chair: Any, chairs: Any) -> Ways:
+    """Everybody asked by a function of a view and a chair, and no plan for the team."""
+    return Ways(evader, pursuer, Chosen(chair, chairs), stand_by)
+
+
+def chair_of(_vehicle: Vehicle, index: int, chair: Chair) -> Chair:
+    """The chair of pursuer `index` (for `each`)."""
+    return Chair(chair.here, chair.exchange, index + 1, chair.evade, chair.pursue)
+
+
+def ask(view: PursuerView, chair: Chair) -> Decision:
+    """A pursuer's decision: its action, or its strategy's."""
+    here = chair.here
+    if not here.world.learns[chair.player]:
+        return chair.pursue(view)
+    action = chair.exchange.pursuers_act[here.game, chair.player - 1]
+    return answer(view.own, view.limits, action, turn_at(here, chair.player), here.world.form)
+
+
+def ask_evader(view: EvaderView, chair: Chair) -> Decision:
+    """The evader's decision: its action, or its strategy's."""
+    here = chair.here
+    if not here.world.learns[0]:
+        return chair.evade(view)
+    action = chair.exchange.evader_acts[here.game]
+    return answer(view.own, view.limits, action, turn_at(here, 0), here.world.form)
+
+
+def look(view: PursuerView, chair: Chair) -> Decision:
+    """Write what a pursuer sees where it would decide."""
+    here = chair.here
+    if here.world.learns[chair.player]:
+        seen = chair.exchange.pursuers_see[here.game, chair.player - 1]
+        turn = pursuer_features(view, here.world.form, seen)
+        here.table.turns[here.game, chair.player, 0] = turn.x
+        here.table.turns[here.game, chair.player, 1] = turn.y
+    return idle_pursuer(view)
+
+
+def look_of_evader(view: EvaderView, chair: Chair) -> Decision:
+    """Write what the evader sees where it would decide."""
+    here = chair.here
+    if here.world.learns[0]:
+        turn = evader_features(view, here.world.form, chair.exchange.evader_sees[here.game])
+        here.table.turns[here.game, 0, 0] = turn.x
+        here.table.turns[here.game, 0, 1] = turn.y
+    return idle_evader(view)
+
+
+def standing_at(vehicle: Vehicle, index: int, here: Here) -> Vehicle:
+    """Pursuer `index` where it was when the referee last looked (for `each`)."""
+    return Vehicle(vec_of(here.table.places[here.game, index + 1]), vehicle.velocity, vehicle.speed)
+
+
+def judged_before(here: Here, start: Start) -> Game:
+    """The game as the referee saw it last."""
+    t, g, first = here.table, here.game, start.game
+    evader = Vehicle(vec_of(t.places[g, 0]), first.evader.velocity, first.evader.speed)
+    score = Score(GameResult.RUNNING, t.clock[g, 0], -1, t.clock[g, 1], t.clock[g, 2])
+    pursuers = each(standing_at, first.pursuers, here)
+    return Game(t.clock[g, 0], evader, pursuers, first.evader_limits, first.pursuer_limits, score)
+
+
+def judge_now(here: Here, start: Start, states: Array, exchange: Exchange) -> None:
+    """What the referee says of the control step that ended, what that earned, and where everybody is."""
+    t, g = here.table, here.game
+    before = judged_before(here, start)
+    evader = in_air(known(states, 0), ZERO, start.game.evader.speed)
+    after = judged(before, evader, each(standing, start.game.pursuers, states), start.conditions)
+    reward(before, after, here, exchange)
+    exchange.verdicts[g] = after.score.verdict
+    t.steps[g] += 1
+    for i in range(states.shape[0]):
+        write(t.places[g, i], Vec(states[i, 0], states[i, 1], states[i, 2]))
+        write(t.velocities[g, i], Vec(states[i, 3] - states[i, 6], states[i, 4] - states[i, 7], states[i, 5]))
+    t.clock[g, 0] = after.time
+    t.clock[g, 1] = after.score.smallest
+    t.clock[g, 2] = after.score.unsafe
+
+
+def team_at(here: Here, skies: Skies, ways: Ways, sky: Any) -> Deciding:
+    """Everybody before a decision; the team has no plan."""
+    g, start = here.game, skies.starts[here.game]
+    talk = opened(no_plan(each(seat, start.game.pursuers, start.planning), 0.0))
+    return Deciding(start, skies.before[g], sky.seen, skies.samples[g], ways, skies.decided[g], talk)
+
+
+def glide(here: Here, skies: Skies, exchange: Exchange, craft: Craft, decided: bool) -> None:
+    """Fly on until everybody decides again, or the game ends; `decided`: they have just done so."""
+    g, start, motion = here.game, skies.starts[here.game], craft.motion
+    sky, pace, now = craft.sky_at(skies.skies, g), start.pace, skies.now[g]
+    watched = decided
+    while True:
+        sample = skies.samples[g]
+        if not watched:
+            motion.watch(sky, start, sample, now)
+            if sample % pace.control == pace.decides:
+                return
+        watched = False
+        if sample % WIND_EVERY == 0:
+            motion.estimate(sky, start, now)
+        skies.before[g][:] = now
+        motion.move(sky, start, sample, now)
+        skies.samples[g] += 1
+        if (skies.samples[g] - pace.t0) % pace.control == 0:
+            judge_now(here, start, now, exchange)
+            if exchange.verdicts[g] != 0:
+                return
+
+
+def look_around(here: Here, skies: Skies, exchange: Exchange, craft: Craft) -> None:
+    """Write what everybody sees who learns."""
+    chair = Chair(here, exchange, 0, craft.decide_evader, craft.decide_pursuer)
+    chairs = each(chair_of, here.world.template.pursuers, chair)
+    ways = ways_of(look_of_evader, look, chair, chairs)
+    team = team_at(here, skies, ways, craft.sky_at(skies.skies, here.game))
+    look_of_evader(evader_sees(team), chair)
+    each(decide_pursuer, here.world.template.pursuers, team)
+
+
+def fly_all(table: Table, skies: Skies, shared: tuple[World, Exchange], run: Run, craft: Craft) -> None:
+    """One control step of every game of the run; or, of games that begin, all until the first decision."""
+    world, exchange = shared
+    for g in range(run.first, run.last):
+        here = Here(table, world, g)
+        sky = craft.sky_at(skies.skies, g)
+        if run.begins:
+            exchange.verdicts[g] = 0
+            craft.motion.note(sky, skies.now[g])
+            skies.before[g][:] = skies.now[g]
+        elif exchange.verdicts[g] != 0:
+            for i in range(exchange.rewards.shape[1]):
+                exchange.rewards[g, i] = 0.0
+            continue
+        else:
+            chair = Chair(here, exchange, 0, craft.decide_evader, craft.decide_pursuer)
+            chairs = each(chair_of, world.template.pursuers, chair)
+            ways = ways_of(ask_evader, ask, chair, chairs)
+            decide_all(team_at(here, skies, ways, sky), sky.crew, table.steps[g])
+            craft.motion.order(sky)
+        glide(here, skies, exchange, craft, not run.begins)
+        look_around(here, skies, exchange, craft)
+        if exchange.verdicts[g] != 0:
+            note_end(here, exchange)
