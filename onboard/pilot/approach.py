@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from onboard.core.math.angles import wrap
 from onboard.core.math.vectors import Vec, along, clamp, norm, sub
-from onboard.core.route.arrival import Path, Pose, arrive, at, shortest
+from onboard.core.route.arrival import Arrival, Path, Pose, arrive, at, shortest
 from onboard.core.safety.envelope import bounded, slewed
 from onboard.core.safety.policy import Envelope
 from onboard.pilot.setup import Own
@@ -51,7 +51,7 @@ RESERVE = 0.65  # of its range of airspeeds that a plane keeps for making up for
 # can also turn away and back
 PACES = (1.0, 1.02, 0.98, 1.04, 0.96, 0.93, 0.9)  # of that at which a plane looks for a path that fits
 LONGEST = 600.0  # [s] that no way takes: who needs more cannot get there against the wind
-LATEST = 120  # [s] that a plane says at most it will be late
+LATEST, LATER = 120, 2  # [s] that a plane says at most it will be late, and by steps of
 THERE = 2.0  # [m] from its place a multicopter is at it
 SETTLES = 3.0  # [s] for a multicopter to come to rest
 INSIDE = 0.999  # of what the limits let a step change
@@ -178,16 +178,16 @@ class Approach:
         self._drift += min(1.0, dt / DRIFT) * (more - self._drift)
         return own
 
-    def _to_go(self, left: float) -> float:
+    def _to_go(self, left: float, pace: float) -> float:
         """Length of the path that is flown in the time that is left [m]: at its pace, then gathering speed.
 
         What carries the plane along then as now, nobody makes up for at the game's airspeed.
         """
         final = self.place.speed + self._drift
-        gains = final - self._pace
+        gains = final - pace
         if left <= GATHER:
             return final * left - gains * left * left / (2.0 * GATHER)
-        return self._pace * left + 0.5 * gains * GATHER
+        return pace * left + 0.5 * gains * GATHER
 
     def _speed_at(self, left: float) -> float:
         """Airspeed that flies along the path in time [m/s], the game's at t₀."""
@@ -199,7 +199,7 @@ class Approach:
         """Velocity along the path and back to it."""
         assert self._path is not None
         path, speed = self._path, self.place.speed
-        gone = path.length - self._to_go(left)
+        gone = path.length - self._to_go(left, self._pace)
         end, here = at(path, path.length), at(path, gone)
         later = at(path, gone + LEAD * self._speed_at(left)).heading
         _, goal = self._poses(own, left)
@@ -248,27 +248,31 @@ class Approach:
         self._looked_at, (self._course, self._told) = left, self._headings(own)
         first = path is None or put_off
         last = self._last() if first else max(LAST_LEAST * speed, SHORTER * self._last())
-        before = self._pace
-        for share in PACES:
-            self._pace = clamp(share * self._reserved, min(self.place.slowest, speed), speed)
-            found = arrive(*self._poses(own, left), self._radius, self._to_go(left), last)
-            if found.exact:
-                self._path, self._late = found.path, 0.0
-                return
-        # There is none. Who has one keeps it, and asks for more time where it is far from it.
-        if path is None or put_off:
+        found, pace = self._found(own, left, last)
+        if found.exact:
+            self._path, self._pace, self._late = found.path, pace, 0.0
+        elif first:  # there is none: on the shortest until there is more time
             self._path, self._pace = found.path, self._reserved
             self._late = self._longer(own, left + SLACK) + SLACK
-        else:
-            self._pace, late = before, (LOST + AUTHORITY * left) * speed
-            self._late = self._longer(own, left) if self._astray > late else 0.0
+        else:  # who has one keeps it, and asks for more time where it is far from it
+            late = self._astray > (LOST + AUTHORITY * left) * speed
+            self._late = self._longer(own, left) if late else 0.0
+
+    def _found(self, own: Own, left: float, last: float) -> tuple[Arrival, float]:
+        """A path, and the airspeed [m/s] at which it takes the time that is left."""
+        slowest = min(self.place.slowest, self.place.speed)
+        paces = dict.fromkeys(clamp(s * self._reserved, slowest, self.place.speed) for s in PACES)
+        poses = self._poses(own, left)
+        for pace in paces:
+            found = arrive(*poses, self._radius, self._to_go(left, pace), last)
+            if found.exact:
+                break
+        return found, pace
 
     def _longer(self, own: Own, left: float) -> float:
         """Time by which t₀ is too early for any path [s]."""
-        for more in range(LATEST):
-            start, goal = self._poses(own, left + more)
-            length = self._reserved * (left + more) + 0.5 * GATHER * (self.place.speed - self._reserved)
-            if arrive(start, goal, self._radius, length, self._last()).exact:
+        for more in range(0, LATEST, LATER):
+            if self._found(own, left + more, self._last())[0].exact:
                 return float(more)
         return float(LATEST)
 
