@@ -45,11 +45,11 @@ TURNS = 0.05  # [rad] of a turn between two looks that tells how tightly a plane
 FELL_SHORT = 0.7  # of the turn that was told, for that
 WIDENS = 1.5  # times at most in one look
 WIDEST = 2.5  # times the radius that may be counted on, in all
-SLACK = 3.0  # [s] more than the shortest way that a plane asks for
+SLACK = 1.5  # [s] more than the shortest way that a plane asks for
 WIDER = 1.25  # times the radius that may be counted on: what lags in a turn is made up for within it
 RESERVE = 0.65  # of its range of airspeeds that a plane keeps for making up for lost time: who is early
 # can also turn away and back
-PACES = (1.0, 1.02, 0.98, 1.04, 0.96, 0.93, 0.9)  # of that at which a plane looks for a path that fits
+PACES = (1.0, 1.02, 0.98, 1.04, 0.96, 0.93, 0.9, 0.86)  # of that at which a plane looks for a path that fits
 LONGEST = 600.0  # [s] that no way takes: who needs more cannot get there against the wind
 LATEST, LATER = 120, 2  # [s] that a plane says at most it will be late, and by steps of
 THERE = 2.0  # [m] from its place a multicopter is at it
@@ -108,14 +108,15 @@ class Approach:
         if self.place.envelope.hovers:
             braking = self.place.envelope.deceleration
             return 0.0 if way <= THERE else way / speed + speed / braking + SETTLES
+        closing = self._reserved / (self._reserved + norm(own.wind))
         time = 0.0
         while time < LONGEST:  # the place moves in the air while the plane is on its way
             start, goal = self._poses(own, time)
             length = shortest(start, goal, self._radius, self._last()).length
-            late = length / max(0.1, self._reserved) + SLACK - time
+            late = (length - self._to_go(time, self._reserved)) / max(0.1, self._reserved) + SLACK
             if late <= 0.0:
                 break
-            time += max(late, 0.5)
+            time += max(closing * late, 0.1)  # from below: the place may come towards the plane
         return time + self._longer(own, time)
 
     def misses(self, own: Own, left: float) -> float:
@@ -223,9 +224,10 @@ class Approach:
         """The velocity within what the supervisor lets pass, after the last one."""
         e, before = self.place.envelope, self._demand
         air = sub(own.velocity, own.wind)
-        if before is None or not 0.0 <= dt <= 1.0:
+        if before is None or dt > 1.0:
             before, dt = bounded(air, wanted, e).velocity, 0.0
-        kept = slewed(bounded(wanted, before, e).velocity, before, INSIDE * dt, e).velocity
+        dt = max(0.0, INSIDE * dt)  # none where t₀ was put off
+        kept = slewed(bounded(wanted, before, e).velocity, before, dt, e).velocity
         self._demand = kept = bounded(kept, before, e).velocity
         return kept
 
@@ -266,8 +268,12 @@ class Approach:
         for pace in paces:
             found = arrive(*poses, self._radius, self._to_go(left, pace), last)
             if found.exact:
-                break
-        return found, pace
+                return found, pace
+        # Straight in, a path is as long as it is: at what airspeed it takes the time.
+        short = shortest(*poses, self._radius, last)
+        gathered = 0.5 * GATHER * (self.place.speed + self._drift)
+        pace = (short.length - gathered) / max(left - 0.5 * GATHER, GATHER)
+        return Arrival(slowest <= pace <= self.place.speed, short), pace
 
     def _longer(self, own: Own, left: float) -> float:
         """Time by which t₀ is too early for any path [s]."""
