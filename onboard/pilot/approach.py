@@ -28,6 +28,7 @@ CALLS = 4.0  # GAIN of an error that there is this many times its reciprocal tim
 AVERAGED = 60.0  # [s] over which the wind is averaged: what the air does until t₀ is not what it does now;
 FIRST = 20.0  # [s] that count for the first word on it
 DRIFT = 3.0  # [s] in which it is learned how gusts carry the plane along
+LASTS = 15.0  # [s] that it goes on doing so
 AUTHORITY = 0.12  # of the speed that making up for it may take and give, and for an error along the path
 MOST_ACROSS = 0.5  # of the speed
 LEAD = 0.9  # [s] by which a plane's turn lags behind its course command,
@@ -82,6 +83,7 @@ class Approach:
         self._late = 0.0  # by which the path is too long [s]
         self._radius = max(1.0, WIDER * e.turn_radius)  # [m] of the paths; grows where it is not kept
         self._course = self._told = 0.0  # [rad] through the air at the last look, flown and told
+        self._short = False  # its turn fell short of what was told
         self._astray = 0.0  # from where the path says that it is now [m]
         self._wind: Vec | None = None  # in the mean [m/s]
         self._heard = 0.0  # [s] of wind in that
@@ -184,6 +186,8 @@ class Approach:
 
         What carries the plane along then as now, nobody makes up for at the game's airspeed.
         """
+        if self.place.slowest >= self.place.speed:  # it makes up for nothing at all
+            return pace * left + self._drift * min(left, LASTS)
         final = self.place.speed + self._drift
         gains = final - pace
         if left <= GATHER:
@@ -283,10 +287,11 @@ class Approach:
         return float(LATEST)
 
     def _widen(self, own: Own) -> None:
-        """Reckon with the turn that the plane has made since the last look, where that fell short."""
+        """Reckon with the turn made since the last look, if that falls short for long."""
         course, told = self._headings(own)
         asked, made = wrap(told - self._told), wrap(course - self._course)
-        if abs(asked) > TURNS and made * asked < FELL_SHORT * asked * asked:
+        before, self._short = self._short, abs(asked) > TURNS and made * asked < FELL_SHORT * asked * asked
+        if before and self._short:  # not as it begins to turn
             widest = WIDEST * WIDER * self.place.envelope.turn_radius
             self._radius = min(widest, self._radius * min(abs(asked) / max(abs(made), TURNS), WIDENS))
 
