@@ -94,7 +94,7 @@ def _matrix(board: Board, scenario: int | None) -> str:
         cells = ""
         for name in evaders:
             share = float(shares[board.evaders.index(name), board.pursuers.index(score.name)])
-            ink = "#fff" if share > 0.55 else "#111"
+            ink = "#fff" if share > 0.8 else "#111"
             cells += f'<td style="background:{_shade(share)};color:{ink}">{share:.0%}</td>'
         rows += f"<tr><td>{escape(score.name)}</td>{cells}</tr>"
     corner = "pursuers \\ evader"
