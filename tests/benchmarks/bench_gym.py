@@ -20,6 +20,7 @@ from sim_bridge.gym.task import Wish, make_task
 from tests.support.benchmark_record import write
 
 GAMES = 1024
+FLOWN = 128  # with the aircraft as flown
 THEIRS = 8192  # environments of VMAS, where it is fastest
 PURSUERS = 5
 
@@ -33,18 +34,18 @@ class Contender(NamedTuple):
     calls: int  # in a round
 
 
-def ours(name: str, calls: int = 60, clear: bool = False, **words: Any) -> Contender:
+def ours(name: str, calls: int = 60, clear: bool = False, many: int = GAMES, **words: Any) -> Contender:
     """Games of this project, under actions drawn once: what they cost does not depend on them."""
     scenario = make_task(Wish(**words)).scenario
     if clear:
         sensor = replace(scenario.flight.sensor, sigma=0.0, sigma_velocity=0.0, delay_s=0.0)
         scenario = replace(scenario, flight=replace(scenario.flight, sensor=sensor))
-    games = games_of(make_task(Wish(**{**words, "scenario": scenario})), GAMES)
+    games = games_of(make_task(Wish(**{**words, "scenario": scenario})), many)
     games.reset(1)
     rng = np.random.default_rng(1)
     for array in (games.arrays.evader_acts, games.arrays.pursuers_act):
         array[:] = rng.uniform(-1.0, 1.0, array.shape)
-    return Contender(name, games.step, GAMES, calls)
+    return Contender(name, games.step, many, calls)
 
 
 def vmas() -> Contender:
@@ -133,6 +134,15 @@ def contenders() -> list[Contender]:
             scenario="space",
             actions="velocity",
         ),
+        ours(
+            "aircraft as flown, in gusts, known by tracks, all six act by velocity",
+            10,
+            many=FLOWN,
+            scenario="spatial/five",
+            motion="aircraft",
+            actions="velocity",
+            **all_,
+        ),
         pettingzoo(),
         vmas(),
         simple_tag(),
@@ -159,7 +169,8 @@ def page(found: dict[str, float], rounds: int) -> list[str]:
     lines = [
         "One that flees, five that pursue. A step is one control step of a whole game: the actions of those"
         " who learn in, all decisions, motion, referee, observations and rewards out, ended games begun anew."
-        f" CPU time of one thread, the best of {rounds} interleaved rounds; batches of {GAMES} games, VMAS"
+        f" CPU time of one thread, the best of {rounds} interleaved rounds; "
+        f"batches of {GAMES} games ({FLOWN} as flown), VMAS"
         f" {THEIRS}. simple_tag of VMAS and of PettingZoo moves points under forces and collisions and has"
         " neither a referee that judges between steps, nor strategies, wind or tracks.",
         "",

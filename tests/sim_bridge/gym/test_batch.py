@@ -78,6 +78,17 @@ def test_axes_along_the_line_of_sight_turn_observations_and_actions_alike() -> N
     assert a.evader_sees.shape == b.evader_sees.shape == (1, 4 + 4 * 5)
 
 
+def test_along_the_line_of_sight_ahead_is_at_the_evader_and_right_is_right_of_it() -> None:
+    games = batch(spread=0.0, axes="sight", actions="velocity", scenario="plane")
+    arrays = games.reset(1)
+    line = games.places[0, 0] - games.places[0, 2]
+    line /= np.linalg.norm(line)
+    arrays.pursuers_act[0, 1] = (0.6, 0.8)
+    games.step()
+    right = np.array([-line[1], line[0], 0.0])  # north, east: east is right of north
+    np.testing.assert_allclose(games.velocities[0, 2], 4.0 * (0.6 * line + 0.8 * right), atol=1e-5)
+
+
 def test_an_acceleration_changes_the_velocity_by_no_more_than_the_vehicle_can() -> None:
     games = batch(spread=0.0, actions="acceleration")
     arrays = games.reset(1)
