@@ -14,6 +14,7 @@ import msgspec
 from onboard.config.version import version
 from onboard.core.strategy.registry import EVADERS, PURSUERS
 from onboard.game.plugins import evader_strategy, plugins, pursuer_strategy
+from onboard.game.policy_file import PREFIX, is_policy
 
 ROOT = Path(__file__).resolve().parent.parent.parent.parent
 COMPUTED = (
@@ -61,7 +62,9 @@ def sources(parts: tuple[str, ...]) -> str:
 
 
 def _source_of(name: str) -> str:
-    """SHA-256 of the file in which a plug-in's function stands, "" where it has none."""
+    """SHA-256 of a policy's file, or of that in which a plug-in's function stands; "": it has none."""
+    if is_policy(name):
+        return sha256(Path(name.removeprefix(PREFIX)).read_bytes()).hexdigest()[:16]
     for find in (pursuer_strategy, evader_strategy):
         try:
             file = inspect.getsourcefile(inspect.unwrap(find(name)))

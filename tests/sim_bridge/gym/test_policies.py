@@ -25,6 +25,7 @@ from sim_bridge.campaign.compiled import campaign, starts_of
 from sim_bridge.gym.batch import BatchedGames
 from sim_bridge.gym.task import Wish, make_task
 from sim_bridge.plane_game.setup import conditions_of, game_of
+from sim_bridge.programs.campaigns.fingerprint import fingerprint
 from sim_bridge.programs.fly import Options, fly
 from tests.support.paths import ROOT
 
@@ -172,6 +173,16 @@ def test_the_trained_pursuer_leads_its_evader_where_a_chase_loses_it() -> None:
         won[name] = int(np.sum(ends.verdicts == GameResult.CAPTURED))
     assert won[f"policy:{TRAINED}"] >= 24
     assert won["pure-pursuit"] <= 8
+
+
+def test_a_policy_that_was_trained_again_is_another_one_to_campaigns(tmp_path: Path) -> None:
+    form = Form(Axes.NED, Steering.HEADING, True, 4.0, 0.05)
+    file = tmp_path / "one.npz"
+    said = []
+    for seed in (0, 1, 0):
+        save(file, policy("pursuer", 10, form, seed))
+        said.append(fingerprint((f"policy:{file}",), flown=False).plugins[f"policy:{file}"])
+    assert said[0] == said[2] != said[1]
 
 
 @pytest.mark.long
