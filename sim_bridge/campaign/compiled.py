@@ -64,6 +64,7 @@ KERNELS = (
     "onboard.core.strategy.team.planner",
     "onboard.core.strategy.team.ring",
     "onboard.core.strategy.team.staging",
+    "onboard.core.strategy.team.timed",
     "onboard.core.game.referee",
     "onboard.core.game.advance",
 )

@@ -113,7 +113,9 @@ def past(s: Situation) -> float:
 def _cone(member: Member, _index: int, s: Situation) -> Cone:
     if not member.fit:
         return NOTHING
-    reach = s.rules.R - lag(member, s)
+    # Who is late by more than its distance closes nothing: its cone is empty.
+    far = distance(member.vehicle.position, s.evader.position)
+    reach = max(s.rules.R - lag(member, s), -0.999 * far)
     return blocked_cone(member.vehicle, 0, Seen(s.evader.position, s.evader.speed, reach))
 
 

@@ -25,7 +25,8 @@ from onboard.core.strategy.team.plan_types import (
     Role,
     Situation,
 )
-from onboard.core.strategy.team.staging import Ring, flight, least_gap, radius_at, ring_of, slots_of, swing
+from onboard.core.strategy.team.staging import Ring, least_gap, radius_at, ring_of, slots_of, swing
+from onboard.core.strategy.team.timed import out_in_time, timed_swing
 
 TURNED = 0.63  # [rad] that a pursuer turns on its way to a slot, more or less: 8 s at 4.5 deg/s
 EASE = 1.0  # [rad] of overlap with a neighbour beyond which more is worth nothing
@@ -76,9 +77,37 @@ def in_order(s: Situation, centre: Vec, line: float, time: float) -> Order:
     return order
 
 
-def swings_of(order: Order, nearest: float) -> list[float]:
-    """How far each can change its bearing [rad]."""
-    return [swing(order.far[i], order.reach[i], nearest) for i in range(len(order.far))]
+class Swings(NamedTuple):
+    """Between which bearings everybody can be, in order [rad]; and who is on time nowhere."""
+
+    lows: list[float]
+    highs: list[float]
+    late: list[bool]
+
+
+def timely(member: Member) -> bool:
+    """Whether a member has to arrive on time: it cannot stand, and turns no faster than is said."""
+    return member.limits.speed_min > 0.0 and member.limits.turn_rate > 0.0
+
+
+def swings_of(s: Situation, order: Order, line: float) -> Swings:
+    """How far each can change its bearing until t₀."""
+    n = len(order.who)
+    found = Swings([0.0] * n, [0.0] * n, [False] * n)
+    for i in range(n):
+        member = s.team[order.who[i]]
+        own = order.bearings[i]
+        if timely(member):
+            swung = timed_swing(member, s, line + own)
+            found.lows[i] = own + swung.low
+            found.highs[i] = own + swung.high
+            found.late[i] = swung.late
+        else:
+            most = swing(order.far[i], order.reach[i], s.nearest)
+            found.lows[i] = own - most
+            found.highs[i] = own + most
+            found.late[i] = order.far[i] + order.reach[i] < s.nearest
+    return found
 
 
 def closing(s: Situation, way: WayOut) -> Band:
@@ -106,7 +135,7 @@ def closing(s: Situation, way: WayOut) -> Band:
     gap = least_gap(low, high, order.halves)
     if gap > 0.0:
         return Band(False, way.gap, way.bearing, way.pitch, NOBODY, inf)
-    slots = slots_of(Ring(gap, -1, 0.0), order.bearings, swings, order.halves, 0.0)
+    slots = slots_of(Ring(max(gap, 0.0), -1, 0.0), order.bearings, low, high, order.halves)
     closer = NOBODY
     farthest = -1.0
     for i in range(n):
@@ -152,14 +181,32 @@ def laid(s: Situation) -> Slots:
     late = [False for member in s.team]
     if n == 0:
         return Slots(aims, late)
-    swings = swings_of(order, s.nearest)
-    ring = ring_of(order.bearings, swings, order.halves, EASE, True)
-    bearings = slots_of(ring, order.bearings, swings, order.halves, EASE)
+    swings = swings_of(s, order, line)
+    ring = ring_of(swings.lows, swings.highs, order.halves, EASE, True)
+    eased = Ring(max(ring.gap, -EASE), ring.front, ring.off)
+    bearings = slots_of(eased, order.bearings, swings.lows, swings.highs, order.halves)
     places = [s.expected for _ in range(n)]
+    stand = True
     for i in range(n):
-        r = radius_at(order.far[i], bearings[i] - order.bearings[i], s.nearest)
+        member = s.team[order.who[i]]
+        out = radius_at(order.far[i], bearings[i] - order.bearings[i], s.nearest)
+        if timely(member):
+            stand = False
+            out = out_in_time(member, s, line + bearings[i], out)
         a = line + bearings[i]
-        places[i] = Vec(s.expected.x + r * cos(a), s.expected.y + r * sin(a), s.expected.z)
+        places[i] = Vec(s.expected.x + out * cos(a), s.expected.y + out * sin(a), s.expected.z)
+    found = [i for i in range(n)]
+    if stand:
+        found = _nearest_slots(s, order, places)
+    for i in range(n):
+        aims[order.who[i]] = places[found[i]]
+        late[order.who[i]] = swings.late[i]
+    return Slots(aims, late)
+
+
+def _nearest_slots(s: Situation, order: Order, places: list[Vec]) -> list[int]:
+    """The slot of everybody in order, so that the squares of the ways are least and all are in time."""
+    n = len(places)
     costs = [0.0] * (n * n)
     for i in range(n):
         own = s.team[order.who[i]].vehicle.position
@@ -170,12 +217,7 @@ def laid(s: Situation) -> Slots:
                 costs[i * n + j] *= (1.0 - CHANGE) * (1.0 - CHANGE)
             elif away > order.reach[i]:
                 costs[i * n + j] += FORBIDDEN
-    found = assigned(costs, n, n)
-    for i in range(n):
-        aims[order.who[i]] = places[found[i]]
-        away = flight(order.far[i], bearings[i] - order.bearings[i], s.nearest)
-        late[order.who[i]] = found[i] == i and away > order.reach[i] + 1.0
-    return Slots(aims, late)
+    return assigned(costs, n, n)
 
 
 def _level(a: Vec, b: Vec) -> float:

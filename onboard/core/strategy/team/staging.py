@@ -1,7 +1,7 @@
 """Where pursuers go before the evader moves: bearings that close the ring, by a linear programme.
 
-With bearings b_i as seen from where the evader will be, taken about the line to its target, member i can be
-at any x_i with |x_i − b_i| ≤ δ_i when the game begins. Wanted are x_i in the same order that minimise
+As seen from where the evader will be, about the line to its target, member i can be at any bearing x_i with
+l_i ≤ x_i ≤ u_i when the game begins. Wanted are x_i in the members' order that minimise
 
     max(s, −ease) + |x_front|,   x_{i+1} − x_i ≤ h_i + h_{i+1} + s,
 
@@ -82,17 +82,17 @@ def least_gap(low: list[float], high: list[float], halves: list[float]) -> float
     return least
 
 
-def ring_of(
-    bearings: list[float], swings: list[float], halves: list[float], ease: float, front: bool
-) -> Ring:
-    """The best ring: `bearings` ascending in (−π, π] about the line to the target, each ± its swing [rad].
+def ring_of(lows: list[float], highs: list[float], halves: list[float], ease: float, front: bool) -> Ring:
+    """The best ring of members that can be between `lows` and `highs`, in order about the line to the target.
+
+    Angles in rad; the members' own bearings, each between its low and its high, ascend in (−π, π].
 
     `ease` is the overlap of neighbours beyond which more is worth nothing. Without `front` nobody has to
     stand on the line.
     """
-    n = len(bearings)
-    low = [bearings[i] - swings[i] for i in range(n)]
-    high = [bearings[i] + swings[i] for i in range(n)]
+    n = len(lows)
+    low = lows.copy()
+    high = highs.copy()
     if not front:
         return Ring(least_gap(low, high, halves), -1, 0.0)
     best = Ring(inf, -1, 0.0)
@@ -121,13 +121,13 @@ def ring_of(
 
 
 def slots_of(
-    ring: Ring, bearings: list[float], swings: list[float], halves: list[float], ease: float
+    ring: Ring, bearings: list[float], lows: list[float], highs: list[float], halves: list[float]
 ) -> list[float]:
     """The bearings of a ring: of all that are as good, each as near to its member's own as can be [rad]."""
     n = len(bearings)
-    s = max(ring.gap, -ease) + 1e-12
-    low = [bearings[i] - swings[i] for i in range(n)]
-    high = [bearings[i] + swings[i] for i in range(n)]
+    s = ring.gap + 1e-12
+    low = lows.copy()
+    high = highs.copy()
     if ring.front >= 0:
         low[ring.front] = ring.off
         high[ring.front] = ring.off

@@ -53,11 +53,11 @@ def test_ring_is_the_solution_of_the_linear_programme(n: int) -> None:
         d = rng.uniform(0.0, rng.choice([0.2, 1.0, 3.0]), n)
         h = rng.uniform(0.2, 1.2, n) if trial % 2 else np.full(n, 0.87)
         ease = float(rng.uniform(0.0, 0.5))
-        bearings, swings, halves = b.tolist(), d.tolist(), h.tolist()
-        ring = ring_of(bearings, swings, halves, ease, True)
+        lows, highs, halves = (b - d).tolist(), (b + d).tolist(), h.tolist()
+        ring = ring_of(lows, highs, halves, ease, True)
         s = max(ring.gap, -ease)
         assert s + abs(ring.off) == pytest.approx(least_cost(b, d, h, ease), abs=1e-7)
-        x = slots_of(ring, bearings, swings, halves, ease)
+        x = slots_of(ring._replace(gap=s), b.tolist(), lows, highs, halves)
         assert x[ring.front] == pytest.approx(ring.off)
         for i in range(n):
             j = (i + 1) % n
@@ -68,10 +68,10 @@ def test_ring_is_the_solution_of_the_linear_programme(n: int) -> None:
 
 def test_a_closed_ring_with_one_in_front_stays_where_it_is() -> None:
     bearings = [-1.5, 0.0, 1.4, 3.0]
-    swings, halves = [1.0] * 4, [0.9] * 4
-    ring = ring_of(bearings, swings, halves, 0.0, True)
+    lows, highs, halves = [b - 1.0 for b in bearings], [b + 1.0 for b in bearings], [0.9] * 4
+    ring = ring_of(lows, highs, halves, 0.0, True)
     assert ring.off == 0.0
-    assert slots_of(ring, bearings, swings, halves, 0.0) == pytest.approx(bearings)
+    assert slots_of(ring._replace(gap=0.0), bearings, lows, highs, halves) == pytest.approx(bearings)
 
 
 @pytest.mark.parametrize("far", [300.0, 1499.0, 1501.0, 2500.0, 6000.0])
