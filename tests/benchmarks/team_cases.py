@@ -8,10 +8,11 @@ from typing import NamedTuple
 import msgspec
 
 from onboard.config.strict import ConfigError
+from onboard.core.geometry.lead import lead
 from onboard.core.math.angles import wrap
 from onboard.core.math.vectors import Vec, yaw_of
 from onboard.core.route.arrival import Pose, arrive, at
-from onboard.core.strategy.team.parts import lead, setting_out
+from onboard.core.strategy.team.parts import setting_out
 from onboard.core.strategy.team.ring import laid
 from onboard.core.strategy.team.timed import LAST, WIDER
 from onboard.game.scenario import Scenario, VehicleSpec

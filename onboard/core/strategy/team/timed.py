@@ -9,10 +9,11 @@ from __future__ import annotations
 from math import cos, pi, sin
 from typing import NamedTuple
 
+from onboard.core.geometry.lead import lead
 from onboard.core.math.angles import TURN
 from onboard.core.math.vectors import Vec, yaw_of
 from onboard.core.route.arrival import Pose, joined
-from onboard.core.strategy.team.parts import lead, setting_out
+from onboard.core.strategy.team.parts import setting_out
 from onboard.core.strategy.team.plan_types import Member, Situation
 
 WIDER = 1.1  # times the tightest turn that a path takes
