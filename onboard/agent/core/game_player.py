@@ -127,6 +127,8 @@ class GamePlayer:
         self.policy = limits.policy_of(self.config, setup, hovers, own)
         game = limits.game_setup(self.config, setup, self._bus.target, hovers, own)
         self.flying = flying._replace(game=game, approach=self._approach(setup, game))
+        if self._team is not None:
+            self._team.seat.field = self._field(setup, game)
         return True
 
     def state(self, wall_ns: int) -> PartState:
@@ -261,13 +263,16 @@ class GamePlayer:
         game = limits.game_setup(self.config, setup, self._bus.target, hovers, own)
         opponents = [player.id for player in game.opponents(self.side)]
         self._memory = Memory(self.config.prediction, opponents)
-        self._team = self._team_of(setup, game) if self.strategy == TEAM else None
+        self._team = None
+        if self.strategy == TEAM:
+            field, where = self._field(setup, game), self.config.game
+            self._team = TeamTalk(self.config.id, where, field, self._bus, self._out, self._journal)
         viewpoint = Viewpoint(self.config.id, self.side, self.strategy)
         self.flying = Flying(game, viewpoint, self._approach(setup, game))
         self._journal.info("setup", f"{setup.scenario} from {setup.master}: {len(setup.roster)} vehicles")
 
-    def _team_of(self, setup: Setup, game: GameSetup) -> TeamTalk:
-        """The seat in the team: of all pursuers whose strategy is the plan's."""
+    def _field(self, setup: Setup, game: GameSetup) -> Field:
+        """What a seat in the team reckons with: all pursuers whose strategy is the plan's."""
         team = tuple(
             m.id for m in setup.roster
             if m.role is Role.PURSUER and (m.strategy == TEAM or m.id == self.config.id)
@@ -275,8 +280,7 @@ class GamePlayer:
         fences = self.policy.fences
         floor = max((fence.low for fence in fences), default=Heights().floor)
         ceiling = min((fence.high for fence in fences), default=Heights().ceiling)
-        field = Field(game, team, Heights(floor, ceiling), setup.track_sigma)
-        return TeamTalk(self.config.id, self.config.game, field, self._bus, self._out, self._journal)
+        return Field(game, team, Heights(floor, ceiling), setup.track_sigma)
 
     def _approach(self, setup: Setup, game: GameSetup) -> Approach | None:
         member = limits.member_of(setup, self.config.id)
