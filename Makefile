@@ -128,7 +128,7 @@ mavproxy: .venv-mavproxy/bin/mavproxy.py
 	@touch $@
 
 three:
-	cd gcs/page/three && npm ci --ignore-scripts --no-audit --no-fund && node node_modules/esbuild/install.js && npm run build
+	cd gcs/page/three && npm ci --ignore-scripts --no-audit --no-fund && node node_modules/esbuild/install.js && npm run build && npm run report
 	cp gcs/page/three/node_modules/three/LICENSE gcs/page/static/three.LICENSE
 
 lock:

@@ -81,7 +81,6 @@ class Drawing(NamedTuple):
     note: str  # a line or two on how to read it
     figure: Figure
     panels: tuple[Panel, ...] = ()
-    scene: dict[str, Any] | None = None  # of a figure in space: what the page needs to turn it
 
 
 @contextmanager
@@ -210,7 +209,7 @@ def questions(drawing: Drawing) -> dict[str, Any]:
                 "lanes": panel.lanes,
             }
         )
-    return {"name": drawing.name, "panels": panels, "scene": drawing.scene}
+    return {"name": drawing.name, "panels": panels}
 
 
 def thin(values: Array, most: int) -> list[Any]:

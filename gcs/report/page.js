@@ -1,7 +1,7 @@
 "use strict";
-// One instant is marked in all figures at once; figures over time share one window of time; the figure in space turns.
+// One instant is marked in all figures at once; figures over time share one window of time; the scene plays.
 const flight = JSON.parse(document.getElementById("flight").textContent);
-const tip = document.getElementById("tip"), panels = [], scenes = [];
+const tip = document.getElementById("tip"), panels = [];
 
 function make(name, attributes, parent) {
   const made = document.createElementNS(parent.namespaceURI, name);
@@ -123,46 +123,6 @@ class Panel { // axes over time, or the plan
   }
 }
 
-class Scene { // the figure in space: the twin of `projected` in space.py
-  constructor(svg, name, given) {
-    Object.assign(this, given, { svg, closer: 1, whole: [given.heading, given.elevation] });
-    this.drawn = Object.entries(given.parts).map(([gid, places]) => ({ places,
-      part: svg.querySelector(`[id="${name}-${gid}"]`).querySelector(gid[1] === "l" ? "path" : gid[1] === "m" ? "use" : "text") }));
-    for (const one of this.drawn) // baselines of texts lie below their middle
-      if (one.part.tagName === "text") one.drop = +one.part.getAttribute("y") - this.projector()(one.places[0])[1];
-    this.marks = make("g", {}, svg);
-  }
-  projector() {
-    const [s, c, up, away] = [Math.sin(this.heading), Math.cos(this.heading), Math.cos(this.elevation), Math.sin(this.elevation)];
-    const flat = ([e, n, h]) => [c * e - s * n, -up * this.stretch * h - away * (s * e + c * n)];
-    const ends = this.around.map(flat);
-    const least = [0, 1].map(a => Math.min(...ends.map(p => p[a]))), most = [0, 1].map(a => Math.max(...ends.map(p => p[a])));
-    const scale = this.closer * Math.min(...[0, 1].map(a => (this.size[a] - 2 * this.margin[a]) / Math.max(most[a] - least[a], 1e-6)));
-    return at => flat(at).map((value, a) => (value - 0.5 * (least[a] + most[a])) * scale + 0.5 * this.size[a]);
-  }
-  turn(heading, elevation) {
-    Object.assign(this, { heading, elevation: Math.max(0, Math.min(Math.PI / 2, elevation)) });
-    const seen = this.projector();
-    for (const { part, places, drop = 0 } of this.drawn) {
-      const at = places.map(seen);
-      if (part.tagName === "path") part.setAttribute("d", "M " + at.map(p => p.map(v => v.toFixed(2)).join(" ")).join(" L "));
-      else { part.setAttribute("x", at[0][0]); part.setAttribute("y", at[0][1] + drop); part.removeAttribute("transform"); }
-    }
-    this.mark(now);
-  }
-  mark(t) {
-    this.marks.replaceChildren();
-    const seen = this.projector();
-    for (const way of flight.ways) {
-      const at = between(way.rows, t);
-      if (at) dot(this.marks, ...seen(at.slice(1)), way.colour);
-    }
-  }
-  told(t) { return ways(t); }
-  nearest(p) { const seen = this.projector(); return closest(p, row => seen(row.slice(1))); }
-  holds() { return true; }
-}
-
 function dot(parent, x, y, colour) {
   make("circle", { cx: x, cy: y, r: 4.5, stroke: "var(--paper)", style: `fill: var(--c${colour.slice(1)})` }, parent);
 }
@@ -181,8 +141,7 @@ function closest(p, seen) { // the instant of the sample drawn nearest to the po
   return found;
 }
 
-let now = NaN;
-function mark(t) { now = t; for (const one of [...panels, ...scenes]) one.mark(t); }
+function mark(t) { for (const one of panels) one.mark(t); }
 function tell(event, one, t) {
   const lines = t === null ? [] : one.told(t);
   tip.replaceChildren();
@@ -205,18 +164,17 @@ function zoom(panel, a, b) { // to the rectangle between two places; figures ove
   const [east, north] = [panel.ofX((a.x + b.x) / 2), panel.ofY((a.y + b.y) / 2)];
   panel.show([east - wide / 2, east + wide / 2, north - high / 2, north + high / 2]);
 }
-function listen(svg, own, scene) {
+function listen(svg, own) {
   let from = null, chosen = null, one = null;
   svg.addEventListener("pointerdown", event => {
     const p = place(svg, event);
-    one = scene ?? own.find(panel => panel.holds(p));
-    if (!one || event.button || (!scene && event.pointerType !== "mouse")) return;
-    from = scene ? { x: p.x, y: p.y, heading: scene.heading, elevation: scene.elevation } : p;
+    one = own.find(panel => panel.holds(p));
+    if (!one || event.button || event.pointerType !== "mouse") return;
+    from = p;
     svg.setPointerCapture(event.pointerId);
   });
   svg.addEventListener("pointermove", event => {
-    const p = place(svg, event), over = scene ?? own.find(panel => panel.holds(p));
-    if (from && scene) return scene.turn(from.heading + (from.x - p.x) / 150, from.elevation + (p.y - from.y) / 150);
+    const p = place(svg, event), over = own.find(panel => panel.holds(p));
     if (from) {
       chosen?.remove();
       const time = one.kind === "time", top = time ? one.y1 : Math.min(from.y, p.y);
@@ -226,30 +184,32 @@ function listen(svg, own, scene) {
     }
     const t = over ? over.nearest(p) : null;
     mark(t ?? NaN);
+    if (t !== null && window.playback && !window.playback.playing) window.playback.move(t);
     if (over) tell(event, over, t); else tip.style.display = "none";
   });
   svg.addEventListener("pointerup", event => {
     const p = place(svg, event);
     chosen?.remove();
-    if (from && !scene && Math.hypot(p.x - from.x, p.y - from.y) > 6 && Math.abs(p.x - from.x) > 2) zoom(one, from, p);
+    if (from && Math.hypot(p.x - from.x, p.y - from.y) > 6 && Math.abs(p.x - from.x) > 2) zoom(one, from, p);
     from = chosen = null;
   });
   svg.addEventListener("pointerleave", () => { if (!from) { tip.style.display = "none"; mark(NaN); } });
   svg.addEventListener("dblclick", () => {
-    if (scene) { scene.closer = 1; return scene.turn(...scene.whole); }
     for (const p of panels) if (own.includes(p) || (p.kind === "time" && own[0].kind === "time")) p.show(p.whole);
   });
-  if (scene) svg.addEventListener("wheel", event => {
-    if (!event.ctrlKey) return; // plain scrolling stays the page's
-    event.preventDefault();
-    scene.closer = Math.max(1, Math.min(20, scene.closer * Math.exp(-event.deltaY / 400)));
-    scene.turn(scene.heading, scene.elevation);
-  }, { passive: false });
 }
 
-for (const { name, panels: given, scene } of flight.figures) {
+for (const { name, panels: given } of flight.figures) {
   const svg = document.querySelector(`#figure-${name} svg`);
-  const own = given.map(one => new Panel(svg, name, one)), turned = scene ? new Scene(svg, name, scene) : null;
-  panels.push(...own); if (turned) scenes.push(turned);
-  listen(svg, own, turned);
+  const own = given.map(one => new Panel(svg, name, one));
+  panels.push(...own);
+  listen(svg, own);
+}
+const stage = document.getElementById("stage");
+if (stage && flight.scene) {
+  try {
+    window.playback = new Playback(stage, document.getElementById("time"), flight.scene, mark);
+  } catch { // no WebGL: the drawing for paper takes its place
+    document.body.classList.add("flat");
+  }
 }

@@ -16,11 +16,14 @@ from gcs.picture.values import LegState
 from gcs.report import drawing, theme
 from gcs.report.data import Run
 from gcs.report.drawing import Drawing
+from gcs.report.playback import scene_of
 from onboard.core.math.constants import NS_PER_S
 from onboard.game import palette
 from onboard.wire.bus.messages import Role, Severity
 
 MOST_ROWS = 400  # places of a vehicle that the page's script knows
+ENLARGE = "Drag over a part to enlarge it, double click for the whole."
+SPACE = "space"  # the drawing whose place the scene takes
 CONFIRMED = "Confirmed means that the autopilot reports it."
 GLOSSARY = "What each rule and action of the figure of rules says, and where it comes from."
 TAGS = {LegState.CONFIRMED: "good", LegState.REFUSED: "error"}  # of others: warning
@@ -42,9 +45,11 @@ def page(run: Run, drawings: list[Drawing]) -> str:
     anchors = [(d.name, d.title) for d in drawings] + [(name, title) for name, title, _, _ in tables]
     title = escape(run.name)
     script = (files("gcs.report") / "page.js").read_text(encoding="utf-8")
+    played = scene_of(run)
+    scene = (files("gcs.page") / "static" / "report.js").read_text(encoding="utf-8") if played else ""
     parts = [
         "<!doctype html>\n<html lang='en'>\n<head>\n<meta charset='utf-8'>\n",
-        f'<meta http-equiv="Content-Security-Policy" content="{_policy(script)}">\n',
+        f'<meta http-equiv="Content-Security-Policy" content="{_policy(scene, script)}">\n',
         "<meta name='viewport' content='width=device-width, initial-scale=1'>\n",
         f"<title>{title}: flight report</title>\n<link rel='icon' href='data:,'>\n",
         f"<style>{_style()}</style>\n",
@@ -57,10 +62,12 @@ def page(run: Run, drawings: list[Drawing]) -> str:
     ]
     figures = []
     for one in drawings:
-        how = "Drag to turn, ctrl and scroll to enlarge" if one.scene else "Drag over a part to enlarge it"
+        if one.name == SPACE and played:
+            parts.append(_stage(one))
+            continue
         parts.append(
             f"<section id='{one.name}'><h2>{escape(one.title)}</h2>\n"
-            f"<p class='sub'>{escape(one.note)} {how}, double click for the whole.</p>\n"
+            f"<p class='sub'>{escape(one.note)} {ENLARGE}</p>\n"
             f"<div class='figure' id='figure-{one.name}'>{drawing.svg(one)}</div></section>\n"
         )
         figures.append(drawing.questions(one))
@@ -68,17 +75,32 @@ def page(run: Run, drawings: list[Drawing]) -> str:
         sub = f"<p class='sub'>{escape(note)}</p>\n" if note else ""
         parts.append(f"<section id='{name}'><h2>{escape(heading)}</h2>\n{sub}{body}</section>\n")
     parts.append("<footer>Positions in the game frame: metres north, east and up of its origin.</footer>\n")
-    told = _json({"ways": _ways(run), "figures": figures})
+    told = _json({"ways": _ways(run), "figures": figures, "scene": played})
     parts.append("</main>\n<div id='tip'></div>\n")
     parts.append(f"<script type='application/json' id='flight'>{told}</script>\n")
+    if scene:
+        parts.append(f"<script>{scene}</script>\n")
     parts.append(f"<script>{script}</script>\n</body>\n</html>\n")
     return "".join(parts)
 
 
-def _policy(script: str) -> str:
-    """What the browser may do with the page: nothing but run this one script."""
-    digest = b64encode(sha256(script.encode()).digest()).decode()
-    return f"default-src 'none'; script-src 'sha256-{digest}'; style-src 'unsafe-inline'; img-src data:"
+def _stage(one: Drawing) -> str:
+    """The scene that plays; on paper, and where a browser draws no scene, the drawing in its place."""
+    return (
+        f"<section id='{one.name}'><h2>{escape(one.title)}</h2>\n"
+        "<p class='sub screen'>Drag to turn, scroll to come closer. The buttons play the flight; the figures"
+        " over time mark the same instant.</p>\n"
+        "<div class='screen'><div id='stage'></div><div id='time'></div></div>\n"
+        f"<p class='sub paper'>{escape(one.note)}</p>\n"
+        f"<div class='figure paper' id='figure-{one.name}'>{drawing.svg(one)}</div></section>\n"
+    )
+
+
+def _policy(*scripts: str) -> str:
+    """What the browser may do with the page: nothing but run these scripts."""
+    digests = [b64encode(sha256(script.encode()).digest()).decode() for script in scripts if script]
+    own = " ".join(f"'sha256-{digest}'" for digest in digests)
+    return f"default-src 'none'; script-src {own}; style-src 'unsafe-inline'; img-src data: blob:"
 
 
 def _style() -> str:

@@ -1,8 +1,4 @@
-"""Everybody's way in space, in orthographic projection: matplotlib draws one view, the page turns it.
-
-The scene is a list of lines, marks and texts with places in the game frame (east, north, height). The page's
-script moves what is drawn here to where the same projection puts it from another side.
-"""
+"""Everybody's way in space, in orthographic projection, for paper and PNG; on a screen the scene plays."""
 
 from __future__ import annotations
 
@@ -34,7 +30,7 @@ class Box(NamedTuple):
 
 def projected(places: Array, box: Box, heading: float, elevation: float) -> Array:
     """Places (n, 3) on the drawing (n, 2) [points, y down]: looking to `heading` [rad; from north to east]
-    from `elevation` above the horizon, scaled so that all is in view. `page.js` has its twin."""
+    from `elevation` above the horizon, scaled so that all is in view."""
 
     def flat(at: Array) -> Array:
         east, north, height = at.T
@@ -79,42 +75,31 @@ def space(run: Run) -> Drawing | None:
     note = "Open circles are the start, filled circles the end; faint lines are shadows on the floor."
     if box.stretch > 1.0:
         note += f" Heights are drawn {box.stretch:g} times as large as lengths."
-    shown = {
-        "around": box.around.tolist(), "stretch": box.stretch, "size": box.size, "margin": MARGIN,
-        "heading": HEADING, "elevation": ELEVATION, "parts": scene.parts,
-    }  # fmt: skip
-    return Drawing("space", "Trajectories in space", note, figure, scene=shown)
+    return Drawing("space", "Trajectories in space", note, figure)
 
 
 class _Scene:
-    """Draws parts at their places and remembers them by their names in the drawing."""
+    """Draws parts at their places."""
 
     def __init__(self, axes: Any, box: Box) -> None:
         self.axes, self.box = axes, box
-        self.parts: dict[str, list[list[float]]] = {}
 
     def line(self, places: Array, **how: Any) -> None:
         """A line through places (n, 3)."""
-        (drawn,) = self.axes.plot(*self._seen(places), clip_on=False, **how)
-        self._keep(drawn, "l", places)
+        self.axes.plot(*self._seen(places), clip_on=False, **how)
 
     def mark(self, place: Array, marker: str, **how: Any) -> None:
         """A mark at a place (3,)."""
-        (drawn,) = self.axes.plot(*self._seen(place[None]), marker, clip_on=False, **how)
-        self._keep(drawn, "m", place[None])
+        self.axes.plot(*self._seen(place[None]), marker, clip_on=False, **how)
 
     def text(self, place: Array, text: str, **how: Any) -> None:
         """A text centred at a place (3,)."""
         text = text.replace("-", "\N{MINUS SIGN}")
         x, y = self._seen(place[None])[:, 0]
-        self._keep(self.axes.text(x, y, text, ha="center", va="center_baseline", **how), "t", place[None])
+        self.axes.text(x, y, text, ha="center", va="center_baseline", **how)
 
     def _seen(self, places: Array) -> Array:
         return projected(places, self.box, HEADING, ELEVATION).T
-
-    def _keep(self, drawn: Any, kind: str, places: Array) -> None:
-        drawn.set_gid(f"p{kind}{len(self.parts)}")
-        self.parts[drawn.get_gid()] = np.round(places, 2).tolist()
 
 
 def _box(run: Run) -> Box:

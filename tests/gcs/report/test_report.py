@@ -9,6 +9,7 @@ import re
 import shutil
 from base64 import b64encode
 from html.parser import HTMLParser
+from importlib.resources import files
 from pathlib import Path
 
 import matplotlib.image
@@ -119,11 +120,20 @@ def test_the_page_refers_to_nothing_outside_itself(page: Page) -> None:
     policy = next(value for _, name, value in page.attributes if name == "content" and "default-src" in value)
     assert policy.startswith("default-src 'none'")
     assert "http" not in policy
-    data, own = page.scripts
+    data, scene, own = page.scripts
     assert not re.search(r"https?:|//[a-z]", own)
-    digest = b64encode(hashlib.sha256(own.encode()).digest()).decode()
-    assert f"script-src 'sha256-{digest}';" in policy, "this one script may run, and no other"
-    assert [figure["name"] for figure in json.loads(data)["figures"]] == FIGURES
+    digests = [b64encode(hashlib.sha256(script.encode()).digest()).decode() for script in (scene, own)]
+    only = " ".join(f"'sha256-{digest}'" for digest in digests)
+    assert f"script-src {only};" in policy, "these two scripts may run, and no other"
+    assert [figure["name"] for figure in json.loads(data)["figures"]] == [n for n in FIGURES if n != "space"]
+
+
+def test_the_scenes_script_is_made_from_todays_modules() -> None:
+    """`make three` puts them together; its first line has their hash."""
+    folder = files("gcs.page") / "static"
+    names = ("colours", "curves", "fleet", "frames", "ground", "playback", "scene", "timeline", "three")
+    made = hashlib.sha256(b"".join((folder / f"{name}.js").read_bytes() for name in names)).hexdigest()
+    assert made in (folder / "report.js").read_text(encoding="utf-8")[:200]
 
 
 def test_every_colour_of_a_figure_has_a_twin_for_dark_screens(drawings: list[Drawing], page: Page) -> None:
@@ -323,8 +333,17 @@ def test_words_from_the_network_cannot_become_markup(tmp_path: Path) -> None:
     evil = "</script><img src=http://x/y onerror=alert(1)>"
     event = messages.Event(2, 1, EPOCH_NS, messages.Severity.ERROR, evil, evil)
     report = messages.DecisionReport(
-        2, EPOCH_NS, 0.0, messages.DecisionLevel.TACTICAL, messages.DecisionModule.GEOMETRIC, evil, evil,
-        (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0, 0.0,
+        2,
+        EPOCH_NS,
+        0.0,
+        messages.DecisionLevel.TACTICAL,
+        messages.DecisionModule.GEOMETRIC,
+        evil,
+        evil,
+        (0.0, 0.0, 0.0),
+        (0.0, 0.0, 0.0),
+        0.0,
+        0.0,
     )
     items = [
         *flight(3.0),
@@ -337,7 +356,7 @@ def test_words_from_the_network_cannot_become_markup(tmp_path: Path) -> None:
     found = Page((folder / "report.html").read_text(encoding="utf-8"))
     assert "onerror" in found.text, "it is shown as text"
     assert not [a for a in found.attributes if a[0] == "img"]
-    assert len(found.scripts) == 2
+    assert len(found.scripts) == 3, "the data, the scene and the own one"
     assert evil in json.dumps(json.loads(found.scripts[0]), ensure_ascii=False).replace("_", " ")
 
 
