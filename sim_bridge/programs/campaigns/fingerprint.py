@@ -15,12 +15,13 @@ from onboard.config.version import version
 from onboard.core.strategy.registry import EVADERS, PURSUERS
 from onboard.game.plugins import evader_strategy, plugins, pursuer_strategy
 from onboard.game.policy_file import PREFIX, is_policy
+from onboard.runtime.resources import configs
 
 ROOT = Path(__file__).resolve().parent.parent.parent.parent
 COMPUTED = (
     "onboard/config", "onboard/core", "onboard/pilot", "onboard/game", "onboard/wire/geodesy.py",
     "sim_bridge/draws.py", "sim_bridge/vehicle", "sim_bridge/plane_game", "sim_bridge/campaign",
-    "sim_bridge/programs/campaigns/play.py",
+    *(f"sim_bridge/programs/campaigns/{name}.py" for name in ("play", "plan", "sweep")),
 )  # fmt: skip
 FLOWN = ("onboard", "sim_bridge", "gcs")
 PACKAGES = ("numpy", "numba", "llvmlite", "scipy", "pyarrow")
@@ -54,10 +55,16 @@ def fingerprint(strategies: tuple[str, ...], *, flown: bool) -> Fingerprint:
 def sources(parts: tuple[str, ...]) -> str:
     """SHA-256 of all Python sources and shipped aircraft below these paths."""
     total = sha256()
+
+    def take(path: Path, place: Path) -> None:
+        total.update(f"{path.relative_to(place).as_posix()}\0".encode() + path.read_bytes() + b"\0")
+
     for part in parts:
-        place = ROOT / part
-        for path in [place] if place.is_file() else sorted(place.rglob("*.py")):
-            total.update(f"{path.relative_to(ROOT).as_posix()}\0".encode() + path.read_bytes() + b"\0")
+        named = ROOT / part
+        for path in [named] if named.is_file() else sorted(named.rglob("*.py")):
+            take(path, ROOT)
+    for path in sorted((configs() / "aircraft").rglob("*.toml")):
+        take(path, configs())
     return total.hexdigest()
 
 

@@ -7,6 +7,7 @@ the first holds the first seeds of all cells (or of as many cells as fill it), a
 
 from __future__ import annotations
 
+from functools import cached_property
 from hashlib import sha256
 from typing import Any, NamedTuple
 
@@ -80,7 +81,7 @@ class Shard(NamedTuple):
         return len(self.cells) * len(self.seeds)
 
 
-class Plan(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
+class Plan(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True, dict=True):
     """A campaign; what `manifest.json` holds."""
 
     format: int
@@ -108,15 +109,28 @@ class Plan(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True
 
     def shards(self) -> list[Shard]:
         """All shards, in order."""
+        step, group = self._steps
+        return [self.shard(k) for k in range(-(-self.games // step) * -(-self.cell_count // group))]
+
+    def shard(self, number: int) -> Shard:
+        """Shard `number`, counted from 0."""
+        step, group = self._steps
+        block, part = divmod(number, -(-self.cell_count // group))
+        first, end = self.first_seed + block * step, self.first_seed + self.games
+        cells = range(part * group, min((part + 1) * group, self.cell_count))
+        return Shard(number, cells, range(first, min(first + step, end)))
+
+    @cached_property
+    def _steps(self) -> tuple[int, int]:
+        """How many seeds, and how many cells, a whole shard has."""
         step = min(self.games, max(1, -(-self.shard_games // self.cell_count)))
-        group = min(self.cell_count, max(1, self.shard_games // step))
-        found: list[Shard] = []
-        end = self.first_seed + self.games
-        for first in range(self.first_seed, end, step):
-            for cell in range(0, self.cell_count, group):
-                cells = range(cell, min(cell + group, self.cell_count))
-                found.append(Shard(len(found), cells, range(first, min(first + step, end))))
-        return found
+        return step, min(self.cell_count, max(1, self.shard_games // step))
+
+    @cached_property
+    def _hashes(self) -> list[str]:
+        """SHA-256 of each scenario."""
+        told = (msgspec.json.encode(chosen, order="deterministic") for chosen in self.scenarios)
+        return [sha256(data).hexdigest() for data in told]
 
     def key(self, shard: Shard) -> str:
         """SHA-256 of all that the shard's contents follow from."""
@@ -127,8 +141,7 @@ class Plan(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True
     def _cell_key(self, number: int) -> tuple[Any, ...]:
         rest, pair = divmod(number, len(self.pairs))
         at, point = divmod(rest, len(self.points))
-        chosen = self.scenarios[at]
-        return (number, chosen.label, chosen.data, self.points[point], self.pairs[pair])
+        return (number, self._hashes[at], self.points[point], self.pairs[pair])
 
     def parameters(self) -> list[str]:
         """The swept keys."""

@@ -13,6 +13,7 @@ import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from functools import lru_cache
 from multiprocessing.connection import wait as wait_for
 from typing import Any
 
@@ -36,9 +37,15 @@ def play_here(plan: Plan, shards: list[Shard], tell: Tell = silent) -> Played:
 
 def shard_bytes(plan: bytes, number: int) -> bytes:
     """A shard of a plan (as its manifest writes it): what a worker is asked for."""
-    found = checked(plan, "plan")
-    shard = found.shards()[number]
+    found = _plan_of(plan)
+    shard = found.shard(number)
     return encoded(found, shard, rows(found, shard))
+
+
+@lru_cache(2)
+def _plan_of(manifest: bytes) -> Plan:
+    """A plan, read once a worker."""
+    return checked(manifest, "plan")
 
 
 # ---------------------------------------------------------------- processes
@@ -167,4 +174,4 @@ def dask_bytes(number: int, plan: bytes) -> tuple[str, bytes]:
     """A shard of a plan, and the sources that a worker of the cluster has played it by."""
     from sim_bridge.programs.campaigns.fingerprint import COMPUTED, FLOWN, sources
 
-    return sources(FLOWN if checked(plan, "plan").flown else COMPUTED), shard_bytes(plan, number)
+    return sources(FLOWN if _plan_of(plan).flown else COMPUTED), shard_bytes(plan, number)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from collections import Counter
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from hypothesis import strategies as st
 from scipy.stats import binomtest
 
 from onboard.config.strict import ConfigError
+from onboard.runtime.resources import configs
 from sim_bridge.programs.campaigns import fingerprint as prints
 from sim_bridge.programs.campaigns.command import Options, Played, plan_of, ways_of
 from sim_bridge.programs.campaigns.plan import Plan, chosen
@@ -96,6 +98,15 @@ def test_other_sources_have_another_fingerprint(tmp_path: Path, monkeypatch: pyt
         victim.write_text(victim.read_text("utf-8") + "\nX = 1\n", "utf-8")
         prints.sources.cache_clear()
         assert prints.sources(prints.COMPUTED) != before
+        monkeypatch.undo()
+        aircraft = tmp_path / "configs" / "aircraft"
+        shutil.copytree(configs() / "aircraft", aircraft)
+        monkeypatch.setattr(prints, "configs", lambda: tmp_path / "configs")
+        for edited in (False, True):
+            text = (aircraft / "nose.toml").read_text("utf-8")
+            (aircraft / "nose.toml").write_text(text + "\n" * edited, "utf-8")
+            prints.sources.cache_clear()
+            assert (prints.sources(prints.COMPUTED) != before) == edited
     finally:
         prints.sources.cache_clear()
 
