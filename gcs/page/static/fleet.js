@@ -65,10 +65,28 @@ export class Fleet {
     this.lines = new LineSegments(geometry, new LineBasicMaterial({ vertexColors: true, transparent: true, opacity: 0.75 }));
     this.lines.frustumCulled = false;
     this.group.add(this.lines);
+    if (this.drops) {
+      this.group.remove(this.drops);
+      this.drops.geometry.dispose();
+    }
+    const feet = new BufferGeometry();
+    feet.setAttribute("position", new BufferAttribute(new Float32Array(capacity * 6), 3).setUsage(DynamicDrawUsage));
+    this.drops = new LineSegments(feet, new LineBasicMaterial({ transparent: true, opacity: 0.45 }));
+    this.drops.frustumCulled = false;
+    this.group.add(this.drops);
     const ways = this.ways();
     this.trails.clear();
     this.free = 0;
     for (const [key, points] of ways) this.way(key, points);
+  }
+
+  // From each vehicle straight down to the ground, so that heights can be read.
+  showDrops(vehicles) {
+    const { position } = this.drops.geometry.attributes;
+    vehicles.slice(0, this.capacity).forEach((v, i) => position.array.set([v.x, v.y, v.z, v.x, 0, v.z], 6 * i));
+    this.drops.geometry.setDrawRange(0, 2 * Math.min(vehicles.length, this.capacity));
+    this.drops.material.color.set(this.colours.faint);
+    position.needsUpdate = true;
   }
 
   // All ways as lists of places, for a larger buffer or another theme.
@@ -160,6 +178,7 @@ export class Fleet {
       if (mesh.instanceColor) mesh.instanceColor.needsUpdate = true;
     }
     this.showTracks(tracks, scale);
+    this.showDrops(vehicles);
   }
 
   showTracks(tracks, scale) {

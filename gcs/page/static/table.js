@@ -21,6 +21,7 @@ export class VehicleTable {
     columns.forEach((column) => {
       const cell = document.createElement("th");
       cell.title = column.help;
+      cell.className = `column-${column.name.replace(/\W+/g, "-")}`;
       if (column.sort) {
         const button = document.createElement("button");
         button.textContent = column.name;
@@ -89,7 +90,11 @@ export class VehicleTable {
       line = document.createElement("tr");
       line.tabIndex = 0;
       line.dataset.id = row.id;
-      row.cells.forEach(() => line.append(document.createElement("td")));
+      row.cells.forEach((_, i) => {
+        const cell = document.createElement("td");
+        cell.className = `column-${this.columns[i].name.replace(/\W+/g, "-")}`;
+        line.append(cell);
+      });
       line.addEventListener("click", (event) => this.choose(row.id, event));
       line.addEventListener("keydown", (event) => {
         if (event.key === "Enter" || event.key === " ") {
@@ -110,7 +115,7 @@ export class VehicleTable {
           swatch.style.background = this.colours.vehicle(row.id, row.role === "evader");
           cell.prepend(swatch);
         }
-        if (this.columns[i].name === "health") cell.className = `grade-${text}`;
+        if (this.columns[i].name === "health") cell.className = `column-health grade-${text}`;
       }
     });
     line.classList.toggle("chosen", this.marked.has(row.id));
