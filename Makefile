@@ -9,7 +9,7 @@ export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
-.PHONY: help install demo test check check-long check-pythons bench bench-page figures bench-predictor check-aarch64 golden fuzz soak mutants mavproxy clean three lock
+.PHONY: help install demo test check check-long check-pythons bench bench-page figures bench-predictor bench-gym check-aarch64 golden fuzz soak mutants mavproxy clean three lock
 
 help:
 	@echo "make install   the environment only"
@@ -22,6 +22,7 @@ help:
 	@echo "make bench-page  the page before a browser, with 200 and 1000 vehicles"
 	@echo "make figures   the committed tables of games, routes and predictors again, in one sweep"
 	@echo "make bench-predictor   the comparison with LSTM and GRU"
+	@echo "make bench-gym   steps of learning environments, beside VMAS and PettingZoo's simple_tag"
 	@echo "make golden    what whole games, agents and campaigns do, against what was recorded of them"
 	@echo "make fuzz      ten million frames and more into the parsers; resumable"
 	@echo "make soak      hours of simulated flight with random faults; resumable"
@@ -88,6 +89,17 @@ $(TORCH)/.installed: locks/bench-predictor.in $(STAMP)
 
 bench-predictor: install $(TORCH)/.installed
 	$(TORCH)/bin/python -m tests.benchmarks.predictor
+
+# VMAS and mpe2 in an environment of their own that sees this one's packages.
+GYM := .venv-gym
+$(GYM)/.installed: locks/bench-gym.in $(STAMP)
+	@$(BIN)/python -m venv $(GYM)
+	@$(GYM)/bin/python -m pip --disable-pip-version-check --quiet --no-input install -r locks/bench-gym.in
+	@$(BIN)/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))' > "$$($(GYM)/bin/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/apollonius.pth"
+	@touch $@
+
+bench-gym: install $(GYM)/.installed
+	$(GYM)/bin/python -m tests.benchmarks.bench_gym
 
 # PAGES="games.md tracking.md" makes some of them, PAGES=--stale those whose sources have changed.
 figures: install $(TORCH)/.installed
