@@ -23,7 +23,7 @@ from onboard.agent.thinker import Thinker
 from onboard.config.strict import ConfigError
 from onboard.core.math.vectors import NORTH, TINY, angle_between, norm, scale, unit
 from onboard.core.strategy.knowledge import Decision
-from onboard.core.strategy.registry import DEFAULT
+from onboard.core.strategy.registry import evader_named, pursuer_named
 from onboard.pilot.setup import Side
 from onboard.runtime.clock import RealClock
 from onboard.runtime.progress import Tell, silent
@@ -213,7 +213,8 @@ class _Again:
                 return
         again = self._thinker.answer(Think(asked.number, asked.side, name, asked.view))
         if again.decision is None:
-            self._remarks[f"the strategy {name or DEFAULT} fails now: {again.error}"] += 1
+            named = evader_named(name) if asked.side is Side.EVADER else pursuer_named(name)
+            self._remarks[f"the strategy {named} fails now: {again.error}"] += 1
             return
         self._decisions.judge(time, answer.decision, again.decision)
 

@@ -18,6 +18,7 @@ from gcs.report.data import Run
 from gcs.report.drawing import Drawing
 from gcs.report.playback import scene_of
 from onboard.core.math.constants import NS_PER_S
+from onboard.core.strategy.registry import evader_named, pursuer_named
 from onboard.game import palette
 from onboard.wire.bus.messages import Role, Severity
 
@@ -200,7 +201,7 @@ def vehicles(run: Run) -> str:
         rows.append(
             [
                 _dot(run.colour(vehicle_id)) + escape(run.role_of(vehicle_id)),
-                escape(member.strategy or "paper") if member is not None else "",
+                escape(_strategy(member.role, member.strategy)) if member is not None else "",
                 f"{member.speed:g}" if member is not None else "",
                 mean,
                 f"{nearest[vehicle_id]:.2f}" if vehicle_id in nearest else "",
@@ -350,3 +351,7 @@ def _json(value: Any) -> str:
         .replace("</", "<\\/")
         .replace("<!--", "<\\!--")
     )
+
+
+def _strategy(role: Role, name: str) -> str:
+    return evader_named(name) if role is Role.EVADER else pursuer_named(name)

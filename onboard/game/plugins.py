@@ -15,7 +15,7 @@ from onboard.config.in_words import nearest
 from onboard.config.printable import words_of
 from onboard.config.strict import ConfigError
 from onboard.core.game.advance import EvaderStrategy, PursuerStrategy
-from onboard.core.strategy.registry import DEFAULT, EVADERS, PURSUERS
+from onboard.core.strategy.registry import EVADERS, PURSUERS, evader_named, pursuer_named
 from onboard.game.policy_file import is_policy
 from onboard.game.policy_file import strategy as policy
 
@@ -24,8 +24,8 @@ GROUP = "apollonius.strategies"
 
 def pursuer_strategy(name: str) -> PursuerStrategy:
     """A pursuers' strategy by name ("" = the default). Raises ConfigError for an unknown one."""
-    if (name or DEFAULT) in PURSUERS:
-        return PURSUERS[name or DEFAULT].decide
+    if (own := pursuer_named(name)) in PURSUERS:
+        return PURSUERS[own].decide
     if is_policy(name):
         return cast(PursuerStrategy, policy(name, "pursuer"))
     found: PursuerStrategy = _plugin(name, "pursuer", list(PURSUERS))
@@ -34,8 +34,8 @@ def pursuer_strategy(name: str) -> PursuerStrategy:
 
 def evader_strategy(name: str) -> EvaderStrategy:
     """The evader's strategy by name ("" = the default). Raises ConfigError for an unknown one."""
-    if (name or DEFAULT) in EVADERS:
-        return EVADERS[name or DEFAULT].decide
+    if (own := evader_named(name)) in EVADERS:
+        return EVADERS[own].decide
     if is_policy(name):
         return cast(EvaderStrategy, policy(name, "evader"))
     found: EvaderStrategy = _plugin(name, "evader", list(EVADERS))
@@ -52,7 +52,8 @@ def demand_name(name: str, role: str, where: str) -> None:
         except ConfigError as error:
             raise ConfigError(f"{where}: {error}") from None
         return
-    if (name or DEFAULT) not in known and name not in plugin_names():
+    named = evader_named(name) if role == "evader" else pursuer_named(name)
+    if named not in known and name not in plugin_names():
         names = [*known, *plugin_names()]
         words = f"{', '.join(names)}{nearest(name, names)}"
         role_words = "an evader" if role == "evader" else f"a {role}"

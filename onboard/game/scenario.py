@@ -131,7 +131,7 @@ class Player(StrictConfig, frozen=True):
     position: Point  # [m] where it starts
     speed: Speed  # [m/s; air] what the game reckons with
     id: SystemId | None = None  # evader 1, pursuers from 2 where not given
-    strategy: str = ""  # "" = the default of the role
+    strategy: str = ""  # "" = the default: paper for evaders, parallel-pursuit for pursuers
     target: Point | None = None  # the evader's alone
     heading_deg: YawDeg | None = None  # at the start; None = towards the target or the evader
 

@@ -32,7 +32,7 @@ from onboard.core.math.states import Mate, Vehicle
 from onboard.core.math.vectors import ZERO, Vec, add, along, clamp, scale, sub
 from onboard.core.strategy.choosing import held_after
 from onboard.core.strategy.knowledge import Decision, Level, Module, level_of
-from onboard.core.strategy.registry import DEFAULT, EVADERS, PURSUERS
+from onboard.core.strategy.registry import EVADERS, PURSUERS, evader_named, pursuer_named
 from onboard.core.strategy.team.plan_types import IDLE
 from onboard.pilot.memory import Memory
 from onboard.pilot.predictor import Prediction, PredictorKind
@@ -105,7 +105,7 @@ class Viewpoint:
     def __init__(self, id: int, side: Side, strategy: str = "") -> None:
         self.id = id
         self.side = side
-        self.strategy = strategy or DEFAULT
+        self.strategy = evader_named(strategy) if side is Side.EVADER else pursuer_named(strategy)
         known = (EVADERS if side is Side.EVADER else PURSUERS).get(self.strategy)
         self.part = IDLE  # of the team's plan, where there is one
         self.why = ""  # whose plan that is, in words
@@ -221,8 +221,8 @@ class Pilot(Viewpoint):
         evader: EvaderStrategy | None = None,
     ) -> None:
         super().__init__(id, side, strategy)
-        self._pursue: PursuerStrategy = PURSUERS[DEFAULT].decide if pursuer is None else pursuer
-        self._evade: EvaderStrategy = EVADERS[DEFAULT].decide if evader is None else evader
+        self._pursue: PursuerStrategy = PURSUERS[pursuer_named("")].decide if pursuer is None else pursuer
+        self._evade: EvaderStrategy = EVADERS[evader_named("")].decide if evader is None else evader
         if side is Side.PURSUER and pursuer is None:
             self._pursue = PURSUERS[self.strategy].decide
         if side is Side.EVADER and evader is None:

@@ -17,7 +17,7 @@ from onboard.config.strict import ConfigError, FieldError
 from onboard.core.game.advance import EvaderStrategy, PursuerStrategy
 from onboard.core.math.vectors import sub, yaw_of
 from onboard.core.safety.policy import Fence
-from onboard.core.strategy.registry import DEFAULT, EVADERS
+from onboard.core.strategy.registry import EVADERS, pursuer_named
 from onboard.game.plugins import evader_strategy, pursuer_strategy
 from onboard.game.scenario import AirframeKind, Kind, Scenario, load
 from onboard.game.staging import places_of, start_headings
@@ -236,7 +236,7 @@ def sides_of(scenario: Scenario) -> Sides:
 
     Raises ConfigError for an unknown name.
     """
-    names = [spec.strategy or DEFAULT for spec in scenario.pursuers]
+    names = [pursuer_named(spec.strategy) for spec in scenario.pursuers]
     different = list(dict.fromkeys(names))
     return Sides(
         (evader_strategy(scenario.evader.strategy), EVADERS["straight"].decide),

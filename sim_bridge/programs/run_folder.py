@@ -14,7 +14,7 @@ from typing import Any
 import msgspec
 
 from onboard.config.strict import ConfigError
-from onboard.core.strategy.registry import DEFAULT
+from onboard.core.strategy.registry import evader_named, pursuer_named
 from onboard.game.scenario import Scenario
 
 PACKAGES = ("apollonius", "numpy", "pymavlink", "eclipse-zenoh", "msgspec", "numba", "scipy", "control")
@@ -95,9 +95,10 @@ def scenario_used(scenario: Scenario, seed: int | None, home: Path) -> bytes:
     wind = scenario.flight.wind
     if wind.recorded:
         wind = replace(wind, recorded=str((home / wind.recorded).resolve()))
+    names = (evader_named, *(pursuer_named for _ in scenario.pursuers))
     vehicles = [
-        replace(spec, id=id, strategy=spec.strategy or DEFAULT, speed_max=spec.limits().speed_max)
-        for id, spec in zip(scenario.ids, scenario.vehicles, strict=True)
+        replace(spec, id=id, strategy=named(spec.strategy), speed_max=spec.limits().speed_max)
+        for id, spec, named in zip(scenario.ids, scenario.vehicles, names, strict=True)
     ]
     used = replace(
         scenario,

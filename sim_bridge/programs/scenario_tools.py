@@ -35,7 +35,7 @@ speed = 4
 [[pursuers]]
 position = [-30, -60]
 speed = 4
-# strategy = "paper"           # predictive, choosing, earlier, … (docs/rules.md)
+# strategy = "parallel-pursuit"   # goalkeeper, team, paper, … (docs/rules.md)
 
 [parameters]
 R = 2.0                        # capture radius (6)

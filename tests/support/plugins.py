@@ -7,7 +7,8 @@ from pathlib import Path
 MODULE = """
 import os, sys, time
 from onboard.core.strategy.pursuit import *
-from onboard.core.strategy.registry import DEFAULT, PURSUERS
+from onboard.core.strategy.registry import DEFAULT_PURSUER as DEFAULT
+from onboard.core.strategy.registry import PURSUERS
 own = PURSUERS[DEFAULT].decide
 asked = 0
 

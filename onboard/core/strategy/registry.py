@@ -87,4 +87,15 @@ EVADERS: dict[str, NamedEvader] = {
     "straight": NamedEvader(evasion.straight, evasion.STRAIGHT, "for comparison: straight to the target"),
 }
 
-DEFAULT = "paper"
+DEFAULT = "paper"  # of evaders
+DEFAULT_PURSUER = "parallel-pursuit"  # Table 1's scenarios and the paper's spatial games name `paper`
+
+
+def evader_named(name: str) -> str:
+    """The name of an evader's strategy; "" is the default's."""
+    return name or DEFAULT
+
+
+def pursuer_named(name: str) -> str:
+    """The name of a pursuer's strategy; "" is the default's."""
+    return name or DEFAULT_PURSUER

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from onboard.config.strict import ConfigError
 from onboard.core.game.advance import EvaderStrategy, PursuerStrategy
 from onboard.core.game.referee import GameResult
-from onboard.core.strategy.registry import EVADERS, PURSUERS
+from onboard.core.strategy.registry import EVADERS, PURSUERS, evader_named, pursuer_named
 from onboard.game.plugins import evader_strategy, pursuer_strategy
 from onboard.game.scenario import Scenario
 from onboard.runtime.progress import Tell, silent
@@ -126,7 +126,7 @@ def _simple(evader: str, pursuers: str, count: int) -> Callable[..., Any]:
 
     decide_evader: EvaderStrategy = evader_strategy(evader)
     decide_pursuer: PursuerStrategy = pursuer_strategy(pursuers)
-    own = (evader or "paper") in EVADERS and (pursuers or "paper") in PURSUERS
+    own = evader_named(evader) in EVADERS and pursuer_named(pursuers) in PURSUERS
     compiled = campaign(decide_evader, decide_pursuer, count)
     if own:
         return compiled

@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 import msgspec
 
 from onboard.config.strict import ConfigError
-from onboard.core.strategy.registry import DEFAULT
+from onboard.core.strategy.registry import evader_named, pursuer_named
 from onboard.runtime.run_folder import made
 from sim_bridge.programs.campaigns.plan import Plan, Shard, checked
 from sim_bridge.programs.campaigns.play import Row
@@ -43,9 +43,10 @@ def encoded(plan: Plan, shard: Shard, rows: Iterable[Row]) -> bytes:
         "cell": pa.array([row.cell for row in games], pa.int32()),
         "seed": pa.array([row.seed for row in games], pa.int64()),
         "scenario": _words(cell.label for cell in told),
-        "evader": _words(cell.scenario.evader.strategy or DEFAULT for cell in told),
+        "evader": _words(evader_named(cell.scenario.evader.strategy) for cell in told),
         "pursuers": _words(
-            "+".join(sorted({spec.strategy or DEFAULT for spec in cell.scenario.pursuers})) for cell in told
+            "+".join(sorted({pursuer_named(spec.strategy) for spec in cell.scenario.pursuers}))
+            for cell in told
         ),
     }
     for name in plan.parameters():

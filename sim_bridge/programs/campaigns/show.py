@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from onboard.config.strict import ConfigError
-from onboard.core.strategy.registry import DEFAULT
+from onboard.core.strategy.registry import evader_named, pursuer_named
 from sim_bridge.campaign.spatial_campaign import mcnemar
 from sim_bridge.programs.campaigns import shards
 from sim_bridge.programs.campaigns.plan import Plan, model
@@ -72,11 +72,11 @@ def results(folder: Path) -> Results:
 
 def _what(plan: Plan, number: int) -> tuple[str, ...]:
     cell = plan.cell(number)
-    pursuers = sorted({spec.strategy or DEFAULT for spec in cell.scenario.pursuers})
+    pursuers = sorted({pursuer_named(spec.strategy) for spec in cell.scenario.pursuers})
     values = tuple(
         f"{value:.4g}" if isinstance(value, float) else str(value) for value in cell.point.values()
     )
-    evader = cell.scenario.evader.strategy or DEFAULT
+    evader = evader_named(cell.scenario.evader.strategy)
     return (cell.label, *values, evader, "+".join(pursuers), model(cell, plan.flown))
 
 

@@ -22,7 +22,8 @@ from onboard.core.game.rules import NO_TARGET, Control, Rules
 from onboard.core.game.views import PursuerView, Sighting, Team, nearest_mate, pursuer_view
 from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import ZERO, Vec
-from onboard.core.strategy.registry import DEFAULT, PURSUERS
+from onboard.core.strategy.registry import DEFAULT_PURSUER as DEFAULT
+from onboard.core.strategy.registry import PURSUERS
 from onboard.pilot.setup import Side
 from onboard.runtime.clock import RealClock
 from tests.support import plugins

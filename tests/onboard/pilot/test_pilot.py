@@ -40,7 +40,7 @@ def remembered(*samples: TrackSample) -> Memory:
 
 
 def test_a_pursuer_heads_for_the_point_where_it_meets_the_evader() -> None:
-    pilot = Pilot(2, Side.PURSUER)
+    pilot = Pilot(2, Side.PURSUER, "paper")
     track = seen(1, 10.0, Vec(0.0, 0.0, -50.0), Vec(5.0, 0.0, 0.0))
     thought = pilot.step(10.0, Own(Vec(50.0, 20.0, -50.0), ZERO), (), SETUP, remembered(track))
     assert (thought.rule, thought.level, thought.module) == ("intercept", "tactical", "geometric")
