@@ -1,0 +1,318 @@
+"""The table behind go or no-go: many compiled games from drawn starts, fitted, and judged on games held out.
+
+`python -m sim_bridge.campaign.odds` writes onboard/game/odds.json and benchmarks/results/odds.md. Games that
+were played stay in the folder `--parts`, so that a run that was stopped goes on.
+"""
+
+from __future__ import annotations
+
+import os
+from math import atan2, cos, degrees, pi, sin
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from onboard.core.game.advance import Conditions, Game, begin
+from onboard.core.game.referee import GameResult
+from onboard.core.game.rules import Control, Rules, Target
+from onboard.core.math.states import FREE, Vehicle
+from onboard.core.math.vectors import ZERO, Vec, scale, sub, unit
+from onboard.core.strategy.registry import EVADERS, PURSUERS
+from onboard.core.strategy.team.parts import lead
+from onboard.core.strategy.team.plan_types import Heights, Member
+from onboard.game.odds import NAMES, Outcome, Sheet, Table, engagement, features
+from onboard.game.scenario import Scenario
+from sim_bridge.campaign.compiled import campaign, starts_of
+from sim_bridge.campaign.plane_in_wind import drawn_wind
+from sim_bridge.campaign.spatial_draw import draw, kernel_of, spatial, typed
+from sim_bridge.campaign.spatial_game import Chosen
+from sim_bridge.plane_game.setup import conditions_of, vehicles_of
+
+EVADING = ("paper", "evasive")
+PURSUING = "constant-bearing"
+HELD_OUT = 4  # every so-manieth game judges, the others fit
+RIDGE = 1.0  # of the standardised weights
+SIZES = {"plane": (3, 4, 5, 6, 7), "space": (4, 5, 6)}
+PLANE = Rules(R=2.0, rho=4.0, horizon=300.0, planar=True)
+
+Array = NDArray[np.float64]
+
+
+class Part(NamedTuple):
+    """Games of one kind and size."""
+
+    x: Array  # (games, features)
+    ends: NDArray[np.int64]  # (games, evaders) verdicts
+
+
+def bearings(rng: np.random.Generator, count: int) -> tuple[Array, Array]:
+    """Bearings [rad] and distances (1 = the scale) about the evader: anywhere, or on a loose ring."""
+    if rng.random() < 0.4:
+        return rng.uniform(-pi, pi, count), rng.uniform(0.3, 1.7, count)
+    even = rng.uniform(-pi, pi) + 2.0 * pi * np.arange(count) / count
+    loose = rng.uniform(0.0, 0.6)
+    off = rng.standard_normal((2, count)).clip(-2.0, 2.0)
+    return even + loose * off[0], 1.0 + 0.4 * loose * off[1]
+
+
+def plane_game(rng: np.random.Generator, count: int) -> tuple[Game, Vec]:
+    """A start in the plane, and its target."""
+    scale_m = rng.uniform(20.0, 100.0)
+    yaws, far = bearings(rng, count)
+    goal = rng.uniform(40.0, 250.0)
+    target = Vec(goal, 0.0, 0.0)
+    v_e, v_p = 5.0, float(rng.uniform(3.5, 4.5))
+    evader = Vehicle(ZERO, Vec(v_e, 0.0, 0.0), v_e)
+    team = []
+    for yaw, d in zip(yaws, far, strict=True):
+        place = Vec(float(max(8.0, scale_m * d) * cos(yaw)), float(max(8.0, scale_m * d) * sin(yaw)), 0.0)
+        team.append(Vehicle(place, scale(unit(sub(ZERO, place), ZERO), v_p), v_p))
+    return begin(evader, tuple(team), FREE, (FREE,) * count), target
+
+
+def plane_part(games: int, count: int) -> Part:
+    """Games in the plane against `count` pursuers."""
+    rng = np.random.default_rng([1, count])
+    drawn = [plane_game(rng, count) for _ in range(games)]
+    starts = starts_of([game for game, _ in drawn], [target for _, target in drawn])
+    conditions = Conditions(PLANE, Target(True, ZERO), Control(0.1))
+    ends = [
+        campaign(EVADERS[name].decide, PURSUERS[PURSUING].decide, count)(starts, conditions).verdicts
+        for name in EVADING
+    ]
+    rows = []
+    for game, target in drawn:
+        team = tuple(Member(one, FREE, True) for one in game.pursuers)
+        s = engagement(Member(game.evader, FREE, True), team, Target(True, target), PLANE, Heights(), 0.0)
+        rows.append(features(s))
+    return Part(np.array(rows), np.array(ends).T)
+
+
+def space_scenario(seed: int, count: int) -> Scenario:
+    """A start of aircraft in space, in the world of `spatial/five`."""
+    rng = np.random.default_rng([2, count, seed])
+    base = spatial("five")
+    replace = msgspec.structs.replace
+    yaws, far = bearings(rng, count)
+    scale_m, goal = rng.uniform(1500.0, 3500.0), rng.uniform(4000.0, 9000.0)
+    ahead = Vec(base.evader.speed, 0.0, 0.0)
+    spec = base.pursuers[0]
+    pursuers = []
+    for yaw, d in zip(yaws, far, strict=True):
+        level = float(max(700.0, scale_m * d))
+        place = Vec(level * cos(yaw), level * sin(yaw), -1500.0 + float(rng.normal(0.0, 60.0)))
+        nose = lead(place, spec.speed, Vec(0.0, 0.0, -1500.0), ahead)
+        told = degrees(atan2(nose.y, nose.x))
+        pursuers.append(replace(spec, position=(place.x, place.y, -place.z), heading_deg=told))
+    wind = replace(base.flight.wind, from_deg=drawn_wind(10_000 * count + seed))
+    return replace(
+        base,
+        evader=replace(base.evader, target=(float(goal), 0.0, 1500.0)),
+        pursuers=tuple(pursuers),
+        seed=10_000 * count + seed,
+        flight=replace(base.flight, wind=wind),
+    )
+
+
+def space_features(scenario: Scenario) -> tuple[float, ...]:
+    """What describes the start of a scenario in space."""
+    rules, target, _ = conditions_of(scenario)
+    vehicles = vehicles_of(scenario)
+    evader, *team = (
+        Member(one, spec.limits(), True) for one, spec in zip(vehicles, scenario.vehicles, strict=True)
+    )
+    fence = scenario.flight.fence
+    heights = Heights() if fence is None else Heights(fence.height_min, fence.height_max)
+    return features(engagement(evader, tuple(team), target, rules, heights, scenario.flight.sensor.sigma))
+
+
+def space_part(games: int, count: int) -> Part:
+    """Games of aircraft in wind, with noise, delay and gusts, against `count` pursuers."""
+    play = kernel_of(tuple(EVADERS[name].decide for name in EVADING), (PURSUERS[PURSUING].decide,), True)
+    rows, ends = [], []
+    for seed in range(1, games + 1):
+        scenario = space_scenario(seed, count)
+        verdicts = []
+        for number in range(len(EVADING)):
+            d = draw(scenario, 0)
+            log = np.zeros((d.steps, count + 1, 5))
+            crew = typed(d.players, True), typed(d.crew, True)
+            verdicts.append(play(d.start, Chosen(number, (0,) * count), *crew, d.tracks, log))
+        rows.append(space_features(scenario))
+        ends.append([int(found.game.score.verdict) for found in verdicts])
+    return Part(np.array(rows), np.array(ends))
+
+
+def parts(folder: Path, kind: str, games: int) -> Part:
+    """The games of a kind, those of the folder and the missing ones, which are played."""
+    folder.mkdir(parents=True, exist_ok=True)
+    found = []
+    for count in SIZES[kind]:
+        path = folder / f"{kind}-{count}-{games}-{PURSUING}.npz"
+        if not path.exists():
+            part = (plane_part if kind == "plane" else space_part)(games, count)
+            np.savez(path, x=part.x, ends=part.ends)
+            print(f"played: {path}", flush=True)
+        with np.load(path) as kept:
+            found.append(Part(kept["x"], kept["ends"]))
+    return Part(np.concatenate([p.x for p in found]), np.concatenate([p.ends for p in found]))
+
+
+def fitted(z: Array, y: Array) -> Outcome:
+    """Logistic regression by Newton's method, weights held small by RIDGE (not the constant)."""
+    held = RIDGE * np.eye(z.shape[1])
+    held[0, 0] = 1e-6
+    w = np.zeros(z.shape[1])
+    hessian = held
+    for _ in range(50):
+        p = 1.0 / (1.0 + np.exp(-np.clip(z @ w, -500, 500)))
+        hessian = z.T @ (z * (p * (1.0 - p))[:, None]) + held
+        step = np.linalg.solve(hessian, z.T @ (y - p) - held @ w)
+        w += step
+        if float(np.abs(step).max()) < 1e-9:
+            break
+    rounded = [[float(f"{v:.4g}") for v in row] for row in np.linalg.inv(hessian)]
+    return Outcome(tuple(float(f"{v:.6g}") for v in w), tuple(tuple(row) for row in rounded))
+
+
+class Judged(NamedTuple):
+    """How a fit did on games held out."""
+
+    kind: str
+    evader: str
+    outcome: str
+    games: int
+    share: float
+    brier: float
+    plain: float  # Brier score of always saying the share
+    bins: tuple[tuple[float, int, int], ...]  # mean said, games, happened
+
+
+def judged(kind: str, evader: str, outcome: str, said: Array, y: Array) -> Judged:
+    """Brier score and reliability in ten bins."""
+    bins = []
+    for k in range(10):
+        inside = (said >= k / 10) & ((said < (k + 1) / 10) | (k == 9))
+        if inside.any():
+            bins.append((float(said[inside].mean()), int(inside.sum()), int(y[inside].sum())))
+    brier, plain = float(np.mean((said - y) ** 2)), float(y.mean() * (1 - y.mean()))
+    return Judged(kind, evader, outcome, len(y), float(y.mean()), brier, plain, tuple(bins))
+
+
+def sheet(kind: str, part: Part) -> tuple[Sheet, list[Judged]]:
+    """A kind's fits, and how they do on every fourth game, which they have not seen."""
+    x, games = part.x, len(part.x)
+    held = np.arange(games) % HELD_OUT == 0
+    mean, deviation = x.mean(axis=0), np.maximum(x.std(axis=0), 1e-9)
+    z = (x - mean) / deviation
+    z[:, 0] = 1.0
+    fits: dict[str, dict[str, Outcome]] = {}
+    told = []
+    for number, evader in enumerate(EVADING):
+        fits[evader] = {}
+        for outcome, verdict in (("captured", GameResult.CAPTURED), ("arrived", GameResult.ARRIVED)):
+            y = (part.ends[:, number] == int(verdict)).astype(float)
+            fit = fitted(z[~held], y[~held])
+            fits[evader][outcome] = fit
+            said = 1.0 / (1.0 + np.exp(-np.clip(z[held] @ np.array(fit.weights), -500, 500)))
+            told.append(judged(kind, evader, outcome, said, y[held]))
+
+    def short(values: Array) -> tuple[float, ...]:
+        return tuple(float(f"{v:.6g}") for v in values)
+
+    low, high = short(np.quantile(x, 0.002, axis=0)), short(np.quantile(x, 0.998, axis=0))
+    return Sheet(games, low, high, short(mean), short(deviation), fits), told
+
+
+def page(told: list[Judged], made: str) -> str:
+    """The judgement as Markdown."""
+    lines = [
+        "# Go or no-go: what the table says, and what happened",
+        "",
+        made,
+        "",
+        f"Every {HELD_OUT}th game was held out of the fit. Pursuers: `{PURSUING}`. Brier score: the mean of"
+        " squares of (said − happened); beside it that of always saying the share.",
+        "",
+        "| kind | evader | outcome | held out | share | Brier | of the share alone |"
+        " said 0–10 %: happened | … | 90–100 %: happened |",
+        "|---|---|---|---|---|---|---|---|---|---|",
+    ]
+    for one in told:
+        cells = [f"{100 * s:.0f} %: {100 * k / n:.0f} % of {n}" for s, n, k in one.bins]
+        lines.append(
+            f"| {one.kind} | {one.evader} | {one.outcome} | {one.games} | {100 * one.share:.0f} % |"
+            f" {one.brier:.3f} | {one.plain:.3f} | {cells[0]} | {'; '.join(cells[1:-1])} | {cells[-1]} |"
+        )
+    return "\n".join(lines) + "\n"
+
+
+def reliability(told: list[Judged], path: Path) -> None:
+    """The reliability diagram: what was said, and what happened with Wilson's 95 % interval, bin by bin."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+    from scipy.stats import binomtest
+
+    figure = Figure(figsize=(9.0, 8.4), layout="constrained")
+    FigureCanvasAgg(figure)
+    places: Any = figure.subplots(2, 2, sharex=True, sharey=True)
+    for axes, (kind, evader) in zip(
+        places.flat, [(k, e) for k in SIZES for e in EVADING], strict=True
+    ):
+        axes.plot([0, 1], [0, 1], color="0.7", lw=1)
+        for one, colour in zip(
+            [t for t in told if (t.kind, t.evader) == (kind, evader)], ("#aa3377", "#228833"), strict=True
+        ):
+            said = [s for s, _, _ in one.bins]
+            share = [k / n for _, n, k in one.bins]
+            reach = [binomtest(k, n).proportion_ci(method="wilson") for _, n, k in one.bins]
+            error = [[h - r.low for h, r in zip(share, reach, strict=True)],
+                     [r.high - h for h, r in zip(share, reach, strict=True)]]  # fmt: skip
+            label = f"{one.outcome}: Brier {one.brier:.3f} (share alone {one.plain:.3f})"
+            axes.errorbar(said, share, yerr=np.maximum(error, 0.0), fmt="o-", ms=4, lw=1, capsize=2,
+                          color=colour, label=label)  # fmt: skip
+        axes.set_title(f"{kind}, evader {evader}", fontsize=10)
+        axes.legend(fontsize=8, loc="upper left", frameon=False)
+        axes.grid(alpha=0.2)
+    for axes in places[-1]:
+        axes.set_xlabel("said before the game")
+    for axes in places[:, 0]:
+        axes.set_ylabel("happened")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(path, dpi=110)
+
+
+def main() -> None:
+    """Play what is missing, fit, judge, write."""
+    import argparse
+    import platform
+
+    from sim_bridge.programs.campaigns.fingerprint import COMPUTED, sources
+
+    parser = argparse.ArgumentParser(prog="python -m sim_bridge.campaign.odds", description=__doc__)
+    parser.add_argument("--plane", type=int, default=3000, help="games of each number of pursuers")
+    parser.add_argument("--space", type=int, default=800, help="likewise, of aircraft")
+    parser.add_argument("--parts", type=Path, default=Path(".odds"), help="folder of played games")
+    parser.add_argument("--table", type=Path, default=Path("onboard/game/odds.json"))
+    parser.add_argument("--page", type=Path, default=Path("benchmarks/results/odds.md"))
+    parser.add_argument("--figure", type=Path, default=Path("docs/pictures/odds.png"))
+    given = parser.parse_args()
+    sheets, told = {}, []
+    for kind, games in (("plane", given.plane), ("space", given.space)):
+        sheets[kind], judgement = sheet(kind, parts(given.parts, kind, games))
+        told += judgement
+    command = f"python -m sim_bridge.campaign.odds --plane {given.plane} --space {given.space}"
+    table = Table(command, sources(COMPUTED)[:16], PURSUING, sheets)
+    given.table.write_bytes(msgspec.json.format(msgspec.json.encode(table), indent=1) + b"\n")
+    where = f"{platform.machine()} ({os.cpu_count()} cores)"
+    made = f"`{command}` on {where}, sources `{table.sources}`. Features: {', '.join(NAMES[1:])}."
+    given.page.write_text(page(told, made), encoding="utf-8")
+    reliability(told, given.figure)
+    print(given.page.read_text(encoding="utf-8"))
+
+
+if __name__ == "__main__":
+    main()
