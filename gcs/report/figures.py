@@ -27,6 +27,7 @@ from gcs.report.drawing import (
     style,
     timed,
 )
+from gcs.report.hindsight import missed_capture
 from gcs.report.space import space
 from onboard.game import palette
 
@@ -288,6 +289,6 @@ def _name_rows(axes: Any, run: Run, vehicles: list[int]) -> None:
 
 
 MAKERS: tuple[Callable[[Run], Drawing | None], ...] = (
-    plan, space, distances, rules, speeds, heights, wind, links, latencies,
+    plan, space, distances, missed_capture, rules, speeds, heights, wind, links, latencies,
 )  # fmt: skip
 NAMES = tuple(maker.__name__ for maker in MAKERS)

@@ -22,6 +22,7 @@ from gcs.report import theme
 from gcs.report.data import Run
 from gcs.report.drawing import Drawing, svg
 from gcs.report.figures import NAMES, figures, heights
+from gcs.report.hindsight import missed_capture
 from gcs.report.page import facts_table
 from gcs.report.program import read_run, write_report
 from onboard.config.strict import ConfigError
@@ -222,7 +223,7 @@ def test_a_legend_of_sixty_vehicles_keeps_five_rows(tmp_path: Path) -> None:
 def test_the_figures_are_pictures_with_something_in_them(run: Path) -> None:
     pictures = sorted(p.name for p in (run / "figures").iterdir())
     assert pictures == sorted(f"{name}.png" for name in FIGURES)
-    assert sorted(NAMES) == sorted(FIGURES)
+    assert sorted(NAMES) == sorted([*FIGURES, "missed_capture"])  # which a captured evader's report has not
     for picture in (run / "figures").iterdir():
         pixels = matplotlib.image.imread(picture)
         assert pixels.shape[1] == 1800 or picture.name == "plan.png"
@@ -413,3 +414,15 @@ def test_a_fence_far_away_does_not_flatten_the_heights(values: Run) -> None:
     assert high > flown.max()
     assert np.ptp(flown) > 0.3 * (high - low)
     assert "ceiling, 1500 m, is far outside" in drawn.note
+
+
+def test_a_report_says_why_the_evader_was_not_captured(tmp_path: Path) -> None:
+    """A chase that is told to have ended without capture: the page draws the last chance, or says that none was."""
+    run = read_run(make_run(tmp_path / "run"))
+    assert run.outcome is not None
+    assert missed_capture(run) is None, "captured"
+    outcome = msgspec.structs.replace(run.outcome, verdict=messages.OutcomeResult.ESCAPED, captor=0)
+    drawing = missed_capture(run._replace(outcome=outcome))
+    assert drawing is not None
+    assert "could have met the evader on the way it flew" in drawing.note
+    assert "<svg" in svg(drawing)
