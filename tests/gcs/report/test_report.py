@@ -417,7 +417,7 @@ def test_a_fence_far_away_does_not_flatten_the_heights(values: Run) -> None:
 
 
 def test_a_report_says_why_the_evader_was_not_captured(tmp_path: Path) -> None:
-    """A chase that is told to have ended without capture: the page draws the last chance, or says that none was."""
+    """A chase that is told to have ended without capture: when the last chance was, or that none was."""
     run = read_run(make_run(tmp_path / "run"))
     assert run.outcome is not None
     assert missed_capture(run) is None, "captured"
