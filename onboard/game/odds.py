@@ -15,10 +15,11 @@ from typing import NamedTuple
 import msgspec
 
 from onboard.core.game.rules import Rules, Target
+from onboard.core.geometry.lead import lead
 from onboard.core.math.angles import wrap
 from onboard.core.math.vectors import ZERO, Vec, along, distance, sub, unit, yaw_of
 from onboard.core.strategy.team.closure import least_number, past, pitch_band, sight_cone, way_out
-from onboard.core.strategy.team.parts import front_line, lead, setting_out
+from onboard.core.strategy.team.parts import front_line, setting_out
 from onboard.core.strategy.team.plan_types import Heights, Margin, Member, Situation
 from onboard.core.strategy.team.ring import laid
 

@@ -7,6 +7,8 @@ were played stay in the folder `--parts`, so that a run that was stopped goes on
 from __future__ import annotations
 
 import os
+from hashlib import sha256
+from importlib.util import find_spec
 from math import atan2, cos, degrees, pi, sin
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -18,16 +20,16 @@ from numpy.typing import NDArray
 from onboard.core.game.advance import Conditions, Game, begin
 from onboard.core.game.referee import GameResult
 from onboard.core.game.rules import Control, Rules, Target
+from onboard.core.geometry.lead import lead
 from onboard.core.math.states import FREE, Vehicle
 from onboard.core.math.vectors import ZERO, Vec, scale, sub, unit
 from onboard.core.strategy.registry import EVADERS, PURSUERS
-from onboard.core.strategy.team.parts import lead
 from onboard.core.strategy.team.plan_types import Heights, Member
 from onboard.game.odds import NAMES, Outcome, Sheet, Table, engagement, features
 from onboard.game.scenario import Scenario
 from sim_bridge.campaign.compiled import campaign, starts_of
 from sim_bridge.campaign.plane_in_wind import drawn_wind
-from sim_bridge.campaign.spatial_draw import draw, kernel_of, spatial, typed
+from sim_bridge.campaign.spatial_draw import KERNELS, draw, kernel_of, sky_of, spatial
 from sim_bridge.campaign.spatial_game import Chosen
 from sim_bridge.plane_game.setup import conditions_of, vehicles_of
 
@@ -139,8 +141,7 @@ def space_part(games: int, count: int) -> Part:
         for number in range(len(EVADING)):
             d = draw(scenario, 0)
             log = np.zeros((d.steps, count + 1, 5))
-            crew = typed(d.players, True), typed(d.crew, True)
-            verdicts.append(play(d.start, Chosen(number, (0,) * count), *crew, d.tracks, log))
+            verdicts.append(play(d.start, Chosen(number, (0,) * count), sky_of(d, True), log))
         rows.append(space_features(scenario))
         ends.append([int(found.game.score.verdict) for found in verdicts])
     return Part(np.array(rows), np.array(ends))
@@ -285,12 +286,17 @@ def reliability(told: list[Judged], path: Path) -> None:
     figure.savefig(path, dpi=110)
 
 
+def sources() -> str:
+    """Sixteen hexadecimal digits of the kernels that play, and of this file."""
+    names = sorted({*KERNELS, __spec__.name if __spec__ else __name__})
+    texts = [Path(str(find_spec(name).origin)).read_bytes() for name in names]  # type: ignore[union-attr]
+    return sha256(b"\0".join(texts)).hexdigest()[:16]
+
+
 def main() -> None:
     """Play what is missing, fit, judge, write."""
     import argparse
     import platform
-
-    from sim_bridge.programs.campaigns.fingerprint import COMPUTED, sources
 
     parser = argparse.ArgumentParser(prog="python -m sim_bridge.campaign.odds", description=__doc__)
     parser.add_argument("--plane", type=int, default=3000, help="games of each number of pursuers")
@@ -305,7 +311,7 @@ def main() -> None:
         sheets[kind], judgement = sheet(kind, parts(given.parts, kind, games))
         told += judgement
     command = f"python -m sim_bridge.campaign.odds --plane {given.plane} --space {given.space}"
-    table = Table(command, sources(COMPUTED)[:16], PURSUING, sheets)
+    table = Table(command, sources(), PURSUING, sheets)
     given.table.write_bytes(msgspec.json.format(msgspec.json.encode(table), indent=1) + b"\n")
     where = f"{platform.machine()} ({os.cpu_count()} cores)"
     made = f"`{command}` on {where}, sources `{table.sources}`. Features: {', '.join(NAMES[1:])}."
