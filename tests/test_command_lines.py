@@ -192,6 +192,8 @@ def test_an_option_that_would_do_nothing_is_refused(command: str, said: str) -> 
     [
         ("gcs command ho", ["hold"]),
         ("sim-bridge fly one", ["one-on-one"]),
+        ("sim-bridge campaign one", ["one-on-one"]),
+        ("sim-bridge campaign five six --shard-g", ["--shard-games"]),
         ("onboard-agent --role pu", ["pursuer"]),
     ],
 )

@@ -26,6 +26,11 @@ class RunByDefault(TyperGroup):
             args = ["run", *args]
         return super().parse_args(ctx, args)
 
+    def shell_complete(self, ctx: Any, incomplete: str) -> list[Any]:
+        """Commands, and the scenarios that `run` takes."""
+        [scenarios] = [one for one in self.commands["run"].params if one.name == "scenarios"]
+        return [*super().shell_complete(ctx, incomplete), *scenarios.shell_complete(ctx, incomplete)]
+
 
 app = options.group(
     "Play many games: scenarios, strategies, swept values and seeds; `campaign SCENARIO` is `campaign run`.",
