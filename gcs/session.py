@@ -127,6 +127,11 @@ async def on_air(
         station.open()
         tasks = await stack.enter_async_context(asyncio.TaskGroup())
         running = [tasks.create_task(station.run(), name="station")]
+        if (listen or record) and (settings.neighbours.adsb or settings.neighbours.cot):
+            from gcs.neighbours.teller import teller
+
+            if (neighbours := await teller(station.picture, settings.neighbours, stack)) is not None:
+                running.append(tasks.create_task(neighbours.run(), name="neighbours"))
         if recorder is not None:
             running.append(tasks.create_task(recorder.run(), name="recorder"))
         try:

@@ -30,6 +30,13 @@ class RecordingSettings(StrictConfig, frozen=True):
     mavlink: tuple[str, ...] = ()  # links to log beside it, such as udpin://0.0.0.0:14550
 
 
+class NeighbourSettings(StrictConfig, frozen=True):
+    """Who else is told of the opponents' tracks; nobody by default."""
+
+    adsb: tuple[str, ...] = ()  # MAVLink links that get ADSB_VEHICLE, such as udpout://127.0.0.1:14550
+    cot: str = ""  # Cursor-on-Target to udp://HOST:PORT or tcp://HOST:PORT
+
+
 class PageSettings(StrictConfig, frozen=True):
     """The page for browsers: `gcs page`, or `gcs --page` beside the console."""
 
@@ -51,6 +58,7 @@ class Settings(StrictConfig, frozen=True):
     bus: BusSettings = BusSettings()
     recording: RecordingSettings = RecordingSettings()
     page: PageSettings = PageSettings()
+    neighbours: NeighbourSettings = NeighbourSettings()
     alerts: Thresholds = Thresholds()
 
     @property

@@ -1,4 +1,4 @@
-"""What the agent sends to an autopilot: typed values in SI and NED, and a builder for each command.
+"""What agents send to autopilots, and stations to others: typed values in SI and NED, builders of commands.
 
 `encoding` turns them into the wire's units, `frames.Sender` into frames.
 """
@@ -12,7 +12,7 @@ from onboard.core.math.vectors import Vec
 from onboard.wire.geodesy import Geodetic
 from onboard.wire.mavlink.dialect import dialect
 from onboard.wire.mavlink.ids import AUTOPILOT, CommandId
-from onboard.wire.mavlink.values import Timesync
+from onboard.wire.mavlink.values import AdsbVehicle, Timesync
 
 
 class Target(NamedTuple):
@@ -100,8 +100,15 @@ class SetupSigning(NamedTuple):
     stamp: int  # [10 µs since 2015] the autopilot takes nothing older
 
 
-Outgoing = OwnHeartbeat | CommandLong | CommandInt | SetpointMessage | ParamRead | Timesync | SetupSigning
-"""Everything that the agent sends. A `Timesync` with `answered_ns` 0 is a question."""
+class AdsbHeartbeat(NamedTuple):
+    """HEARTBEAT of a component that reports traffic."""
+
+
+Outgoing = (
+    OwnHeartbeat | CommandLong | CommandInt | SetpointMessage | ParamRead | Timesync | SetupSigning
+    | AdsbVehicle | AdsbHeartbeat
+)  # fmt: skip
+"""Everything that agents and stations send. A `Timesync` with `answered_ns` 0 is a question."""
 
 
 def set_message_interval(to: Target, message: int, rate_hz: float) -> CommandLong:

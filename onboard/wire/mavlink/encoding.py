@@ -1,4 +1,4 @@
-"""What the agent sends (`commands.Outgoing`) → messages of the dialect, in the wire's units.
+"""What agents and stations send (`commands.Outgoing`) → messages of the dialect, in the wire's units.
 
 Fields out of the wire's range wrap or are clamped, so that packing never fails. A target that is not finite
 is a fault of the caller (adapters send none): it is stopped here by an AssertionError.
@@ -7,11 +7,12 @@ is a fault of the caller (adapters send none): it is stopped here by an Assertio
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import cos, isfinite, sin
+from math import atan2, cos, degrees, isfinite, sin, sqrt
 from typing import Any
 
 from onboard.core.math.vectors import is_finite
 from onboard.wire.mavlink.commands import (
+    AdsbHeartbeat,
     CommandInt,
     CommandLong,
     Outgoing,
@@ -23,7 +24,7 @@ from onboard.wire.mavlink.commands import (
     VelocityTarget,
 )
 from onboard.wire.mavlink.dialect import MavMessage, dialect
-from onboard.wire.mavlink.values import Timesync
+from onboard.wire.mavlink.values import AdsbVehicle, Timesync
 
 VELOCITY_ONLY = 0x0DC7  # ArduPilot: ignore position, acceleration, yaw and yaw rate
 VELOCITY_AND_YAW = 0x09C7  # PX4, as MAVSDK sends it: ignore position, acceleration and yaw rate
@@ -144,6 +145,52 @@ def _setup_signing(m: SetupSigning) -> MavMessage:
     return _new(kind, m.to.system, m.to.component, list(m.key), m.stamp)
 
 
+def _adsb_heartbeat(_: AdsbHeartbeat) -> MavMessage:
+    return _new(
+        dialect.MAVLink_heartbeat_message,
+        type=dialect.MAV_TYPE_ADSB,
+        autopilot=dialect.MAV_AUTOPILOT_INVALID,
+        base_mode=0,
+        custom_mode=0,
+        system_status=dialect.MAV_STATE_ACTIVE,
+        mavlink_version=3,
+    )
+
+
+def _adsb_vehicle(m: AdsbVehicle) -> MavMessage:
+    """Course and speeds over ground; a height above mean sea level is what displays take as geometric."""
+    assert all(map(isfinite, (m.latitude_deg, m.longitude_deg, m.altitude_m))), m
+    assert is_finite(m.velocity), m
+    flags = dialect.ADSB_FLAGS_VALID_CALLSIGN
+    if m.position_valid:
+        flags |= dialect.ADSB_FLAGS_VALID_COORDS | dialect.ADSB_FLAGS_VALID_ALTITUDE
+    if m.velocity_valid:
+        flags |= dialect.ADSB_FLAGS_VALID_HEADING | dialect.ADSB_FLAGS_VALID_VELOCITY
+        flags |= dialect.ADSB_FLAGS_VERTICAL_VELOCITY_VALID
+    north, east, down = m.velocity
+    geometric = dialect.ADSB_ALTITUDE_TYPE_GEOMETRIC
+    return _new(
+        dialect.MAVLink_adsb_vehicle_message,
+        ICAO_address=m.icao & 0xFFFFFF,
+        lat=round(m.latitude_deg * 1e7),
+        lon=round(m.longitude_deg * 1e7),
+        altitude_type=geometric if m.geometric else dialect.ADSB_ALTITUDE_TYPE_PRESSURE_QNH,
+        altitude=_within(round(m.altitude_m * 1e3), -(1 << 31), (1 << 31) - 1),
+        heading=round(degrees(atan2(east, north)) * 100.0) % 36000,
+        hor_velocity=_within(round(100.0 * sqrt(north * north + east * east)), 0, 65535),
+        ver_velocity=_within(round(-100.0 * down), -32768, 32767),
+        callsign=m.callsign.encode("ascii", "replace")[:8],
+        emitter_type=dialect.ADSB_EMITTER_TYPE_UAV,
+        tslc=_within(round(m.age_s), 0, 255),
+        flags=flags,
+        squawk=0,
+    )
+
+
+def _within(value: int, low: int, high: int) -> int:
+    return max(low, min(high, value))
+
+
 _WRITERS: dict[type, Callable[[Any], MavMessage]] = {
     OwnHeartbeat: _heartbeat,
     CommandLong: _command_long,
@@ -154,4 +201,6 @@ _WRITERS: dict[type, Callable[[Any], MavMessage]] = {
     ParamRead: _param_read,
     Timesync: _timesync,
     SetupSigning: _setup_signing,
+    AdsbHeartbeat: _adsb_heartbeat,
+    AdsbVehicle: _adsb_vehicle,
 }

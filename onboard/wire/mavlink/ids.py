@@ -12,6 +12,7 @@ from onboard.wire.mavlink.dialect import HEADER_2, SIGNATURE, dialect
 AUTOPILOT: int = dialect.MAV_COMP_ID_AUTOPILOT1
 """Component id of an autopilot (1)."""
 COMPANION: int = dialect.MAV_COMP_ID_ONBOARD_COMPUTER
+ADSB: int = dialect.MAV_COMP_ID_ADSB
 """Component id of the agent, a companion computer (191)."""
 
 
