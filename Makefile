@@ -9,7 +9,7 @@ export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
-.PHONY: help install demo test check check-long check-pythons bench bench-page figures bench-predictor bench-gym check-aarch64 golden fuzz soak mutants mavproxy clean three lock
+.PHONY: help install demo test check check-long check-pythons bench bench-page bench-team figures bench-predictor bench-gym check-aarch64 golden fuzz soak mutants mavproxy clean three lock
 
 help:
 	@echo "make install   the environment only"
@@ -21,6 +21,7 @@ help:
 	@echo "make bench     benchmarks; results go to benchmarks/results/"
 	@echo "make bench-page  the page before a browser, with 200 and 1000 vehicles"
 	@echo "make figures   the committed tables of games, routes and predictors again, in one sweep"
+	@echo "make bench-team   teams of pursuers against the paper's rules, hours; resumable"
 	@echo "make bench-predictor   the comparison with LSTM and GRU"
 	@echo "make bench-gym   steps of learning environments, beside VMAS and PettingZoo's simple_tag"
 	@echo "make golden    what whole games, agents and campaigns do, against what was recorded of them"
@@ -86,6 +87,11 @@ $(TORCH)/.installed: locks/bench-predictor.in $(STAMP)
 	@$(TORCH)/bin/python -m pip --disable-pip-version-check --quiet --no-input install -r locks/bench-predictor.in
 	@$(BIN)/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))' > "$$($(TORCH)/bin/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/apollonius.pth"
 	@touch $@
+
+# Resumable: a game that has its row is not played again.
+bench-team: install
+	$(BIN)/python -m tests.benchmarks.team --seeds 200
+	$(BIN)/python -m tests.benchmarks.end_game --seeds 60
 
 bench-predictor: install $(TORCH)/.installed
 	$(TORCH)/bin/python -m tests.benchmarks.predictor

@@ -231,10 +231,16 @@ def scenario_new(
 
 
 @scenario_app.command(
-    "check", epilog="Examples: sim-bridge scenario check mine.toml | sim-bridge scenario check demo"
+    "check",
+    epilog="Examples: sim-bridge scenario check mine.toml | sim-bridge scenario check demo --figures out",
 )
-def scenario_check(scenario: ScenarioArgument) -> None:
-    """Check a scenario; print turn radii, free cones and the expected duration."""
+def scenario_check(
+    scenario: ScenarioArgument,
+    figures: Annotated[
+        Path | None, typer.Option(help="Folder for a picture of the start and the evader's band.")
+    ] = None,
+) -> None:
+    """Check a scenario; print turn radii, free cones, the evader's band and the expected duration."""
     from onboard.game.scenario import load
     from sim_bridge.programs.fly import demand_strategies
     from sim_bridge.programs.scenario_tools import check
@@ -243,6 +249,11 @@ def scenario_check(scenario: ScenarioArgument) -> None:
     found = load(file)
     demand_strategies(found, str(file))
     print(check(found))
+    if figures is not None:
+        from sim_bridge.programs.scenario_picture import draw_band
+
+        for path in draw_band(found, figures, file.stem):
+            print(f"drawn: {path}")
 
 
 @scenario_app.command(

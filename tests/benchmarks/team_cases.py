@@ -111,9 +111,7 @@ def near(scenario: Scenario) -> bool:
     """Whether a pursuer is nearer to the evader than is allowed at t0."""
     e = scenario.evader.start()
     least = nearest_of(scenario) - 3.0 * PLACE_OFF
-    return any(
-        (p.start().x - e.x) ** 2 + (p.start().y - e.y) ** 2 < least * least for p in scenario.pursuers
-    )
+    return any((p.start().x - e.x) ** 2 + (p.start().y - e.y) ** 2 < least * least for p in scenario.pursuers)
 
 
 def demand(name: str) -> Case:

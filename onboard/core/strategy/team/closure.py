@@ -176,9 +176,14 @@ def way_out_at(cones: tuple[Cone, ...], pitch: float) -> WayOut:
     return widest
 
 
+def cones_of(s: Situation) -> tuple[Cone, ...]:
+    """What each member closes, with the margin."""
+    return each(_cone, s.team, s)
+
+
 def way_out(s: Situation) -> WayOut:
     """The widest way out of the whole band. `closed` is exact: it is asked of the free ray of all cones."""
-    cones = each(_cone, s.team, s)
+    cones = cones_of(s)
     limits = s.evader_limits
     low = 0.0
     high = 0.0

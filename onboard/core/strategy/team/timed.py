@@ -85,13 +85,22 @@ def on_time(member: Member, s: Situation, bearing: float) -> bool:
 
 
 def timed_swing(member: Member, s: Situation, bearing: float) -> Swing:
-    """The bearings around a member's own that it can be at in time."""
-    if not on_time(member, s, bearing):
+    """The bearings that a member can be at in time: around its own, or else around the nearest such."""
+    start = 0.0
+    found = on_time(member, s, bearing)
+    k = 1
+    while not found and k * STEP < pi:
+        for side in (1.0, -1.0):
+            if not found and on_time(member, s, bearing + side * k * STEP):
+                found = True
+                start = side * k * STEP
+        k += 1
+    if not found:
         return Swing(0.0, 0.0, True)
-    low = 0.0
-    while low > -pi and on_time(member, s, bearing + low - STEP):
+    low = start
+    while low > start - pi and on_time(member, s, bearing + low - STEP):
         low -= STEP
-    high = 0.0
-    while high < pi and on_time(member, s, bearing + high + STEP):
+    high = start
+    while high < start + pi and on_time(member, s, bearing + high + STEP):
         high += STEP
     return Swing(low, high, False)
