@@ -3,8 +3,8 @@
     python -m tests.benchmarks.end_game --seeds 60
 
 Rings of five as in `tests.benchmarks.team`, random phase, pursuers by the team's strategy. Each cause is
-taken away alone: gusts, the sensor's noise, the supervisor's separation. The picture shows the first game that
-the separation decides, or else the first: the courses that the two nearest pursuers wanted and flew.
+taken away alone: gusts, the sensor's noise, the supervisor's separation. The picture shows the first game
+that the separation decides, or else the first: the courses that the two nearest pursuers wanted and flew.
 """
 
 from __future__ import annotations
