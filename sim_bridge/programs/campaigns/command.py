@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from onboard.config.names import file_name
 from onboard.config.strict import ConfigError
@@ -120,8 +120,10 @@ def named(names: tuple[str, ...], role: str) -> list[str]:
 
 
 def all_of(role: str) -> list[str]:
-    """The strategies of a role, those of other distributions included."""
-    own = list(EVADERS if role == "evader" else PURSUERS)
+    """The strategies of a role, each once by its first name, those of other distributions included."""
+    known: Mapping[str, Any] = EVADERS if role == "evader" else PURSUERS
+    first = {strategy.decide: name for name, strategy in reversed(list(known.items()))}
+    own = [name for name, strategy in known.items() if first[strategy.decide] == name]
     find: Callable[[str], object] = evader_strategy if role == "evader" else pursuer_strategy
     for name in plugin_names():
         try:

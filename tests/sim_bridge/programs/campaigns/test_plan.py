@@ -13,9 +13,10 @@ from hypothesis import strategies as st
 from scipy.stats import binomtest
 
 from onboard.config.strict import ConfigError
+from onboard.core.strategy.registry import EVADERS, PURSUERS
 from onboard.runtime.resources import configs
 from sim_bridge.programs.campaigns import fingerprint as prints
-from sim_bridge.programs.campaigns.command import Options, Played, plan_of, ways_of
+from sim_bridge.programs.campaigns.command import Options, Played, all_of, plan_of, ways_of
 from sim_bridge.programs.campaigns.plan import Plan, chosen
 from sim_bridge.programs.campaigns.run import part_of
 from sim_bridge.programs.campaigns.until import Until, enough, parse, wilson
@@ -152,6 +153,14 @@ def test_options_that_exclude_each_other_are_refused() -> None:
         plan_of(Options((Path("row01"), Path("row01"))), until=False)
     with pytest.raises(ConfigError, match="did you mean"):
         plan_of(Options((Path("row01"),), evaders=("papr",)), until=False)
+
+
+def test_all_strategies_are_each_once() -> None:
+    for role, known in (("evader", EVADERS), ("pursuer", PURSUERS)):
+        names = all_of(role)
+        played = [known[name].decide for name in names if name in known]
+        assert len(played) == len(set(played))
+        assert {strategy.decide for strategy in known.values()} == set(played)
 
 
 def test_a_wind_that_was_recorded_is_no_campaigns(tmp_path: Path) -> None:
