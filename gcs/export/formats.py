@@ -13,3 +13,5 @@ class Format(Enum):
     KML = "kml"
     GPX = "gpx"
     CZML = "czml"
+    GEOJSON = "geojson"
+    FOXGLOVE = "foxglove"  # a layout for its viewer of the recording

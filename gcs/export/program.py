@@ -8,11 +8,14 @@ from pathlib import Path
 
 from gcs.export import earth_files, table_files
 from gcs.export.formats import Format
+from gcs.export.foxglove_layout import as_foxglove
+from gcs.export.geojson import as_geojson
 from gcs.export.run_data import load
 from onboard.config.strict import ConfigError
 
 FOLDER = "export"
-WRITERS = {**table_files.WRITERS, **earth_files.WRITERS}
+OTHERS = {"geojson": as_geojson, "foxglove": as_foxglove}
+WRITERS = {**table_files.WRITERS, **earth_files.WRITERS, **OTHERS}
 
 
 def export(

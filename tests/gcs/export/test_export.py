@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import itertools
 import json
 import re
 import shutil
@@ -16,6 +17,7 @@ import numpy as np
 import pymap3d
 import pytest
 from lxml import etree
+from mcap.reader import make_reader
 
 import gcs
 from gcs.cli import app
@@ -89,9 +91,7 @@ def test_the_tables_hold_what_went_over_the_bus(data: RunData) -> None:
 def test_places_on_earth_agree_with_another_library(data: RunData) -> None:
     for name in ("states", "tracks"):
         table = getattr(data, name).of(1)
-        lat, lon, height = pymap3d.ned2geodetic(
-            table["north_m"], table["east_m"], table["down_m"], *ORIGIN
-        )
+        lat, lon, height = pymap3d.ned2geodetic(table["north_m"], table["east_m"], table["down_m"], *ORIGIN)
         assert np.abs(table["latitude_deg"] - lat).max() < 1e-7  # 1 cm
         assert np.abs(table["longitude_deg"] - lon).max() < 1e-7
         assert np.abs(table["altitude_m"] - height).max() < 0.05
@@ -210,6 +210,45 @@ def test_czml_moves_through_its_time(data: RunData, written: Path) -> None:
     assert np.allclose(sent[:, 1], data.setpoints.of(1)["v_north_m_s"], atol=1e-3)
 
 
+def test_geojson_has_lines_with_instants_and_a_fence_that_runs_against_the_clock(
+    data: RunData, run: Path, tmp_path: Path
+) -> None:
+    (path,) = export(run, [Format.GEOJSON], tmp_path, ())[0]
+    told = json.loads(path.read_text(encoding="utf-8"))
+    assert told["type"] == "FeatureCollection"
+    by_name = {feature["properties"]["name"]: feature for feature in told["features"]}
+    for id, name in ((1, "evader 1"), (2, "pursuer 2")):
+        feature = by_name[name]
+        assert feature["geometry"]["type"] == "LineString"
+        places = np.array(feature["geometry"]["coordinates"])
+        times = [ns(text) for text in feature["properties"]["times"]]
+        assert len(times) == len(places) > 50
+        north, east, _ = pymap3d.geodetic2ned(places[:, 1], places[:, 0], places[:, 2], *ORIGIN)
+        own = data.states.of(id)
+        assert np.abs(np.interp(times, own["stamp_ns"], own["north_m"]) - north).max() < 0.1
+        assert np.abs(np.interp(times, own["stamp_ns"], own["east_m"]) - east).max() < 0.1
+    (ring,) = by_name["fence"]["geometry"]["coordinates"]
+    assert ring[0] == ring[-1]
+    area = sum(x0 * y1 - x1 * y0 for (x0, y0, _), (x1, y1, _) in itertools.pairwise(np.array(ring) - ring[0]))
+    assert area > 0.0  # the right-hand rule of RFC 7946, 3.1.6
+    assert "target" in by_name
+
+
+def test_every_topic_of_the_viewers_layout_is_in_the_recording(run: Path, tmp_path: Path) -> None:
+    (path,) = export(run, [Format.FOXGLOVE], tmp_path, ())[0]
+    told = json.loads(path.read_text(encoding="utf-8"))
+    with (run / "recording.mcap").open("rb") as file:
+        there = {channel.topic for channel in make_reader(file).get_summary().channels.values()}
+    named = {word.split(".")[0] for word in re.findall(r'"(/[^"]*)"', path.read_text(encoding="utf-8"))}
+    assert {"/scene", "/log", "/position/1", "/location/2"} <= named
+    assert named <= there
+
+    def panels(node: object) -> set[str]:
+        return {node} if isinstance(node, str) else panels(node["first"]) | panels(node["second"])
+
+    assert panels(told["layout"]) == set(told["configById"])
+
+
 @pytest.mark.parametrize("name", ["states", "tracks"])
 def test_what_is_exported_predict_reads(run: Path, data: RunData, tmp_path: Path, name: str) -> None:
     (path,) = (p for p in export(run, [Format.CSV], tmp_path, (1,))[0] if p.stem == name)
@@ -235,7 +274,7 @@ def test_of_a_run_without_recording_the_logs_are_exported(data: RunData, tmp_pat
     mine, theirs = logged.states.of(1), data.states.of(1)
     place = np.interp(mine["stamp_ns"], theirs["stamp_ns"], theirs["north_m"])
     assert np.abs(mine["north_m"] - place).max() < 1.0
-    assert len(export(folder, list(Format)[2:], None, ())[0]) == 3
+    assert len(export(folder, list(Format)[2:], None, ())[0]) == 5
 
 
 def test_what_cannot_be_exported_is_said_in_one_line(run: Path, tmp_path: Path) -> None:

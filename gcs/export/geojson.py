@@ -1,0 +1,78 @@
+"""A run as GeoJSON (RFC 7946): ways as lines with their instants, target, fence.
+
+Places are longitude, latitude and the height above mean sea level, where the RFC means the ellipsoid: a run
+does not know the geoid.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from gcs.export.run_data import RunData
+from gcs.export.ways import iso, ruled, ways
+from onboard.core.math.vectors import Vec
+from onboard.wire.geodesy import Frame
+
+Feature = dict[str, Any]
+
+
+def as_geojson(data: RunData) -> dict[str, bytes]:
+    """One collection of features; `times` of a way has an instant for each of its places."""
+    found: list[Feature] = []
+    for way in ways(data):
+        places = [_place(s.longitude_deg, s.latitude_deg, s.altitude_m) for s in way.spots]
+        told = {
+            "name": way.name, "id": way.id, "kind": way.kind, "stroke": way.colour,
+            "times": [iso(spot.stamp_ns) for spot in way.spots],
+        }  # fmt: skip
+        shape = {"type": "LineString", "coordinates": places if len(places) > 1 else places * 2}
+        found.append(_feature(shape, told))
+    for band in ruled(data):
+        spot = band.spot
+        place = _place(spot.longitude_deg, spot.latitude_deg, spot.altitude_m)
+        told = {
+            "name": f"{data.called(band.id)}: {band.rule}", "id": band.id, "kind": "rule", "rule": band.rule,
+            "begin": iso(band.begin_ns), "end": iso(band.end_ns), "description": band.words,
+        }  # fmt: skip
+        found.append(_feature({"type": "Point", "coordinates": place}, told))
+    found += _still(data)
+    collection = {"type": "FeatureCollection", "features": found}
+    text = json.dumps(collection, ensure_ascii=False, separators=(",", ":"))
+    return {"run.geojson": text.encode()}
+
+
+def _still(data: RunData) -> list[Feature]:
+    """Target and fence, which do not move. The fence's ring runs against the clock, as the RFC asks."""
+    if data.origin is None:
+        return []
+    frame = Frame(data.origin.latitude_deg, data.origin.longitude_deg, data.origin.altitude_m)
+
+    def at(north: float, east: float, down: float) -> list[float]:
+        spot = frame.geodetic_from_ned(Vec(north, east, down))
+        return _place(spot.longitude_deg, spot.latitude_deg, spot.altitude_m)
+
+    found: list[Feature] = []
+    if data.target is not None:
+        place = {"type": "Point", "coordinates": at(*data.target)}
+        found.append(_feature(place, {"name": "target", "kind": "target"}))
+    fence = data.setup.fence if data.setup is not None else None
+    if fence is not None:
+        corners = list(fence.polygon)
+        around = zip(corners, [*corners[1:], corners[0]], strict=True)
+        twice = sum(n0 * e1 - n1 * e0 for (n0, e0), (n1, e1) in around)  # > 0: from north to east
+        ring = corners[::-1] if twice > 0.0 else corners
+        places = [at(north, east, -fence.altitude_max) for north, east in [*ring, ring[0]]]
+        told = {
+            "name": "fence", "kind": "fence", "floor_m": fence.altitude_min, "ceiling_m": fence.altitude_max,
+        }  # fmt: skip
+        found.append(_feature({"type": "Polygon", "coordinates": [places]}, told))
+    return found
+
+
+def _place(longitude: float, latitude: float, altitude: float) -> list[float]:
+    return [round(longitude, 8), round(latitude, 8), round(altitude, 3)]
+
+
+def _feature(shape: dict[str, Any], told: dict[str, Any]) -> Feature:
+    return {"type": "Feature", "geometry": shape, "properties": told}
