@@ -1,4 +1,4 @@
-"""`python -m tests.benchmarks.predictor.by_family [FOLDER] [--seeds N]`: the predictor against tuned filters.
+"""`python -m tests.benchmarks.predictor.by_family [FOLDER] [--seeds N] [--first SEED]`: beside tuned filters.
 
 50 m/s, 10 Hz, 3 m of noise, gusts of 1.5 m/s; seven families, among them the paper's evader. The filters
 (filterpy's) are tuned on seeds of their own. Writes predictor-by-family.md: errors by family against each
@@ -213,14 +213,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="python -m tests.benchmarks.predictor.by_family")
     parser.add_argument("folder", nargs="?", default="benchmarks/results", type=Path)
     parser.add_argument("--seeds", type=int, default=6, metavar="N", help="flights a family (6)")
+    parser.add_argument("--first", type=int, default=5000, metavar="SEED", help="of the flights (5000)")
     options = parser.parse_args(arguments)
     with ProcessPoolExecutor(2) as pool:
-        numbers, lines = compare(pool, range(5000, 5000 + options.seeds))
+        numbers, lines = compare(pool, range(options.first, options.first + options.seeds))
     tuned = "; ".join(f"{name} {', '.join(f'{n:g}' for n in found)}" for name, found in numbers.items())
     page = [
         "# The predictor beside tuned filters, by family",
         "",
-        f"`python -m tests.benchmarks.predictor.by_family --seeds {options.seeds}` on"
+        f"`python -m tests.benchmarks.predictor.by_family --seeds {options.seeds} --first {options.first}` on"
         f" {benchmark_record.machine()}. {SPEED:g} m/s, {RATE:g} Hz, {SIGMA:g} m of noise, gusts of 1.5 m/s"
         f" (none for {PAPER}); {options.seeds} flights a family, forecasts from the 40th second on, at"
         f" {' / '.join(f'{a:g}' for a in AHEAD)} s. Errors: mean horizontal distance. Filters: filterpy's,"
