@@ -148,7 +148,7 @@ class Viewpoint:
         else:
             later = memory.predict(known[0][0].id, now + setup.control.lookahead)
             sighting = _sighting(others[0], later, wind, setup)
-            team = self._team(seen, mates, wind, setup)._replace(part=self.part)
+            team = self._team(seen, mates, wind, setup)._replace(nose=level(own.nose, planar), part=self.part)
             if self._last is not None and now - self._last_at <= REMEMBERS:
                 rule, aim, time = self._last.rule, self._last.aim, self._last.time
                 team = team._replace(held=held_after(rule, aim, time, now - self._last_at, wind))

@@ -42,7 +42,7 @@ class TrackPilot:
 
         The own wind is the momentary estimate."""
         before = fresh() if memory is None else memory
-        step = follow(self.route, self._setting, before, Fix(time, *own))
+        step = follow(self.route, self._setting, before, Fix(time, own.position, own.velocity, own.wind))
         chosen = step.rule is not TrackRule.FIXED
         velocity = step.steering.velocity
         thought = PilotDecision(

@@ -51,6 +51,7 @@ class Own(NamedTuple):
     position: Vec  # [m; NED]
     velocity: Vec  # [m/s; ground]
     wind: Vec = ZERO  # [m/s; NED, where the air moves to]; ZERO for multicopters
+    nose: Vec = ZERO  # where a plane's nose points (unit); ZERO: not known, or a multicopter
 
 
 class TrackSample(NamedTuple):

@@ -49,6 +49,7 @@ KERNELS = (
     "onboard.core.math.angles",
     "onboard.core.strategy.denial",
     "onboard.core.strategy.evasion",
+    "onboard.core.strategy.own_air",
     "onboard.core.strategy.foresight",
     "onboard.core.strategy.evasive",
     "onboard.core.strategy.pursuit",

@@ -1,18 +1,20 @@
 """What agents know and what they decided, as rows of arrays, one a player, evader first. Kernel style.
 
-`states` (players, 8): position [m; NED], velocity over ground and wind as estimated [m/s]. `decided`
-(players, 8): course and pitch [rad], the sample (of the evader alone), rule, aim [m; NED] and time until
-then [s].
+`states` (players, 9): position [m; NED], velocity over ground and wind as estimated [m/s], course through
+the air [rad] of the last decision. `decided` (players, 8): course and pitch [rad], the sample (of the evader
+alone), rule, aim [m; NED] and time until then [s].
 """
 
 from __future__ import annotations
+
+from math import cos, sin, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
 from onboard.core.game.views import Held
 from onboard.core.math.states import Vehicle
-from onboard.core.math.vectors import Vec, pitch_of, yaw_of
+from onboard.core.math.vectors import TINY, Vec, clamp, pitch_of, yaw_of
 from onboard.core.strategy.choosing import held_after
 from onboard.core.strategy.knowledge import Decision
 from sim_bridge.campaign.plane_in_wind import Flown
@@ -30,6 +32,13 @@ def known(states: Array, index: int) -> Vehicle:
 def known_wind(states: Array, index: int) -> Vec:
     """The wind as player `index`'s autopilot estimates it [m/s; NED]."""
     return Vec(states[index, 6], states[index, 7], 0.0)
+
+
+def known_nose(states: Array, index: int, speed: float) -> Vec:
+    """Where the nose of player `index` points (unit), which flies at `speed` through the air [m/s]."""
+    up = clamp(-states[index, 5] / max(speed, TINY), -1.0, 1.0)
+    flat = sqrt(max(0.0, 1.0 - up * up))
+    return Vec(flat * cos(states[index, 8]), flat * sin(states[index, 8]), -up)
 
 
 def note(states: Array, index: int, flown: Flown) -> None:

@@ -38,7 +38,7 @@ from onboard.core.strategy.team.plan_types import Plan, Situation
 from sim_bridge.campaign.aboard import NOBODY, Aboard, Autopilot, Instant, aware, commanded, ordered
 from sim_bridge.campaign.envelope import Envelope
 from sim_bridge.campaign.lanes import packing
-from sim_bridge.campaign.ledger import held_by, known, known_wind, write_down
+from sim_bridge.campaign.ledger import held_by, known, known_nose, known_wind, write_down
 from sim_bridge.campaign.plane_in_wind import Climate, Flown, blown, fly, gust_at, gust_tick, wind_at
 from sim_bridge.campaign.team_play import Planning, Talk, arrived, posted, seat, stand_by
 from sim_bridge.campaign.tracks import Eye, Tracks, track_of
@@ -125,7 +125,7 @@ class Deciding(NamedTuple):
     """The pursuers when they decide (for `each`)."""
 
     start: Start
-    states: Array  # (players, 8), as their agents know: position [m; NED], ground velocity and wind [m/s]
+    states: Array  # (players, 9), as their agents know it: see `ledger`
     seen: Tracks
     now: int  # sample
     ways: Ways
@@ -181,7 +181,8 @@ def decide_pursuer(vehicle: Vehicle, index: int, team: Deciding) -> Decision:
     me = in_air(own, wind, vehicle.speed)
     held = held_by(team.decided, index + 1, control.dt, wind)
     part = team.talk.parts[index]
-    side = Team(mate, members, index, told(start.conditions.target, rules), held, part)
+    nose = known_nose(team.states, index + 1, vehicle.speed)
+    side = Team(mate, members, index, told(start.conditions.target, rules), held, part, nose)
     view = pursuer_view(me, game.pursuer_limits[index], sighting, side, control, rules)
     return team.ways.pursuer(view, team.ways.chosen.pursuers[index])
 

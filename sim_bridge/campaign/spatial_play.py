@@ -45,7 +45,7 @@ from sim_bridge.vehicle.flight.plane import Command, placed
 class Motion(NamedTuple):
     """How the vehicles of a game are moved; `sky` is whatever holds their states.
 
-    `here` (players, 8) are their places [m; NED], velocities over ground and winds as estimated [m/s] now.
+    `here` (players, 9) is what they know now, as `ledger` has it.
     """
 
     note: Callable[[Any, Array], None]  # write down `here`
@@ -92,9 +92,11 @@ def play(start: Start, ways: Ways, motion: Motion, sky: Any, log: Array) -> Spat
     """
     game, pace = start.game, start.pace
     count = len(start.game.pursuers) + 1
-    here = np.zeros((count, 8))
+    here = np.zeros((count, 9))
     decided = np.zeros((count, 8))
     motion.note(sky, here)
+    for i in range(count):
+        here[i, 8] = motion.course(sky, i)
     before = here.copy()
     talk = opened(no_plan(each(seat, game.pursuers, start.planning), 0.0))
     steps = 0
@@ -114,6 +116,9 @@ def play(start: Start, ways: Ways, motion: Motion, sky: Any, log: Array) -> Spat
                     log[steps, i, 5] = decided[i, 3]
             if sample % WIND_EVERY == 0:
                 motion.estimate(sky, start, here)
+            if (sample + 1) % pace.control == pace.decides:
+                for i in range(count):
+                    here[i, 8] = motion.course(sky, i)
             before[:] = here
             motion.move(sky, start, sample, here)
             sample += 1

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import cos, sin
 
 from onboard.autopilot.base import Telemetry
-from onboard.core.math.vectors import ZERO, Vec, along, sub
+from onboard.core.math.vectors import ZERO, Vec, along, direction, sub
 from onboard.core.safety.envelope import bounded
 from onboard.core.safety.policy import Envelope, Policy
 from onboard.pilot.approach import LEAD, WIDER, Approach, Place
@@ -14,6 +14,7 @@ from onboard.wire.bus.messages import Member
 
 WIND_FRESH_S = 10.0
 SPARE = 1.05  # times its least airspeed is as slow as a plane flies to its place
+NOSE_FRESH_S = 0.5
 CARRIED_S = 0.5  # a position is carried forward by its velocity for no longer
 
 
@@ -21,7 +22,10 @@ def own_state(now: float, t: Telemetry, *, hovers: bool) -> Own:
     """The own state at `now` [s, monotonic]: its last position carried forward, and for planes the wind."""
     wind = ZERO if hovers or now - t.wind_at >= WIND_FRESH_S else t.wind
     position = along(t.position, t.velocity, min(max(0.0, now - t.position_at), CARRIED_S))
-    return Own(position, t.velocity, wind)
+    nose = ZERO
+    if not hovers and now - t.attitude_at < NOSE_FRESH_S:
+        nose = direction(t.pitch, t.yaw)
+    return Own(position, t.velocity, wind, nose)
 
 
 def by_itself(own: Own, envelope: Envelope) -> Vec:

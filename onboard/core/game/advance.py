@@ -105,7 +105,7 @@ def team_of(own: Vehicle, index: int, pursuers: tuple[Vehicle, ...], conditions:
     if rules.separation > 0.0:
         mate = nearest_mate(own.position, positions(pursuers), index)
     held = Held(False, False, mate.position, 0.0)
-    return Team(mate, pursuers, index, told(conditions.target, rules), held, IDLE)
+    return Team(mate, pursuers, index, told(conditions.target, rules), held, IDLE, ZERO)
 
 
 def decide_one(own: Vehicle, index: int, field: Field) -> Decision:

@@ -66,6 +66,7 @@ class Team(NamedTuple):
     target: Target  # the evader's, where the rules let the pursuers know it
     held: Held = NOTHING_HELD
     part: Assignment = IDLE  # its own in the team's plan that it last heard
+    nose: Vec = ZERO  # where its own nose points (unit); ZERO: not known, or it flies where it does not point
 
 
 class PursuerView(NamedTuple):
@@ -85,6 +86,7 @@ class PursuerView(NamedTuple):
     target: Target = NO_TARGET  # the evader's, where the pursuers know it
     held: Held = NOTHING_HELD  # nothing where nobody remembers: in the plane game
     part: Assignment = IDLE  # its own in the team's plan that it last heard
+    nose: Vec = ZERO  # where its own nose points (unit); ZERO: not known
 
 
 def level(v: Vec, planar: bool) -> Vec:
@@ -195,4 +197,5 @@ def pursuer_view(
         team.target,
         team.held,
         team.part,
+        team.nose,
     )

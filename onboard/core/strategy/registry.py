@@ -8,6 +8,7 @@ from onboard.core.game.advance import EvaderStrategy, PursuerStrategy
 from onboard.core.game.views import EvaderView, PursuerView
 from onboard.core.strategy import choosing, evasion, evasive, pursuit
 from onboard.core.strategy.knowledge import Rule
+from onboard.core.strategy.own_air import in_own_air
 from onboard.core.strategy.team import flying
 
 
@@ -52,6 +53,14 @@ PURSUERS: dict[str, NamedPursuer] = {
     ),
     "parallel-pursuit": PARALLEL,
     "constant-bearing": PARALLEL._replace(words="the same by its older name"),
+    "own-air": NamedPursuer(
+        in_own_air(pursuit.pursuer_parallel),
+        pursuit.PURSUER_PARALLEL,
+        "parallel pursuit in the air around the vehicle: its gusts are taken out",
+    ),
+    "paper-own-air": NamedPursuer(
+        in_own_air(pursuit.pursuer), pursuit.PURSUER, "paper in the air around the vehicle"
+    ),
     "goalkeeper": NamedPursuer(
         pursuit.pursuer_keeper, pursuit.PURSUER_KEEPER, "one keeps a known target, the others chase"
     ),
