@@ -15,13 +15,14 @@ from onboard.game.scenario import Scenario, load
 from onboard.runtime.resources import SCENARIOS, shipped_file
 from sim_bridge.campaign.spatial_campaign import play_drawn
 from sim_bridge.campaign.spatial_draw import Spread, draw, drawn_scenario
+from sim_bridge.gym.batch import first_seed
 from sim_bridge.gym.games import games_of
 from sim_bridge.gym.single import GameEnv
 from sim_bridge.gym.task import Wish, make_task
 
 
-def short(horizon: float) -> Scenario:
-    found = load(shipped_file(Path("spatial/two"), SCENARIOS))
+def short(horizon: float, name: str = "spatial/two") -> Scenario:
+    found = load(shipped_file(Path(name), SCENARIOS))
     return replace(found, parameters=replace(found.parameters, horizon=horizon))
 
 
@@ -72,16 +73,21 @@ def test_what_is_not_flown_is_refused() -> None:
 
 @pytest.mark.long
 def test_compiled_flights_are_the_interpreted_ones_and_ended_games_begin_anew() -> None:
-    task = make_task(Wish(scenario=short(2.0), motion="aircraft", actions="velocity", axes="sight"))
-    one, two = games_of(task, 3, workers=2), games_of(task, 3, compiled=False)
+    scenario = short(1.5, "spatial/five")
+    task = make_task(
+        Wish(scenario=scenario, motion="aircraft", learn="all", actions="velocity", axes="sight")
+    )
+    one, two = games_of(task, 2, workers=2), games_of(task, 2, compiled=False)
     one.reset(4)
     two.reset(4)
     rng = np.random.default_rng(2)
-    for _ in range(60):
-        one.arrays.pursuers_act[:] = two.arrays.pursuers_act[:] = rng.uniform(-1.0, 1.0, (3, 2, 3))
+    for _ in range(40):
+        for name in ("evader_acts", "pursuers_act"):
+            acts = rng.uniform(-1.0, 1.0, getattr(one.arrays, name).shape)
+            getattr(one.arrays, name)[:] = getattr(two.arrays, name)[:] = acts
         one.step()
         two.step()
         np.testing.assert_array_equal(one.arrays.verdicts, two.arrays.verdicts)
-    assert one.seeds.tolist() == two.seeds.tolist()
+    assert one.seeds.tolist() == two.seeds.tolist() != (first_seed(4) + np.arange(2)).tolist()
     np.testing.assert_allclose(one.places, two.places, atol=1e-6)
     np.testing.assert_allclose(one.arrays.pursuers_see, two.arrays.pursuers_see, atol=1e-2)
