@@ -87,8 +87,10 @@ def test_one_too_few_is_open_from_the_beginning_and_does_not_close() -> None:
 
 @pytest.mark.parametrize("n", [5, 6])
 def test_aircraft_tighten_a_wide_ring_on_an_evader_that_flies_on(n: int) -> None:
-    """4.5 deg/s at 50 against 40 m/s, circles of 509 m. An evader that turns by 57° when it is half way opens a
-    ring of six: at equal turn rates nothing of the pursuers answers that."""
+    """4.5 deg/s at 50 against 40 m/s, circles of 509 m.
+
+    An evader that turns by 57° on its way opens a ring of six: at equal turn rates nothing answers that.
+    """
     rate = radians(4.5)
     for courses in ([0.0], [0.2], [pi / n]):
         told = tightened(n, 2500.0, (50.0, 40.0), courses, rate)
