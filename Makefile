@@ -91,6 +91,8 @@ $(TORCH)/.installed: locks/bench-predictor.in $(STAMP)
 # Resumable: a game that has its row is not played again.
 bench-team: install
 	$(BIN)/python -m tests.benchmarks.team --seeds 200
+	$(BIN)/python -m tests.benchmarks.team_plane
+	$(BIN)/python -m tests.benchmarks.own_air --seeds 200
 	$(BIN)/python -m tests.benchmarks.end_game --seeds 60
 
 bench-predictor: install $(TORCH)/.installed

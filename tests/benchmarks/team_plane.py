@@ -1,6 +1,6 @@
 """Pursuers on the plane, the same games for all of them: who captures, who denies, what staging gives.
 
-    python -m tests.benchmarks.team_plane --games 1000 --rings 500 --staged 300
+    python -m tests.benchmarks.team_plane --games 1000 --rings 500 --staged 1000
 
 Five pursuers against the paper's evader at 5 m/s, R = 2 m, ρ = 4 m, 300 s in steps of 0.1 s. Nobody begins
 nearer to the evader than 10ρ. Random: pursuers of 3 to 4.5 m/s 40 to 120 m away, anywhere around it. Ring:
@@ -171,7 +171,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m tests.benchmarks.team_plane", description=__doc__)
     parser.add_argument("--games", type=int, default=1000)
     parser.add_argument("--rings", type=int, default=500)
-    parser.add_argument("--staged", type=int, default=300)
+    parser.add_argument("--staged", type=int, default=1000)
     parser.add_argument("--out", type=Path, default=Path("benchmarks/results/team-plane.md"))
     given = parser.parse_args()
     given.out.write_text(page(given.games, given.rings, given.staged), encoding="utf-8")
