@@ -28,6 +28,7 @@ from onboard.core.strategy.team.plan_types import (
 from onboard.core.strategy.team.ring import closing, staged
 
 KEEP = 0.09  # [rad] a ring that was closed counts as closed until it is open by this
+WIDE = 0.5  # [rad] a band that is open by less may close in the chase: nobody leaves it for the target
 
 
 def no_plan(team: tuple[Member, ...], now: float) -> Plan:
@@ -50,7 +51,7 @@ def engaged(s: Situation, previous: Plan) -> Plan:
         band = Band(True, way.gap, way.bearing, way.pitch, NOBODY, s.now)
         return Plan(s.now, each(_chase, s.team, _Shared(s, Reason.ENCLOSED)), band)
     band = closing(s, way)
-    if s.target.exists:
+    if s.target.exists and way.gap > WIDE:
         return Plan(s.now, guarded(s, previous), band)
     return Plan(s.now, each(_chase, s.team, _Shared(s, Reason.NO_GAP_IN_REACH)), band)
 
