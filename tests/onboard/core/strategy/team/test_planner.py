@@ -103,7 +103,7 @@ def test_an_open_band_says_where_who_and_when() -> None:
 
 
 def test_posts_go_to_who_is_there_first_and_stay_with_them() -> None:
-    s = situation([0.3, -0.3, 2.5, -2.5], 3000.0, 120.0)
+    s = situation([0.3, -0.3, 3.0, -3.0], 3000.0, 120.0)
     made = plan(s, no_plan(s.team, 120.0))
     assert sorted(part.role for part in made.assignments[:2]) == [Role.GOALKEEPER, Role.BLOCKER]
     assert [part.role for part in made.assignments[2:]] == [Role.CHASER] * 2
@@ -111,3 +111,10 @@ def test_posts_go_to_who_is_there_first_and_stay_with_them() -> None:
     goal = s.target.position
     assert distance(keeper.aim, HEIGHT) < distance(goal, HEIGHT)
     assert plan(s._replace(now=120.5), made).assignments[0].role == made.assignments[0].role
+
+
+def test_nobody_leaves_a_band_for_the_target_that_is_open_by_little() -> None:
+    s = situation([0.3, -0.3, 2.5, -2.5], 3000.0, 120.0)
+    made = plan(s, no_plan(s.team, 120.0))
+    assert 0.0 < made.band.gap < 0.5
+    assert {part.role for part in made.assignments} == {Role.CHASER}
