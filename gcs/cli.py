@@ -145,6 +145,28 @@ def replay(
     return programs.replay(run, options.settings().alerts, plain=bool(options.plain))
 
 
+@app.command(epilog="Examples: gcs assess mine.toml | gcs assess spatial/ring-5 | gcs assess")
+@takes(*BUS)
+def assess(
+    options: Options,
+    scenario: Annotated[
+        Path | None,
+        typer.Argument(
+            help="Scenario file or name; none: the game on the bus.", autocompletion=shipped(SCENARIOS)
+        ),
+    ] = None,
+    wait: Annotated[
+        float, value(ListenTime, "--wait", words="How long to listen to the bus [s].", unit="S")
+    ] = 1.5,
+) -> int:
+    """Go or no-go: can this team win from here, how likely, and what would change it; exit 1 for a no-go."""
+    from gcs import programs
+
+    if scenario is not None:
+        return programs.assess_file(shipped_file(scenario, SCENARIOS))
+    return _play(programs.assess_bus(options.settings(), wait_s=wait))
+
+
 @app.command(epilog="Example: gcs report runs/2026-…")
 @takes("config")
 def report(options: Options, run: RunArgument) -> int:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from gcs.console.plain_lines import PlainLines
 from gcs.console.plain_lines import status as status_lines
 from gcs.picture.alert_rules import Thresholds
+from gcs.picture.assessment import engagement_in
 from gcs.picture.json_document import to_json
 from gcs.picture.terminal_text import printable
 from gcs.picture.values import Picture
@@ -21,7 +22,8 @@ from gcs.settings import Settings
 from onboard.config.strict import ConfigError
 from onboard.config.version import version
 from onboard.core.math.constants import NS_PER_S
-from onboard.game.scenario import Scenario
+from onboard.game import go_or_no_go
+from onboard.game.scenario import Scenario, load
 from onboard.runtime.bus_security import Lock
 from onboard.runtime.clock import RealClock
 from onboard.runtime.progress import Progress
@@ -114,6 +116,29 @@ async def status(settings: Settings, *, json: bool, wait_s: float) -> int:
             print(f"gcs: nobody heard in game {settings.game}: {session.bus.status()}", file=sys.stderr)
             return 1
     return 0
+
+
+def assess_file(path: Path) -> int:
+    """Print the odds of a scenario; exit code 1 where they say no-go."""
+    return _told(go_or_no_go.lines(go_or_no_go.engagement_of(load(path))))
+
+
+async def assess_bus(settings: Settings, *, wait_s: float) -> int:
+    """Print the odds of the game on the bus, after listening for `wait_s`; exit code 1 for a no-go."""
+    async with on_air(settings, listen=False, record=False) as session:
+        await asyncio.sleep(wait_s)
+        picture = session.picture()
+        found = engagement_in(picture.game, picture.vehicles, picture.tracks)
+        if found is None:
+            print(f"gcs: no evader with pursuers heard in game {settings.game}: {session.bus.status()}",
+                  file=sys.stderr)  # fmt: skip
+            return 1
+    return _told(go_or_no_go.lines(found))
+
+
+def _told(lines: list[str]) -> int:
+    print("\n".join(map(printable, lines)), flush=True)
+    return 1 if lines[0].startswith("no-go") else 0
 
 
 async def check_crowd(settings: Settings, scenario: Scenario, wait_s: float) -> int:

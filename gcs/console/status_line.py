@@ -47,6 +47,9 @@ def _game(picture: Picture) -> list[str]:
     elif picture.assessment is not None:
         found = picture.assessment
         gap = "encircled" if found.encircled else f"gap {degrees(found.largest_gap):.0f}°"
+        if found.captured is not None:
+            p, low, high = (100.0 * share for share in found.captured)
+            gap += f", capture {p:.0f} % ({low:.0f}–{high:.0f})"
         parts.append(f"{gap}{', target denied' if found.target_denied else ''}")
     if game.plan is not None:
         parts.append(band_in_words(game.plan))

@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+from msgspec.structs import astuple
+
 from gcs.picture.values import AssessmentView, GameView, Presence, ProspectView, TrackView, VehicleView
+from onboard.core.game.rules import NO_TARGET, Rules, Target
 from onboard.core.geometry import assessment
-from onboard.core.math.states import Vehicle
+from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import ZERO, Vec, distance, sub
-from onboard.wire.bus.messages import Member, Role
+from onboard.core.strategy.registry import DEFAULT
+from onboard.core.strategy.team.plan_types import Heights, Member, Situation
+from onboard.game.odds import chances, engagement
+from onboard.wire.bus.messages import Member as Declared
+from onboard.wire.bus.messages import Role
 
 MOST_IN_SPACE = 12  # pursuers: the largest free cap costs their number to the fourth power
 OLD_S = 2.0  # positions older than this are no ground for a judgement
@@ -20,6 +27,44 @@ def assess(
     The evader's own state counts, and its track where there is none; speeds are the declared ones. In
     space only the twelve nearest pursuers are judged.
     """
+    setup = game.setup
+    known = _players(game, vehicles, tracks)
+    if setup is None or known is None:
+        return None
+    evader, pursuers = known
+    if not setup.rules.planar and len(pursuers) > MOST_IN_SPACE:
+        place = evader.position
+        pursuers = sorted(pursuers, key=lambda p: distance(p[1].position, place))[:MOST_IN_SPACE]
+    target = ZERO if game.target is None else Vec(*game.target)
+    mates = tuple(vehicle for _, vehicle in pursuers)
+    found = assessment.assess(
+        evader, mates, setup.rules.rho, game.target is not None, target, setup.rules.planar
+    )
+    return AssessmentView(
+        encircled=found.encircled,
+        gaps=tuple((gap.start, gap.width) for gap in found.gaps),
+        largest_gap=found.largest_gap if setup.rules.planar else found.cap.radius * 2.0,
+        target_denied=found.target_denied,
+        prospects=tuple(
+            ProspectView(id=i, intercepts=p.intercepts, time_s=p.time, denies_target=p.denies_target)
+            for (i, _), p in zip(pursuers, found.prospects, strict=True)
+        ),
+        captured=_chance(engagement_in(game, vehicles, tracks)),
+    )
+
+
+def _chance(situation: Situation | None) -> tuple[float, float, float] | None:
+    """The chance of capture against the evader of the paper; None where the table does not reach."""
+    if situation is None or len(situation.team) > MOST_IN_SPACE:
+        return None
+    found = chances(situation, DEFAULT)
+    return None if found is None else (found.captured.p, found.captured.low, found.captured.high)
+
+
+def _players(
+    game: GameView, vehicles: tuple[VehicleView, ...], tracks: tuple[TrackView, ...]
+) -> tuple[Vehicle, list[tuple[int, Vehicle]]] | None:
+    """The evader, and the pursuers with their ids, as far as they are known now."""
     setup = game.setup
     if setup is None:
         return None
@@ -38,27 +83,31 @@ def assess(
                 evader = Vehicle(Vec(*track.position), Vec(*track.velocity), member.speed)
     if evader is None or not pursuers:
         return None
-    if not setup.rules.planar and len(pursuers) > MOST_IN_SPACE:
-        place = evader.position
-        pursuers = sorted(pursuers, key=lambda p: distance(p[1].position, place))[:MOST_IN_SPACE]
-    target = ZERO if game.target is None else Vec(*game.target)
-    mates = tuple(vehicle for _, vehicle in pursuers)
-    found = assessment.assess(
-        evader, mates, setup.rules.rho, game.target is not None, target, setup.rules.planar
-    )
-    return AssessmentView(
-        encircled=found.encircled,
-        gaps=tuple((gap.start, gap.width) for gap in found.gaps),
-        largest_gap=found.largest_gap if setup.rules.planar else found.cap.radius * 2.0,
-        target_denied=found.target_denied,
-        prospects=tuple(
-            ProspectView(id=i, intercepts=p.intercepts, time_s=p.time, denies_target=p.denies_target)
-            for (i, _), p in zip(pursuers, found.prospects, strict=True)
-        ),
-    )
+    return evader, pursuers
 
 
-def _own(view: VehicleView, member: Member) -> Vehicle:
+def engagement_in(
+    game: GameView, vehicles: tuple[VehicleView, ...], tracks: tuple[TrackView, ...]
+) -> Situation | None:
+    """The situation as the odds need it, or None while the evader or all pursuers are unknown."""
+    setup = game.setup
+    found = _players(game, vehicles, tracks)
+    if setup is None or found is None:
+        return None
+    evader, team = found
+    limits = {member.id: VehicleLimits(*astuple(member.limits)) for member in setup.roster}
+    evading = next(member.id for member in setup.roster if member.role is Role.EVADER)
+    target = NO_TARGET if game.target is None else Target(True, Vec(*game.target))
+    fence = setup.fence
+    heights = Heights() if fence is None else Heights(fence.altitude_min, fence.altitude_max)
+    return engagement(
+        Member(evader, limits[evading], True),
+        tuple(Member(vehicle, limits[id], True) for id, vehicle in team),
+        target, Rules(*astuple(setup.rules)), heights, setup.track_sigma,
+    )  # fmt: skip
+
+
+def _own(view: VehicleView, member: Declared) -> Vehicle:
     assert view.state is not None
     air = sub(Vec(*view.state.velocity), Vec(*view.state.wind))
     return Vehicle(Vec(*view.state.position), air, member.speed)

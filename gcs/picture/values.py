@@ -256,6 +256,7 @@ class AssessmentView(Value, frozen=True):
     largest_gap: float  # in the plane: its width; in space: of the largest free cap [rad]
     target_denied: bool
     prospects: tuple[ProspectView, ...]
+    captured: tuple[float, float, float] | None = None  # chance, with its 95 % interval
 
 
 class Picture(Value, frozen=True):

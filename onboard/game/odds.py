@@ -15,6 +15,7 @@ from typing import NamedTuple
 import msgspec
 
 from onboard.core.game.rules import Rules, Target
+from onboard.core.game.views import level
 from onboard.core.geometry.lead import lead
 from onboard.core.math.angles import wrap
 from onboard.core.math.vectors import ZERO, Vec, along, distance, sub, unit, yaw_of
@@ -104,6 +105,7 @@ def engagement(
     its simple motion has them; in space with DELAY and the tracks' `sigma` [m]."""
     if rules.planar:
         evader, team = _free(evader), tuple(_free(member) for member in team)
+        target = target._replace(position=level(target.position, True))
     margin = Margin() if rules.planar else Margin(DELAY, sigma)
     own = evader.vehicle
     return Situation(
@@ -112,7 +114,10 @@ def engagement(
 
 
 def _free(member: Member) -> Member:
-    return member._replace(limits=member.limits._replace(turn_rate=0.0))
+    """As the plane's simple motion has it: level, turning at once."""
+    own = member.vehicle
+    flat = own._replace(position=level(own.position, True), velocity=level(own.velocity, True))
+    return member._replace(vehicle=flat, limits=member.limits._replace(turn_rate=0.0))
 
 
 @cache

@@ -37,7 +37,7 @@ EVADING = ("paper", "evasive")
 PURSUING = "constant-bearing"
 HELD_OUT = 4  # every so-manieth game judges, the others fit
 RIDGE = 1.0  # of the standardised weights
-SIZES = {"plane": (3, 4, 5, 6, 7), "space": (4, 5, 6)}
+SIZES = {"plane": (3, 4, 5, 6), "space": (4, 5, 6)}
 PLANE = Rules(R=2.0, rho=4.0, horizon=300.0, planar=True)
 
 Array = NDArray[np.float64]
@@ -257,9 +257,9 @@ def reliability(told: list[Judged], path: Path) -> None:
     from matplotlib.figure import Figure
     from scipy.stats import binomtest
 
-    figure = Figure(figsize=(9.0, 8.4), layout="constrained")
+    figure = Figure(figsize=(9.0, 4.3 * len(SIZES)), layout="constrained")
     FigureCanvasAgg(figure)
-    places: Any = figure.subplots(2, 2, sharex=True, sharey=True)
+    places: Any = figure.subplots(len(SIZES), 2, squeeze=False, sharex=True, sharey=True)
     for axes, (kind, evader) in zip(
         places.flat, [(k, e) for k in SIZES for e in EVADING], strict=True
     ):
@@ -299,15 +299,16 @@ def main() -> None:
     import platform
 
     parser = argparse.ArgumentParser(prog="python -m sim_bridge.campaign.odds", description=__doc__)
-    parser.add_argument("--plane", type=int, default=3000, help="games of each number of pursuers")
-    parser.add_argument("--space", type=int, default=800, help="likewise, of aircraft")
+    parser.add_argument("--plane", type=int, default=1200, help="games of each number of pursuers")
+    parser.add_argument("--space", type=int, default=300, help="likewise, of aircraft")
     parser.add_argument("--parts", type=Path, default=Path(".odds"), help="folder of played games")
     parser.add_argument("--table", type=Path, default=Path("onboard/game/odds.json"))
     parser.add_argument("--page", type=Path, default=Path("benchmarks/results/odds.md"))
     parser.add_argument("--figure", type=Path, default=Path("docs/pictures/odds.png"))
     given = parser.parse_args()
     sheets, told = {}, []
-    for kind, games in (("plane", given.plane), ("space", given.space)):
+    for kind in SIZES:
+        games = {"plane": given.plane, "space": given.space}[kind]
         sheets[kind], judgement = sheet(kind, parts(given.parts, kind, games))
         told += judgement
     command = f"python -m sim_bridge.campaign.odds --plane {given.plane} --space {given.space}"

@@ -10,6 +10,8 @@ from onboard.core.geometry.assessment import assess
 from onboard.core.geometry.cones import blocked_cones
 from onboard.core.math.vectors import ZERO, distance
 from onboard.core.safety.fence import inside
+from onboard.game.go_or_no_go import engagement_of
+from onboard.game.go_or_no_go import lines as odds_lines
 from onboard.game.scenario import Scenario
 from sim_bridge.plane_game.setup import conditions_of, turn_rate_of, vehicles_of
 from sim_bridge.programs.scenario_band import band_lines
@@ -120,7 +122,8 @@ def check(scenario: Scenario) -> str:
                 f"   {meets:>10s}  {denies}"
             )
         lines.append(row)
-    lines += ["", *_freedom(scenario), *band_lines(scenario), *_duration(scenario)]
+    lines += ["", *odds_lines(engagement_of(scenario)), *_freedom(scenario)]
+    lines += [*band_lines(scenario), *_duration(scenario)]
     return "\n".join(lines)
 
 
