@@ -8,12 +8,12 @@ from gcs.picture.values import AssessmentView, GameView, Presence, ProspectView,
 from onboard.core.game.rules import NO_TARGET, Rules, Target
 from onboard.core.geometry import assessment
 from onboard.core.math.states import Vehicle, VehicleLimits
-from onboard.core.math.vectors import ZERO, Vec, distance, sub
+from onboard.core.math.vectors import ZERO, Vec, direction, distance, scale, sub
 from onboard.core.strategy.registry import DEFAULT
 from onboard.core.strategy.team.plan_types import Heights, Member, Situation
 from onboard.game.odds import chances, engagement
 from onboard.wire.bus.messages import Member as Declared
-from onboard.wire.bus.messages import Role
+from onboard.wire.bus.messages import Role, Setup
 
 MOST_IN_SPACE = 12  # pursuers: the largest free cap costs their number to the fourth power
 OLD_S = 2.0  # positions older than this are no ground for a judgement
@@ -89,12 +89,11 @@ def _players(
 def engagement_in(
     game: GameView, vehicles: tuple[VehicleView, ...], tracks: tuple[TrackView, ...]
 ) -> Situation | None:
-    """The situation as the odds need it, or None while the evader or all pursuers are unknown."""
+    """The situation as the odds need it: as it is heard, else of the setup's places; None without a setup."""
     setup = game.setup
-    found = _players(game, vehicles, tracks)
-    if setup is None or found is None:
+    if setup is None or {member.role for member in setup.roster} < {Role.EVADER, Role.PURSUER}:
         return None
-    evader, team = found
+    evader, team = _players(game, vehicles, tracks) or _placed(setup)
     limits = {member.id: VehicleLimits(*astuple(member.limits)) for member in setup.roster}
     evading = next(member.id for member in setup.roster if member.role is Role.EVADER)
     target = NO_TARGET if game.target is None else Target(True, Vec(*game.target))
@@ -105,6 +104,16 @@ def engagement_in(
         tuple(Member(vehicle, limits[id], True) for id, vehicle in team),
         target, Rules(*astuple(setup.rules)), heights, setup.track_sigma,
     )  # fmt: skip
+
+
+def _placed(setup: Setup) -> tuple[Vehicle, list[tuple[int, Vehicle]]]:
+    """Evader and pursuers at the places and on the headings of the setup."""
+    at = {
+        m.id: Vehicle(Vec(*m.start), scale(direction(0.0, m.heading or 0.0), m.speed), m.speed)
+        for m in setup.roster
+    }
+    evader = next(m.id for m in setup.roster if m.role is Role.EVADER)
+    return at[evader], [(m.id, at[m.id]) for m in setup.roster if m.role is Role.PURSUER]
 
 
 def _own(view: VehicleView, member: Declared) -> Vehicle:

@@ -37,7 +37,7 @@ EVADING = ("paper", "evasive")
 PURSUING = "constant-bearing"
 HELD_OUT = 4  # every so-manieth game judges, the others fit
 RIDGE = 1.0  # of the standardised weights
-SIZES = {"plane": (3, 4, 5, 6), "space": (4, 5, 6)}
+SIZES = {"plane": (3, 4, 5, 6, 7), "space": (4, 5, 6)}
 PLANE = Rules(R=2.0, rho=4.0, horizon=300.0, planar=True)
 
 Array = NDArray[np.float64]
