@@ -131,9 +131,12 @@ def normals(words: NDArray[np.int64]) -> NDArray[np.float64]:
 class Stream:
     """The numbers of one key, `width` words a step, for who asks step by step in interpreted code."""
 
-    def __init__(self, key: Key, width: int, uniforms: int = 0) -> None:
-        """Of the words of a step the first `uniforms` become numbers in (0, 1), the others normal ones."""
-        self._key, self._width, self._uniforms = key, width, uniforms
+    def __init__(self, key: Key, width: int, uniforms: int = 0, block: int = BLOCK) -> None:
+        """Of the words of a step the first `uniforms` become numbers in (0, 1), the others normal ones.
+
+        `block` steps are drawn at once; it changes no number.
+        """
+        self._key, self._width, self._uniforms, self._block = key, width, uniforms, block
         self._first = 0
         self._rows: list[list[float]] = []
 
@@ -141,8 +144,8 @@ class Stream:
         """The numbers of a step; steps may be asked for in any order, and again."""
         row = step - self._first
         if not 0 <= row < len(self._rows):
-            self._first, row = step - step % BLOCK, step % BLOCK
-            words = rows(self._key, self._first, BLOCK, self._width)
+            self._first, row = step - step % self._block, step % self._block
+            words = rows(self._key, self._first, self._block, self._width)
             n = self._uniforms
             self._rows = np.concatenate([uniform(words[:, :n]), normals(words[:, n:])], axis=1).tolist()
         return self._rows[row]

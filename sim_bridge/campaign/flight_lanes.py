@@ -45,6 +45,21 @@ class Told(NamedTuple):
     bank: float  # [rad]
 
 
+class Sensing(NamedTuple):
+    """What measures and hears."""
+
+    air: Array  # (blocks, BLOCK)
+    words: Words  # (blocks, WORD_BLOCK) of the sensor
+    waiting: Array  # (slots, blocks, MEASURED * LANES)
+
+
+class Instant(NamedTuple):
+    """When a measurement was taken."""
+
+    sample: int
+    dt: float  # [s] a sample
+
+
 FLOWN = packing(Flown, LANES)
 GUSTS = packing(GustState, LANES)
 TOLD = packing(Told, LANES)
@@ -112,110 +127,113 @@ def limited(model: PlaneModel, limits: Limits) -> PlaneModel:
     )  # fmt: skip
 
 
-def draw_words(words: Words, counter: int) -> None:
-    """Draw eight words a lane at a `counter`, by the keys in `words`."""
+def draw_words(words: Words, block: int, counter: int) -> None:
+    """Draw eight words a lane of a block at a `counter`, by the keys there."""
     for i in range(LANES):
-        first = words[i]
-        second = words[i + LANES]
+        first = words[block, i]
+        second = words[block, i + LANES]
         a, b = threefry(first, second, counter & WORD, 0)
         c, d = threefry(first, second, counter & WORD, 1)
         e, f = threefry(first, second, counter & WORD, 2)
         g, h = threefry(first, second, counter & WORD, 3)
-        words[i + AT_WORDS] = a
-        words[i + AT_WORDS + LANES] = b
-        words[i + AT_WORDS + 2 * LANES] = c
-        words[i + AT_WORDS + 3 * LANES] = d
-        words[i + AT_WORDS + 4 * LANES] = e
-        words[i + AT_WORDS + 5 * LANES] = f
-        words[i + AT_WORDS + 6 * LANES] = g
-        words[i + AT_WORDS + 7 * LANES] = h
+        words[block, i + AT_WORDS] = a
+        words[block, i + AT_WORDS + LANES] = b
+        words[block, i + AT_WORDS + 2 * LANES] = c
+        words[block, i + AT_WORDS + 3 * LANES] = d
+        words[block, i + AT_WORDS + 4 * LANES] = e
+        words[block, i + AT_WORDS + 5 * LANES] = f
+        words[block, i + AT_WORDS + 6 * LANES] = g
+        words[block, i + AT_WORDS + 7 * LANES] = h
 
 
-def blow(air: Array, words: Words, tick: int, model: PlaneModel, climate: Climate) -> None:
+def blow(air: Array, words: Words, b: int, tick: int, model: PlaneModel, climate: Climate) -> None:
     """The gusts of a block's aircraft after a tick of their grid; `words` are of the gusts."""
-    draw_words(words, tick)
+    draw_words(words, b, tick)
     for i in range(GUST_WORDS * LANES):
-        air[i + AT_NOISE] = lane_normal(words[i + AT_WORDS])
+        air[b, i + AT_NOISE] = lane_normal(words[b, i + AT_WORDS])
     for i in range(LANES):
-        mine = limited(model, load_limits(air, i + AT_LIMITS))
-        noise = load_noise(air, i + AT_NOISE)
-        store_gusts(air, i + AT_GUSTS, lane_blown(load_flown(air, i), mine, climate, noise).gusts)
+        mine = limited(model, load_limits(air, b, i + AT_LIMITS))
+        noise = load_noise(air, b, i + AT_NOISE)
+        store_gusts(air, b, i + AT_GUSTS, lane_blown(load_flown(air, b, i), mine, climate, noise).gusts)
 
 
-def fly_ordered(air: Array, model: PlaneModel, climate: Climate) -> None:
+def fly_ordered(air: Array, b: int, model: PlaneModel, climate: Climate) -> None:
     """One sample of a block's aircraft as their autopilots fly them."""
     for i in range(LANES):
-        mine = limited(model, load_limits(air, i + AT_LIMITS))
-        flown = load_flown(air, i)
-        told = load_told(air, i + AT_TOLD)
+        mine = limited(model, load_limits(air, b, i + AT_LIMITS))
+        flown = load_flown(air, b, i)
+        told = load_told(air, b, i + AT_TOLD)
         down = lane_wind_at(climate, flown.plane.position).z
         aboard = Aboard(
             ZERO, 0.0, Reference(0.0, 0.0), Said(told.altitude, 0.0), Said(told.airspeed, 0.0), told.bank,
             Estimate(0.0, 0.0, 0.0, 0.0, 0.0),
         )  # fmt: skip
-        command = lane_commanded(aboard, flown.plane, mine, load_autopilot(air, i + AT_AUTOPILOT), down)
-        store_flown(air, i, lane_fly(flown, mine, command, climate))
+        command = lane_commanded(aboard, flown.plane, mine, load_autopilot(air, b, i + AT_AUTOPILOT), down)
+        store_flown(air, b, i, lane_fly(flown, mine, command, climate))
 
 
-def fly_commanded(air: Array, model: PlaneModel, climate: Climate) -> None:
+def fly_commanded(air: Array, b: int, model: PlaneModel, climate: Climate) -> None:
     """One sample of a block's aircraft under the commands that stand in their lanes."""
     for i in range(LANES):
-        mine = limited(model, load_limits(air, i + AT_LIMITS))
-        command = load_command(air, i + AT_COMMAND)
-        store_flown(air, i, lane_fly(load_flown(air, i), mine, command, climate))
+        mine = limited(model, load_limits(air, b, i + AT_LIMITS))
+        command = load_command(air, b, i + AT_COMMAND)
+        store_flown(air, b, i, lane_fly(load_flown(air, b, i), mine, command, climate))
 
 
-def weather(air: Array, model: PlaneModel, climate: Climate) -> None:
+def weather(air: Array, b: int, model: PlaneModel, climate: Climate) -> None:
     """The estimates of the wind of a block's autopilots after one more update."""
     for i in range(LANES):
-        flown = load_flown(air, i)
+        flown = load_flown(air, b, i)
         plane = flown.plane
         gust = lane_gust_at(climate, flown, model)
         speed = lane_airspeed(plane, lane_wind_at(climate, plane.position), gust)
         sensed = Sensed(plane.velocity, speed, lane_yaw(plane, model))
-        before = load_wind(air, i + AT_WIND)
-        errors = load_errors(air, i + AT_ERRORS)
-        store_wind(air, i + AT_WIND, lane_estimated(before, ARDUPILOT, errors, sensed))
+        before = load_wind(air, b, i + AT_WIND)
+        errors = load_errors(air, b, i + AT_ERRORS)
+        store_wind(air, b, i + AT_WIND, lane_estimated(before, ARDUPILOT, errors, sensed))
 
 
-def measure(air: Array, words: Words, waiting: Array, eye: Eye, number: int) -> None:
-    """Measurement `number` of a block's aircraft into `waiting`; `words` are of the sensor."""
-    draw_words(words, number)
+def measure(sky: Sensing, slot: int, b: int, eye: Eye, number: int) -> None:
+    """Measurement `number` of a block's aircraft into a slot of what waits."""
+    air, words, waiting = sky
+    draw_words(words, b, number)
     for i in range(6 * LANES):
-        air[i + AT_NOISE] = lane_normal(words[i + AT_WORDS + LANES])
+        air[b, i + AT_NOISE] = lane_normal(words[b, i + AT_WORDS + LANES])
     for i in range(3 * LANES):
-        waiting[i] = air[i] + eye.sigma * air[i + AT_NOISE]
+        waiting[slot, b, i] = air[b, i] + eye.sigma * air[b, i + AT_NOISE]
     for i in range(3 * LANES):
         j = i + 3 * LANES
-        waiting[j] = air[j] + eye.sigma_velocity * air[j + AT_NOISE]
+        waiting[slot, b, j] = air[b, j] + eye.sigma_velocity * air[b, j + AT_NOISE]
     for i in range(LANES):
-        waiting[i + 6 * LANES] = 0.0 if uniform(words[i + AT_WORDS]) < eye.dropout else 1.0
+        waiting[slot, b, i + 6 * LANES] = 0.0 if uniform(words[b, i + AT_WORDS]) < eye.dropout else 1.0
 
 
-def hear(air: Array, waiting: Array, eye: Eye, now: int, dt: float) -> None:
-    """Give a measurement in `waiting`, of the sample `now`, to a block's filters; `dt` [s] is a sample."""
+def hear(sky: Sensing, slot: int, b: int, eye: Eye, instant: Instant) -> None:
+    """Give the measurement in a slot of what waits, taken at an instant, to a block's filters."""
+    air, _words, waiting = sky
+    now, dt = instant
     for i in range(MEASURED * LANES):
-        air[i + AT_NOISE] = waiting[i]
+        air[b, i + AT_NOISE] = waiting[slot, b, i]
     p = max(eye.sigma * eye.sigma, eye.floor)
     v = max(eye.sigma_velocity * eye.sigma_velocity, eye.floor)
     for i in range(LANES):
         m = i + AT_NOISE
-        place = Vec(air[m], air[m + LANES], air[m + 2 * LANES])
-        velocity = Vec(air[m + 3 * LANES], air[m + 4 * LANES], air[m + 5 * LANES])
-        heard = air[m + 6 * LANES] != 0.0
-        stamp = air[i + AT_STAMP]
+        place = Vec(air[b, m], air[b, m + LANES], air[b, m + 2 * LANES])
+        velocity = Vec(air[b, m + 3 * LANES], air[b, m + 4 * LANES], air[b, m + 5 * LANES])
+        heard = air[b, m + 6 * LANES] != 0.0
+        stamp = air[b, i + AT_STAMP]
         first = stamp < 0.0
-        old = load_filter(air, i + AT_FILTER)
+        old = load_filter(air, b, i + AT_FILTER)
         density = eye.density if first else old.density
         carried = lane_carry(old.axes, (now - stamp) * dt, density)
         measured = Measured(place, velocity, (p, p, p, v, v, v))
         new = lane_corrected(carried, density, measured, eye.learning)
-        a = chosen(new.axes[0], Axis(place.x, velocity.x, p, 0.0, v), old.axes[0], first, heard)
-        b = chosen(new.axes[1], Axis(place.y, velocity.y, p, 0.0, v), old.axes[1], first, heard)
-        c = chosen(new.axes[2], Axis(place.z, velocity.z, p, 0.0, v), old.axes[2], first, heard)
+        north = chosen(new.axes[0], Axis(place.x, velocity.x, p, 0.0, v), old.axes[0], first, heard)
+        east = chosen(new.axes[1], Axis(place.y, velocity.y, p, 0.0, v), old.axes[1], first, heard)
+        down = chosen(new.axes[2], Axis(place.z, velocity.z, p, 0.0, v), old.axes[2], first, heard)
         density = eye.density if first else new.density
-        store_filter(air, i + AT_FILTER, Filtered((a, b, c), density if heard else old.density))
-        air[i + AT_STAMP] = float(now) if heard else stamp
+        store_filter(air, b, i + AT_FILTER, Filtered((north, east, down), density if heard else old.density))
+        air[b, i + AT_STAMP] = float(now) if heard else stamp
 
 
 def chosen(new: Axis, begun: Axis, old: Axis, first: bool, heard: bool) -> Axis:
@@ -229,8 +247,10 @@ def chosen(new: Axis, begun: Axis, old: Axis, first: bool, heard: bool) -> Axis:
     )
 
 
-def widen(air: Array, model: PlaneModel) -> None:
+def widen(air: Array, b: int, model: PlaneModel) -> None:
     """How far each of a block's aircraft went, its state now included."""
     for i in range(LANES):
-        reach = lane_widened(load_reach(air, i + AT_REACH), load_flown(air, i), model, air[i + AT_DECLARED])
-        store_reach(air, i + AT_REACH, reach)
+        reach = lane_widened(
+            load_reach(air, b, i + AT_REACH), load_flown(air, b, i), model, air[b, i + AT_DECLARED]
+        )
+        store_reach(air, b, i + AT_REACH, reach)

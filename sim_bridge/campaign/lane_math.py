@@ -126,3 +126,8 @@ def lane_log(x: float) -> float:
     r = z * (6.666666666666735130e-01 + z * (3.999999999940941908e-01 + z * r))
     h = 0.5 * f * f
     return float(k * LN2_HIGH - ((h - (s * (h + r) + k * LN2_LOW)) - f))
+
+
+def lane_power12(x: float) -> float:
+    """x^1.2 for positive x."""
+    return lane_exp(1.2 * lane_log(x))

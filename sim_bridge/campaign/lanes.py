@@ -21,11 +21,13 @@ from sim_bridge.campaign.lane_math import (
     lane_cos,
     lane_exp,
     lane_log,
+    lane_power12,
     lane_sin,
     lane_tan,
     lane_wrap,
 )
 from sim_bridge.draws import CENTRE, central, normal, tail, uniform
+from sim_bridge.vehicle.wind.dryden import power12
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -41,6 +43,7 @@ _twins: dict[Any, Any] = {
     math.exp: lane_exp,
     math.log: lane_log,
     wrap: lane_wrap,
+    power12: lane_power12,
 }
 
 
@@ -92,12 +95,12 @@ _twins[normal] = lane_normal
 
 
 class Packing(NamedTuple):
-    """How a value of a NamedTuple lies in an array: its numbers `stride` apart."""
+    """How a value of a NamedTuple lies in a row of an array: its numbers `stride` apart."""
 
     width: int  # numbers
     leaves: tuple[str, ...]  # their names, of a value `v`
-    load: Callable[[Any, int], Any]  # of an array and the place of the first number
-    store: Callable[[Any, int, Any], None]  # into an array from a place on: a value
+    load: Callable[[Any, int, int], Any]  # of an array, a row of it and the place of the first number there
+    store: Callable[[Any, int, int, Any], None]  # into an array, a row of it, from a place on: a value
 
 
 @cache
@@ -112,7 +115,7 @@ def packing(kind: Any, stride: int) -> Packing:
     def made(kind: Any, path: str) -> str:
         if kind is float or (isinstance(kind, type) and issubclass(kind, int)):
             leaves.append(path)
-            number = f"a[o + {(len(leaves) - 1) * stride}]"
+            number = f"a[r, o + {(len(leaves) - 1) * stride}]"
             return number if kind is float else f"int({number})"
         if isinstance(kind, type) and hasattr(kind, "_fields"):
             name = f"T{len(names)}_{kind.__name__}"
@@ -123,7 +126,7 @@ def packing(kind: Any, stride: int) -> Packing:
             return f"({''.join(made(part, f'{path}[{k}]') + ', ' for k, part in enumerate(get_args(kind)))})"
         raise ValueError(f"{path}: found {kind}, expected a number or a NamedTuple of numbers")
 
-    text = f"def load(a, o):\n    return {made(kind, 'v')}\n\n\ndef store(a, o, v):\n"
-    text += "".join(f"    a[o + {k * stride}] = {leaf}\n" for k, leaf in enumerate(leaves))
+    text = f"def load(a, r, o):\n    return {made(kind, 'v')}\n\n\ndef store(a, r, o, v):\n"
+    text += "".join(f"    a[r, o + {k * stride}] = {leaf}\n" for k, leaf in enumerate(leaves))
     exec(text, names)
     return Packing(len(leaves), tuple(leaves), names["load"], names["store"])

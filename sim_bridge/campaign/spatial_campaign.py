@@ -71,15 +71,18 @@ def reversals(course: Array, span: int) -> int:
 
     Counted once each: a window that holds one is left behind. Kernel style.
     """
-    angle = np.empty(course.shape[0])
-    turned = 0.0
-    for k in range(course.shape[0]):
-        if k > 0:
-            turned += wrap(course[k] - course[k - 1])
-        angle[k] = turned
+    angle = np.zeros(course.shape[0])
+    way = np.zeros(course.shape[0])  # the turns so far, either way
+    for k in range(1, course.shape[0]):
+        turn = wrap(course[k] - course[k - 1])
+        angle[k] = angle[k - 1] + turn
+        way[k] = way[k - 1] + abs(turn)
     count = 0
     k = 0
     while k < angle.shape[0] - span:
+        if way[k + span] - way[k] <= 2.0 * REVERSAL:
+            k += 1
+            continue
         high = low = angle[k]
         for j in range(k + 1, k + span + 1):
             high = max(high, angle[j])

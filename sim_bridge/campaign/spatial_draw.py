@@ -7,9 +7,10 @@ and the tracks' noise are those of `fly` with the seed of `drawn_scenario`.
 from __future__ import annotations
 
 from collections.abc import Callable
+from enum import IntEnum
 from functools import cache
 from math import radians
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar, cast
 
 import msgspec
 
@@ -85,6 +86,8 @@ PLAN_LATE = 0.05  # [s] until a plan is heard over an undisturbed bus
 PLAN_PATIENCE = 5.0  # [s] without a plan after which a pursuer flies alone
 TURNS = 100  # draws of places within a fence
 
+T = TypeVar("T")
+
 
 class Sides(NamedTuple):
     """The strategies of a game: those that its kernel holds, and who flies by which."""
@@ -127,7 +130,7 @@ def drawn_scenario(scenario: Scenario, seed: int, spread: Spread = Spread()) -> 
         return scenario
     replace = msgspec.structs.replace
     world = scenario.seed + seed
-    streams = [Stream(key_of(world, id, Purpose.PLACE), 4) for id in scenario.ids[1:]]
+    streams = [Stream(key_of(world, id, Purpose.PLACE), 4, block=1) for id in scenario.ids[1:]]
     wind = replace(scenario.flight.wind, from_deg=drawn_wind(world))
     flight = replace(scenario.flight, wind=wind)
     fault: FieldError | None = None
@@ -176,6 +179,7 @@ def draw(scenario: Scenario, seed: int, t0: float = T0, compiled: bool = True) -
         tuple(drawn_errors(key_of(scenario.seed, id, Purpose.ESTIMATE)) for id in scenario.ids),
         planning_of(scenario, control * dt),
     )
+    start = plain(start)
     players: list[Flown] = []
     level: list[Command] = []
     headings = start_headings(scenario)
@@ -204,6 +208,20 @@ def sky_of(d: Draw, compiled: bool) -> InLanes | OneByOne:
     if compiled:
         return in_lanes_of(d.start, d.players, [], d.crew, d.tracks)
     return one_by_one(d.players, [], d.crew, d.tracks)
+
+
+def plain(value: T) -> T:
+    """A value of a NamedTuple with whole numbers in place of members of enumerations.
+
+    Numba tells the types of such a value at a glance, where it has to look at every member.
+    """
+    found: Any = value
+    if isinstance(value, tuple):
+        parts = [plain(part) for part in value]
+        found = type(value)(*parts) if hasattr(value, "_fields") else tuple(parts)
+    elif isinstance(value, IntEnum):
+        found = int(value)
+    return cast(T, found)
 
 
 def planning_of(scenario: Scenario, step: float) -> Planning:

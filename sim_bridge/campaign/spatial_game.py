@@ -245,12 +245,12 @@ def decide_all(team: Deciding, crew: Array, step: int) -> None:
         posted(team.talk, planning, ways.planner(situation(team), team.talk.made[0]), step)
     arrived(team.talk, planning, step)
     decision = ways.evader(evader_sees(team), ways.chosen.evader)
-    store_aboard(crew, 0, order(start, load_aboard(crew, 0), decision, states, (0, now)))
+    store_aboard(crew, 0, 0, order(start, load_aboard(crew, 0, 0), decision, states, (0, now)))
     write_down(decided, 0, decision)
     decisions = each(decide_pursuer, game.pursuers, team)
     for i in range(len(decisions)):
-        row = (i + 1) * ABOARD_ROW
-        store_aboard(crew, row, order(start, load_aboard(crew, row), decisions[i], states, (i + 1, now)))
+        aboard = order(start, load_aboard(crew, i + 1, 0), decisions[i], states, (i + 1, now))
+        store_aboard(crew, i + 1, 0, aboard)
         write_down(decided, i + 1, decisions[i])
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,13 +26,16 @@ from sim_bridge.campaign.flight_lanes import (
     MEASURED,
     WORD_BLOCK,
     Array,
+    Instant,
     Limits,
+    Sensing,
     Told,
     blow,
     fly_commanded,
     fly_ordered,
     hear,
     load_flown,
+    load_reach,
     measure,
     store_autopilot,
     store_command,
@@ -69,46 +72,47 @@ class InLanes(NamedTuple):
 def note_lanes(sky: InLanes, here: Array) -> None:
     """`Motion.note` over lanes, the estimates of the wind included."""
     for i in range(here.shape[0]):
-        air = sky.air[i // LANES]
+        b = i // LANES
         lane = i % LANES
         for k in range(6):
-            here[i, k] = air[lane + k * LANES]
-        here[i, 6] = air[lane + AT_WIND]
-        here[i, 7] = air[lane + AT_WIND + LANES]
+            here[i, k] = sky.air[b, lane + k * LANES]
+        here[i, 6] = sky.air[b, lane + AT_WIND]
+        here[i, 7] = sky.air[b, lane + AT_WIND + LANES]
 
 
 def watch_lanes(sky: InLanes, start: Start, sample: int, _here: Array) -> None:
     """`Motion.watch` over lanes."""
     eye = start.eye
     slots = sky.waiting.shape[0]
+    sensing = Sensing(sky.air, sky.sensor, sky.waiting)
     if sample % eye.period == 0:
         number = sample // eye.period
         for b in range(sky.air.shape[0]):
-            measure(sky.air[b], sky.sensor[b], sky.waiting[number % slots, b], eye, number)
+            measure(sensing, number % slots, b, eye, number)
     heard = sample - eye.delay
     if heard >= 0 and heard % eye.period == 0:
         number = heard // eye.period
         for b in range(sky.air.shape[0]):
-            hear(sky.air[b], sky.waiting[number % slots, b], eye, heard, start.fleet.evader.dt)
+            hear(sensing, number % slots, b, eye, Instant(heard, start.fleet.evader.dt))
         show(sky)
 
 
 def show(sky: InLanes) -> None:
     """Write what the filters hold where decisions read it."""
     for i in range(sky.seen.filters.shape[0]):
-        air = sky.air[i // LANES]
+        b = i // LANES
         lane = i % LANES
         for k in range(FILTER_WIDTH):
-            sky.seen.filters[i, k] = air[lane + AT_FILTER + k * LANES]
-        sky.seen.stamps[i] = air[lane + AT_STAMP]
+            sky.seen.filters[i, k] = sky.air[b, lane + AT_FILTER + k * LANES]
+        sky.seen.stamps[i] = sky.air[b, lane + AT_STAMP]
 
 
 def order_lanes(sky: InLanes) -> None:
     """`Motion.order` over lanes."""
     for i in range(sky.seen.filters.shape[0]):
-        aboard = load_aboard(sky.crew, i * ABOARD_ROW)
+        aboard = load_aboard(sky.crew, i, 0)
         told = Told(aboard.altitude.value, aboard.airspeed.value, aboard.bank)
-        store_told(sky.air[i // LANES], i % LANES + AT_TOLD, told)
+        store_told(sky.air, i // LANES, i % LANES + AT_TOLD, told)
 
 
 def course_in_lane(sky: InLanes, index: int) -> float:
@@ -119,7 +123,7 @@ def course_in_lane(sky: InLanes, index: int) -> float:
 def estimate_lanes(sky: InLanes, start: Start, here: Array) -> None:
     """`Motion.estimate` over lanes."""
     for b in range(sky.air.shape[0]):
-        weather(sky.air[b], start.fleet.pursuer, start.climate)
+        weather(sky.air, b, start.fleet.pursuer, start.climate)
     note_lanes(sky, here)
 
 
@@ -128,7 +132,7 @@ def blow_lanes(sky: InLanes, start: Start, sample: int) -> None:
     tick = gust_tick(sample)
     if tick >= 0:
         for b in range(sky.air.shape[0]):
-            blow(sky.air[b], sky.gusts[b], tick, start.fleet.pursuer, start.climate)
+            blow(sky.air, sky.gusts, b, tick, start.fleet.pursuer, start.climate)
 
 
 def move_lanes(sky: InLanes, start: Start, sample: int, here: Array) -> None:
@@ -138,7 +142,7 @@ def move_lanes(sky: InLanes, start: Start, sample: int, here: Array) -> None:
     """
     blow_lanes(sky, start, sample)
     for b in range(sky.air.shape[0]):
-        fly_ordered(sky.air[b], start.fleet.pursuer, start.climate)
+        fly_ordered(sky.air, b, start.fleet.pursuer, start.climate)
     note_lanes(sky, here)
 
 
@@ -146,7 +150,7 @@ def carry_lanes(sky: InLanes, start: Start, sample: int, here: Array) -> None:
     """`Motion.carry` over lanes."""
     blow_lanes(sky, start, sample)
     for b in range(sky.air.shape[0]):
-        fly_commanded(sky.air[b], start.fleet.pursuer, start.climate)
+        fly_commanded(sky.air, b, start.fleet.pursuer, start.climate)
     note_lanes(sky, here)
 
 
@@ -167,21 +171,21 @@ def put_lanes(sky: InLanes, here: Array, places: Array) -> None:
 def widen_lanes(sky: InLanes, start: Start) -> None:
     """`Motion.widen` over lanes."""
     for b in range(sky.air.shape[0]):
-        widen(sky.air[b], start.fleet.pursuer)
+        widen(sky.air, b, start.fleet.pursuer)
 
 
 def reach_lanes(sky: InLanes) -> Envelope:
     """`Motion.reach` over lanes: that of all players."""
     found = UNMOVED
     for i in range(sky.seen.filters.shape[0]):
-        r = sky.air[i // LANES, i % LANES + AT_REACH :: LANES]
+        r = load_reach(sky.air, i // LANES, i % LANES + AT_REACH)
         found = Envelope(
-            min(found.pitch_low, r[0]),
-            max(found.pitch_high, r[1]),
-            min(found.speed_low, r[2]),
-            max(found.speed_high, r[3]),
-            min(found.lowest, r[4]),
-            max(found.surface, r[5]),
+            min(found.pitch_low, r.pitch_low),
+            max(found.pitch_high, r.pitch_high),
+            min(found.speed_low, r.speed_low),
+            max(found.speed_high, r.speed_high),
+            min(found.lowest, r.lowest),
+            max(found.surface, r.surface),
         )
     return found
 
@@ -209,15 +213,12 @@ def in_lanes_of(
     for place in range(blocks * LANES):
         b, lane, i = place // LANES, place % LANES, min(place, count - 1)
         block, model = air[b], start.fleet.pursuer if i else start.fleet.evader
-        store_flown(block, lane, players[i])
-        store_limits(
-            block,
-            lane + AT_LIMITS,
-            Limits(model.pitch_min, model.pitch_max, model.speed_min, model.speed_max),
-        )
-        store_autopilot(block, lane + AT_AUTOPILOT, start.autopilots[i])
-        store_errors(block, lane + AT_ERRORS, start.errors[i])
-        store_reach(block, lane + AT_REACH, UNMOVED)
+        store_flown(air, b, lane, players[i])
+        limits = Limits(model.pitch_min, model.pitch_max, model.speed_min, model.speed_max)
+        store_limits(air, b, lane + AT_LIMITS, limits)
+        store_autopilot(air, b, lane + AT_AUTOPILOT, start.autopilots[i])
+        store_errors(air, b, lane + AT_ERRORS, start.errors[i])
+        store_reach(air, b, lane + AT_REACH, UNMOVED)
         block[lane + AT_DECLARED] = start.policies[i].envelope.speed_max
         block[lane + AT_FILTER : AT_FILTER + FILTER_WIDTH * LANES : LANES] = seen.filters[i]
         block[lane + AT_STAMP] = seen.stamps[i]
@@ -225,14 +226,14 @@ def in_lanes_of(
         for keys, drawn in zip((start.gusts, start.eye.keys), words, strict=True):
             drawn[b, lane], drawn[b, lane + LANES] = keys[i]
         if level:
-            store_command(block, lane + AT_COMMAND, level[i])
+            store_command(air, b, lane + AT_COMMAND, level[i])
         if crew:
             told = Told(crew[i].altitude.value, crew[i].airspeed.value, crew[i].bank)
-            store_told(block, lane + AT_TOLD, told)
-            store_wind(block, lane + AT_WIND, crew[i].wind)
-    rows = np.zeros(count * ABOARD_ROW)
+            store_told(air, b, lane + AT_TOLD, told)
+            store_wind(air, b, lane + AT_WIND, crew[i].wind)
+    rows = np.zeros((count, ABOARD_ROW))
     for i, aboard in enumerate(crew):
-        store_aboard(rows, i * ABOARD_ROW, aboard)
+        store_aboard(rows, i, 0, aboard)
     flat = waiting.reshape(waiting.shape[0], blocks, MEASURED * LANES)
     return InLanes(air, words[0], words[1], flat, rows, seen)
 
@@ -240,8 +241,7 @@ def in_lanes_of(
 def players_of(sky: InLanes) -> list[Flown]:
     """The aircraft of all players."""
     count = sky.seen.filters.shape[0]
-    numbers: Any = [block.tolist() for block in sky.air]
-    return [load_flown(numbers[i // LANES], i % LANES) for i in range(count)]
+    return [load_flown(sky.air, i // LANES, i % LANES) for i in range(count)]
 
 
 def tracks_of(sky: InLanes) -> Tracks:

@@ -137,7 +137,7 @@ def note_each(sky: OneByOne, here: Array) -> None:
     """`Motion.note`, one by one."""
     for i in range(len(sky.players)):
         note(here, i, sky.players[i])
-        note_wind(here, i, load_aboard(sky.crew, i * ABOARD_ROW).wind)
+        note_wind(here, i, load_aboard(sky.crew, i, 0).wind)
 
 
 def watch_each(sky: OneByOne, start: Start, sample: int, here: Array) -> None:
@@ -157,15 +157,15 @@ def course_of(sky: OneByOne, index: int) -> float:
 def estimate_each(sky: OneByOne, start: Start, here: Array) -> None:
     """`Motion.estimate`, one by one."""
     for i in range(len(sky.players)):
-        aboard = weathered(start, i, load_aboard(sky.crew, i * ABOARD_ROW), sky.players[i])
-        store_aboard(sky.crew, i * ABOARD_ROW, aboard)
+        aboard = weathered(start, i, load_aboard(sky.crew, i, 0), sky.players[i])
+        store_aboard(sky.crew, i, 0, aboard)
         note_wind(here, i, aboard.wind)
 
 
 def move_each(sky: OneByOne, start: Start, sample: int, here: Array) -> None:
     """`Motion.move`, one by one."""
     for i in range(len(sky.players)):
-        aboard = load_aboard(sky.crew, i * ABOARD_ROW)
+        aboard = load_aboard(sky.crew, i, 0)
         sky.players[i] = commanded_on(start, i, aboard, sky.players[i], sample)
         note(here, i, sky.players[i])
 
@@ -212,7 +212,7 @@ def moved_one_by_one() -> Motion:
 
 def one_by_one(players: list[Flown], level: list[Command], crew: list[Any], seen: Tracks) -> OneByOne:
     """The sky of `moved_one_by_one`; `crew` of `Aboard`, `level` for an approach."""
-    rows = np.zeros(len(players) * ABOARD_ROW)
+    rows = np.zeros((len(players), ABOARD_ROW))
     for i, aboard in enumerate(crew):
-        store_aboard(rows, i * ABOARD_ROW, aboard)
+        store_aboard(rows, i, 0, aboard)
     return OneByOne(list(players), list(level), rows, seen, [UNMOVED])

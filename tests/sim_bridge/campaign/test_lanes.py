@@ -79,10 +79,10 @@ def test_a_value_comes_back_from_its_lane_and_touches_no_other() -> None:
     tree = Tree(Vec(1.0, 2.0, 3.0), (Leaf(4.0, 5), Leaf(6.0, 7)))
     way = packing(Tree, 8)
     assert way.width == 7
-    array = np.zeros(56)
-    way.store(array, 3, tree)
-    assert way.load(array, 3) == tree
-    assert np.flatnonzero(array).tolist() == list(range(3, 56, 8))
+    array = np.zeros((2, 56))
+    way.store(array, 1, 3, tree)
+    assert way.load(array, 1, 3) == tree
+    assert np.flatnonzero(array).tolist() == list(range(59, 112, 8))
 
     class Bad(NamedTuple):
         words: list[int]
