@@ -9,7 +9,7 @@ export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
-.PHONY: help install demo test check check-long check-pythons bench bench-page bench-team figures bench-predictor bench-gym check-aarch64 golden fuzz soak mutants mavproxy clean three lock
+.PHONY: help install demo test check check-long check-pythons bench bench-campaign bench-page bench-team figures bench-predictor bench-gym check-aarch64 golden fuzz soak mutants mavproxy clean three lock
 
 help:
 	@echo "make install   the environment only"
@@ -19,6 +19,7 @@ help:
 	@echo "make check-long   the long tests, and every property with five times other examples"
 	@echo "make check-pythons   a share of the tests on the later Pythons that this machine has"
 	@echo "make bench     benchmarks; results go to benchmarks/results/"
+	@echo "make bench-campaign  what games of a campaign cost, beside an earlier commit; a quarter of an hour"
 	@echo "make bench-page  the page before a browser, with 200 and 1000 vehicles"
 	@echo "make figures   the committed tables of games, routes and predictors again, in one sweep"
 	@echo "make bench-team   teams of pursuers against the paper's rules, hours; resumable"
@@ -67,6 +68,9 @@ check-long: install
 
 check-pythons: install
 	@$(BIN)/python -m tests.install.pythons
+
+bench-campaign: install
+	$(BIN)/python -m tests.benchmarks.campaign_speed
 
 bench: install
 	$(BIN)/python -m pytest tests/benchmarks -n 0 --timeout 1800 -o python_files="test_*.py bench_*.py" --benchmark-json benchmarks/results/latest.json

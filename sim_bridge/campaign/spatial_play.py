@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from onboard.core.game.advance import judged
+from onboard.core.game.advance import begin, judged
 from onboard.core.game.referee import GameResult
 from onboard.core.math.each import each
 from onboard.core.math.vectors import ZERO, Vec
@@ -90,7 +90,9 @@ def play(start: Start, ways: Ways, motion: Motion, sky: Any, log: Array) -> Spat
 
     `log` (steps, players, 6): position [m; NED], flown and decided course [rad], rule; evader first.
     """
-    game, pace = start.game, start.pace
+    first, pace = start.game, start.pace
+    # A score of its own: that of the start holds plain numbers, and a judged one a member of `GameResult`.
+    game = begin(first.evader, first.pursuers, first.evader_limits, first.pursuer_limits)
     count = len(start.game.pursuers) + 1
     here = np.zeros((count, 9))
     decided = np.zeros((count, 8))
