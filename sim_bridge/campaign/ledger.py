@@ -21,6 +21,8 @@ from sim_bridge.campaign.plane_in_wind import Flown
 from sim_bridge.vehicle.wind.estimate import Estimate
 
 Array = NDArray[np.float64]
+KNOWS = 9  # numbers of a row of `states`
+DECIDES = 8  # numbers of a row of `decided`
 
 
 def known(states: Array, index: int) -> Vehicle:

@@ -18,7 +18,7 @@ from onboard.core.math.each import each
 from onboard.core.math.vectors import ZERO, Vec
 from onboard.core.strategy.team.planner import no_plan
 from sim_bridge.campaign.envelope import UNMOVED, Envelope, widened
-from sim_bridge.campaign.ledger import known, note, note_wind
+from sim_bridge.campaign.ledger import DECIDES, KNOWS, known, note, note_wind
 from sim_bridge.campaign.plane_in_wind import Flown
 from sim_bridge.campaign.spatial_game import (
     ABOARD_ROW,
@@ -76,7 +76,7 @@ def approach(start: Start, motion: Motion, sky: Any) -> None:
     What gusts make of an aircraft in that time is so what they make of it in flight before t₀, and the tracks
     are not new.
     """
-    here = np.zeros((len(start.game.pursuers) + 1, 8))
+    here = np.zeros((len(start.game.pursuers) + 1, KNOWS))
     motion.note(sky, here)
     places = here.copy()
     for sample in range(start.pace.t0):
@@ -94,11 +94,10 @@ def play(start: Start, ways: Ways, motion: Motion, sky: Any, log: Array) -> Spat
     # A score of its own: that of the start holds plain numbers, and a judged one a member of `GameResult`.
     game = begin(first.evader, first.pursuers, first.evader_limits, first.pursuer_limits)
     count = len(start.game.pursuers) + 1
-    here = np.zeros((count, 9))
-    decided = np.zeros((count, 8))
+    here = np.zeros((count, KNOWS))
+    decided = np.zeros((count, DECIDES))
     motion.note(sky, here)
-    for i in range(count):
-        here[i, 8] = motion.course(sky, i)
+    head(motion, sky, here)
     before = here.copy()
     talk = opened(no_plan(each(seat, game.pursuers, start.planning), 0.0))
     steps = 0
@@ -119,8 +118,7 @@ def play(start: Start, ways: Ways, motion: Motion, sky: Any, log: Array) -> Spat
             if sample % WIND_EVERY == 0:
                 motion.estimate(sky, start, here)
             if (sample + 1) % pace.control == pace.decides:
-                for i in range(count):
-                    here[i, 8] = motion.course(sky, i)
+                head(motion, sky, here)
             before[:] = here
             motion.move(sky, start, sample, here)
             sample += 1
@@ -133,6 +131,12 @@ def play(start: Start, ways: Ways, motion: Motion, sky: Any, log: Array) -> Spat
         )
         steps += 1
     return SpatialPlay(game, steps, sample - pace.t0, motion.reach(sky))
+
+
+def head(motion: Motion, sky: Any, here: Array) -> None:
+    """Write down every aircraft's course through the air, by which the next decision knows its nose."""
+    for i in range(here.shape[0]):
+        here[i, 8] = motion.course(sky, i)
 
 
 def note_each(sky: OneByOne, here: Array) -> None:

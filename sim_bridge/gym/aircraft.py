@@ -13,6 +13,7 @@ from onboard.config.strict import ConfigError
 from onboard.core.game.advance import EvaderStrategy, PursuerStrategy
 from onboard.core.strategy.team.flying import pursuer_team
 from sim_bridge.campaign.compiled import in_arrays, register_strategies
+from sim_bridge.campaign.ledger import DECIDES, KNOWS
 from sim_bridge.campaign.spatial_draw import (
     Draw,
     Spread,
@@ -130,7 +131,7 @@ def _room(drawn: Draw, sky: Any, games: int, compiled: bool) -> Skies:
             starts.append(drawn.start)
         parts: list[Any] = [np.repeat(one[None], games, axis=0) for one in _leaves(sky)]
         skies = InLanes._make([*parts[:5], Tracks._make(parts[5:])])
-    before, now, decided = (np.zeros((games, players, 8)) for _ in range(3))
+    before, now, decided = (np.zeros((games, players, width)) for width in (KNOWS, KNOWS, DECIDES))
     return Skies(starts, skies, before, now, decided, np.zeros(games, np.int64))
 
 

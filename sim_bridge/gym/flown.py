@@ -35,7 +35,7 @@ from sim_bridge.campaign.spatial_game import (
     standing,
 )
 from sim_bridge.campaign.spatial_lanes import InLanes
-from sim_bridge.campaign.spatial_play import Motion
+from sim_bridge.campaign.spatial_play import Motion, head
 from sim_bridge.campaign.team_play import opened, seat, stand_by
 from sim_bridge.campaign.tracks import Tracks
 from sim_bridge.gym.exchange import Exchange
@@ -50,8 +50,8 @@ class Skies(NamedTuple):
 
     starts: Any  # list of `Start`, one a game
     skies: Any  # list of `OneByOne`; in lanes: `InLanes` with one more axis, the games, in front
-    before: Array  # (games, players, 8): as the agents know everybody when they decide
-    now: Array  # (games, players, 8): as everybody is
+    before: Array  # (games, players, KNOWS): as the agents know everybody when they decide
+    now: Array  # (games, players, KNOWS): as everybody is
     decided: Array  # (games, players, 8): see `decide_all`
     samples: NDArray[np.int64]  # (games,) of the aircraft, since the beginning of the world
 
@@ -189,6 +189,8 @@ def glide(here: Here, skies: Skies, exchange: Exchange, craft: Craft, decided: b
         watched = False
         if sample % WIND_EVERY == 0:
             motion.estimate(sky, start, now)
+        if (sample + 1) % pace.control == pace.decides:
+            head(motion, sky, now)
         skies.before[g][:] = now
         motion.move(sky, start, sample, now)
         skies.samples[g] += 1
@@ -217,6 +219,7 @@ def fly_all(table: Table, skies: Skies, shared: tuple[World, Exchange], run: Run
         if run.begins:
             exchange.verdicts[g] = 0
             craft.motion.note(sky, skies.now[g])
+            head(craft.motion, sky, skies.now[g])
             skies.before[g][:] = skies.now[g]
         elif exchange.verdicts[g] != 0:
             for i in range(exchange.rewards.shape[1]):
