@@ -169,7 +169,7 @@ def main(
     _compiled_yard(10)
     lines = [
         f"Both versions play the same seeds in turn, {rounds} turns; rates are medians over the turns,",
-        "in CPU time of one core. Yardsticks: millions of rounds a CPU-second of a loop, in Python and numba.",
+        "in CPU time of a core. Yardsticks: millions of rounds a CPU-second of a loop, in Python and numba.",
         "What flies has changed on purpose in between (estimated wind, teams), so that single games differ.",
         "",
         "| games | version | played | games a CPU-second | game steps a core-second | captured / arrived |"
