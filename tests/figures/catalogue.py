@@ -50,6 +50,12 @@ FIGURES = (
         ("configs/routes/twenty_km.toml",),
     ),
     Figure(
+        "starts.md",
+        ("-m", "tests.benchmarks.starts", "--seeds", "12"),
+        ("onboard.pilot.approach", "sim_bridge.campaign.aboard", "sim_bridge.vehicle.wind.estimate"),
+        ("tests/benchmarks/starts.py", "tests/onboard/pilot/test_approach.py"),
+    ),
+    Figure(
         "choice-in-pursuit.md",
         ("-m", "tests.benchmarks.choice_in_pursuit", "--seeds", "40"),
         ("sim_bridge.campaign.spatial_campaign", "onboard.core.strategy.choosing"),
