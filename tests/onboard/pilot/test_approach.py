@@ -43,6 +43,7 @@ from sim_bridge.vehicle.wind.estimate import ARDUPILOT, Sensed, begun, drawn_err
 HEIGHT = 1500.0
 TURN_RATE = radians(4.5)
 LATE_S = 0.2  # that nobody waits for
+LONGEST = 45_000  # samples of 10 ms
 
 
 class Passed(NamedTuple):
@@ -89,7 +90,7 @@ class Way:
         level = sub(self.flown.plane.velocity, air)
         self.aboard: Aboard = boarded(level, -0.05, HEIGHT, speed, self.estimate)
         place = Place(Vec(0.0, 0.0, -HEIGHT), self.heading, speed, 1.05 * 0.8 * speed, self.policy.envelope)
-        self.approach, self.clips = Approach(place), 0
+        self.approach, self.clips, self.led = Approach(place), 0, False
 
     def own(self, flown: Flown) -> Own:
         return Own(flown.plane.position, flown.plane.velocity, wind_of(self.estimate))
@@ -99,7 +100,7 @@ class Way:
         before, k = self.flown, 0
         end = ceil(100.0 * self.approach.needs(self.own(self.flown)))
         said = 0
-        while k < end:
+        while k < min(end, LONGEST):
             if gust_tick(k) >= 0:
                 noise = gust_noise(self.gusts, gust_tick(k))
                 self.flown = blown(self.flown, self.model, self.climate, noise)
@@ -127,15 +128,15 @@ class Way:
         return Sensed(plane.velocity, airspeed, nose_yaw(plane, self.model))
 
     def command(self, k: int, own: Own, left: float) -> None:
-        first = self.approach._demand is None
         wanted = self.approach.steer(own, left)
         at = Instant(0.01 * k, own.position, own.velocity, own.wind, 1)
-        if not first:
+        if self.led:
             last = Before(self.aboard.demand, self.aboard.stamp)
             flying = Flying(at.now, at.id, at.position, at.velocity)
             cause = allow(wanted, at.wind, flying, (), self.policy, last).cause
-            self.clips += cause is not Cause.NONE and cause != Cause.NONE
+            self.clips += cause != Cause.NONE
         else:
+            self.led = True
             self.aboard = self.aboard._replace(demand=wanted)
         self.aboard = ordered(self.aboard, wanted, at, self.policy, ())
 
