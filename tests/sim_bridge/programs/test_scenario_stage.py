@@ -12,6 +12,7 @@ from onboard.config.strict import ConfigError
 from onboard.game.scenario import load
 from onboard.runtime.resources import configs
 from sim_bridge.programs.scenario_band import band_lines, stage_file, turn_rate_of
+from sim_bridge.programs.scenario_picture import draw_band
 from sim_bridge.programs.scenario_tools import check
 
 SCENARIOS = configs() / "scenarios"
@@ -108,3 +109,11 @@ def test_an_existing_file_is_kept(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match="a file of this name already"):
         staged("flight/demo", tmp_path)
     assert (tmp_path / "staged.toml").read_text() == "mine"
+
+
+def test_the_picture_shows_what_the_words_say(tmp_path: Path) -> None:
+    """The band's map is drawn from the very cones: its title tells an open band where it is open."""
+    drawn = draw_band(load(SCENARIOS / "spatial/two.toml"), tmp_path, "two")
+    assert [path.suffix for path in drawn] == [".png", ".svg"]
+    assert drawn[0].read_bytes().startswith(b"\x89PNG")
+    assert drawn[1].stat().st_size < 500_000
