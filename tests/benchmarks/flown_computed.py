@@ -14,6 +14,7 @@ import argparse
 import platform
 import time
 from datetime import UTC, datetime
+from inspect import getclosurevars
 from math import degrees, hypot
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -35,6 +36,7 @@ from sim_bridge.rehearsal import Options, Rehearsal
 from sim_bridge.vehicle.autopilot.arduplane import ArduPlane
 from sim_bridge.vehicle.flight.airframe import Plane
 from sim_bridge.vehicle.flight.plane import PlaneState
+from sim_bridge.vehicle.wind.dryden import GustState
 from sim_bridge.vehicle.wind.estimate import Estimate
 
 VERDICTS, ARRIVALS, CORRELATION = 0.95, 0.02, 0.95  # what is promised
@@ -48,6 +50,7 @@ class Began(NamedTuple):
     height: float  # sought [m]
     airspeed: float  # [m/s]
     wind: Estimate  # its own
+    gusts: GustState  # that it meets
 
 
 class Flight(NamedTuple):
@@ -77,11 +80,13 @@ def fly(scenario: Scenario) -> Flight:
         async with Rehearsal(scenario, virtual_clock(), Options()) as game:
             world = game.bridge.world
             move = world.step
+            field = getclosurevars(world._wind).nonlocals["field"]
 
             def step() -> None:
                 move()
                 if not began and game.master.t0_ns and world.wall_ns >= game.master.t0_ns:
-                    began.extend(_begins(vehicle) for vehicle in world.vehicles.values())
+                    vehicles = enumerate(world.vehicles.values())
+                    began.extend(_begins(vehicle, field._states[n]) for n, vehicle in vehicles)
 
             world.step = step  # type: ignore[method-assign]
             outcome = await game.until_ended()
@@ -91,12 +96,13 @@ def fly(scenario: Scenario) -> Flight:
     return run_virtual(play())
 
 
-def _begins(vehicle: Any) -> Began:
+def _begins(vehicle: Any, gusts: GustState) -> Began:
     airframe, autopilot = vehicle.airframe, vehicle.autopilot
     assert isinstance(airframe, Plane)
     assert isinstance(autopilot, ArduPlane)
     wind = autopilot.wind_filter.estimate
-    return Began(airframe.state, autopilot._roll, -autopilot._altitude_z, autopilot._airspeed_target, wind)
+    told = autopilot._roll, -autopilot._altitude_z, autopilot._airspeed_target
+    return Began(airframe.state, *told, wind, gusts)
 
 
 def compute(scenario: Scenario, seed: int, evasion: Evasion, flight: Flight, compiled: bool = True) -> Played:
@@ -107,7 +113,7 @@ def compute(scenario: Scenario, seed: int, evasion: Evasion, flight: Flight, com
         off = np.subtract(began.plane.position, d.players[i].plane.position)
         d.tracks.filters[i, (0, 5, 10)] += off
         d.tracks.waiting[:, i, :3] += off
-        players.append(Flown(began.plane, d.players[i].gusts))
+        players.append(Flown(began.plane, began.gusts))
         told = aboard_of(began.plane, d.start, began.airspeed, i)
         altitude = told.altitude._replace(value=began.height)
         crew.append(told._replace(bank=began.bank, altitude=altitude, wind=began.wind))
