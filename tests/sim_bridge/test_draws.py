@@ -84,3 +84,10 @@ def test_a_flight_and_a_compiled_game_are_driven_by_the_same_gusts() -> None:
     key = key_of(7, 4, Purpose.GUST)
     stream = Stream(key, 5)
     assert [list(gust_noise(key, tick)) for tick in range(300)] == [stream.at(tick) for tick in range(300)]
+
+
+def test_how_many_steps_are_drawn_at_once_changes_no_number() -> None:
+    key = key_of(5, 2, Purpose.PLACE)
+    one, many = Stream(key, 4, 1, block=1), Stream(key, 4, 1)
+    for step in (0, 1, 255, 256, 3):
+        assert one.at(step) == many.at(step)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
@@ -16,9 +17,10 @@ from sim_bridge.campaign import lane_math
 from sim_bridge.campaign.lanes import in_lanes, lane_normal, packing, twins
 from sim_bridge.campaign.plane_in_wind import Flown, fly
 from sim_bridge.campaign.spatial_campaign import play_drawn
-from sim_bridge.campaign.spatial_draw import draw, spatial
+from sim_bridge.campaign.spatial_draw import draw, plain, spatial
 from sim_bridge.campaign.spatial_game import Evasion
 from sim_bridge.draws import normal
+from sim_bridge.vehicle.wind.dryden import power12
 
 Function = Callable[[float], float]
 
@@ -63,6 +65,30 @@ def test_the_same_direction_and_the_same_normal_numbers() -> None:
     words = [0, 1, 2**32 - 1, *rng.integers(0, 2**32, 2000).tolist()]
     for word in words:
         assert lane_normal(np.int64(word)) == pytest.approx(normal(word), rel=1e-14)
+
+
+def test_the_power_of_the_scale_lengths() -> None:
+    for x in np.linspace(0.17, 1.1, 200).tolist():
+        assert lane_math.lane_power12(x) == pytest.approx(power12(x), rel=1e-14)
+
+
+def leaves(value: object) -> list[object]:
+    return [x for part in value for x in leaves(part)] if isinstance(value, tuple) else [value]
+
+
+def test_a_start_holds_plain_numbers_equal_to_those_it_was_made_of() -> None:
+    class Kind(IntEnum):
+        A = 3
+
+    class Held(NamedTuple):
+        kind: int
+        far: tuple[float, Kind]
+
+    found = plain(Held(Kind.A, (1.5, Kind.A)))
+    assert found == Held(3, (1.5, 3))  # type: ignore[arg-type]
+    assert [type(x) for x in leaves(found)] == [int, float, int]
+    start = draw(spatial("five"), 1, 0.2, compiled=False).start
+    assert {type(x) for x in leaves(start)} == {int, float, bool}
 
 
 class Leaf(NamedTuple):
