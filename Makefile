@@ -9,7 +9,7 @@ export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
-.PHONY: help install demo test check check-long check-pythons bench bench-campaign bench-page bench-team figures bench-predictor bench-gym check-aarch64 golden fuzz soak mutants mavproxy clean three lock
+.PHONY: help install demo test check check-long check-pythons bench bench-campaign bench-page bench-team bench-matrix figures bench-predictor bench-gym check-aarch64 golden fuzz soak mutants mavproxy clean three lock
 
 help:
 	@echo "make install   the environment only"
@@ -22,6 +22,7 @@ help:
 	@echo "make bench-campaign  what games of a campaign cost, beside an earlier commit; a quarter of an hour"
 	@echo "make bench-page  the page before a browser, with 200 and 1000 vehicles"
 	@echo "make figures   the committed tables of games, routes and predictors again, in one sweep"
+	@echo "make bench-matrix  every evader against every pursuers' strategy; resumable"
 	@echo "make bench-team   teams of pursuers against the paper's rules, hours; resumable"
 	@echo "make bench-predictor   the comparison with LSTM and GRU"
 	@echo "make bench-gym   steps of learning environments, beside VMAS and PettingZoo's simple_tag"
@@ -93,6 +94,9 @@ $(TORCH)/.installed: locks/bench-predictor.in $(STAMP)
 	@touch $@
 
 # Resumable: a game that has its row is not played again.
+bench-matrix: install
+	$(BIN)/python -m tests.benchmarks.matrix
+
 bench-team: install
 	$(BIN)/python -m tests.benchmarks.team --seeds 200
 	$(BIN)/python -m tests.benchmarks.team_plane

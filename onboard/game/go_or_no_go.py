@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import degrees
 
 from onboard.core.game.rules import NO_TARGET, Target
+from onboard.core.geometry.chauffeur import sure_radius
 from onboard.core.math.states import Vehicle
 from onboard.core.math.vectors import scale
 from onboard.core.strategy.team.plan_types import Heights, Member, Situation
@@ -47,6 +48,16 @@ def lines(s: Situation) -> list[str]:
     """What to expect of an engagement."""
     found = odds(s)
     count = sum(member.fit for member in s.team)
+    fast = [member for member in s.team if member.fit and member.vehicle.speed > s.evader.speed]
+    if fast:
+        sure = min(sure_radius(s.evader.speed, one.vehicle.speed, one.limits.turn_rate) for one in fast)
+        safe = "above" if sure < s.rules.R else "not above"
+        bound = (
+            f"bound: R = {s.rules.R:g} m is {safe} the {sure:.1f} m with which one pursuer captures an evader"
+            " that turns at once (the homicidal chauffeur)"
+        )
+        word = "go" if sure < s.rules.R else "open"
+        return [f"{word}: {bound}", f"  the table of odds says nothing here: {found.beyond}"]
     if found.needed > count:
         bound = f"bound: {found.needed} such pursuers at least force a capture, here are {count}"
     elif found.needed == 0:

@@ -103,7 +103,7 @@ def engagement(
 ) -> Situation:
     """The situation now, as the table's games are described: in the plane without noise, delay and turns, as
     its simple motion has them; in space with DELAY and the tracks' `sigma` [m]."""
-    if rules.planar:
+    if rules.planar and all(member.vehicle.speed < evader.vehicle.speed for member in team):
         evader, team = _free(evader), tuple(_free(member) for member in team)
         target = target._replace(position=level(target.position, True))
     margin = Margin() if rules.planar else Margin(DELAY, sigma)
