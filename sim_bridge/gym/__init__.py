@@ -1,12 +1,12 @@
 """Environments for those who train: arrays of games, Gymnasium, PettingZoo (extras `sim` and `gym`).
 
-`gymnasium.make("apollonius/Plane-v0")` finds them through the entry point `gymnasium.envs`, and without an
-installation `gymnasium.make("sim_bridge.gym:apollonius/Plane-v0")` does. Importing this package imports
-neither library.
+Importing it registers `apollonius/Plane-v0` and its like with Gymnasium where that is installed;
+`gymnasium.make("sim_bridge.gym:apollonius/Plane-v0")` does both at once.
 """
 
 from __future__ import annotations
 
+import contextlib
 from typing import Any
 
 IDS: dict[str, dict[str, Any]] = {
@@ -26,12 +26,5 @@ def register_envs() -> None:
             register(id=id, entry_point="sim_bridge.gym.single:GameEnv", kwargs=dict(preset))
 
 
-def _register_where_gymnasium_is() -> None:
-    """Importing the package by Gymnasium's own way of naming a module registers the ids."""
-    import sys
-
-    if "gymnasium" in sys.modules:
-        register_envs()
-
-
-_register_where_gymnasium_is()
+with contextlib.suppress(ImportError):  # the arrays need no Gymnasium
+    register_envs()

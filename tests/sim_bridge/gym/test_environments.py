@@ -112,6 +112,15 @@ def test_a_game_ends_by_capture_as_terminated_and_at_the_horizon_as_cut_off() ->
         assert sign * reward > 0.9
 
 
+def test_gymnasium_makes_them_by_name_whichever_is_imported_first() -> None:
+    for code in ("import sim_bridge.gym, gymnasium; name = ''", "import gymnasium; name = 'sim_bridge.gym:'"):
+        code += "; print(gymnasium.make(name + 'apollonius/Plane-v0', compiled=False).reset(seed=1)[0].shape)"
+        done = subprocess.run(
+            [sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT, check=True
+        )
+        assert done.stdout == "(50,)\n"
+
+
 def test_wrong_words_and_actions_are_named() -> None:
     for words, said in (({"scenarios": "plane"}, "scenarios"), ({"render_mode": "ansi"}, "render_mode")):
         with pytest.raises(ConfigError, match=said):
@@ -175,9 +184,9 @@ async def test_a_game_in_the_mode_human_is_seen_by_the_ground_station() -> None:
         await bus.close()
 
 
-def test_importing_the_package_imports_none_of_the_libraries() -> None:
+def test_programs_import_none_of_the_libraries() -> None:
     code = (
-        "import sys, sim_bridge.gym, sim_bridge.cli, onboard.cli, gcs.cli;"
+        "import sys, sim_bridge.cli, onboard.cli, gcs.cli, onboard.game.policy_file;"
         "print([m for m in ('gymnasium', 'pettingzoo', 'numba') if m in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT, check=True)

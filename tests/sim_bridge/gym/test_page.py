@@ -58,7 +58,7 @@ def test_from_an_empty_folder_to_the_first_step_takes_less_than_five_minutes(tmp
         else:
             source.mkdir(exist_ok=True)
             shutil.copy(ROOT / name, source / name)
-    step = ("import gymnasium; e = gymnasium.make('apollonius/Plane-v0'); e.reset(seed=1);"
+    step = ("import gymnasium; e = gymnasium.make('sim_bridge.gym:apollonius/Plane-v0'); e.reset(seed=1);"
             "print(e.step(e.action_space.sample())[1])")  # fmt: skip
     python = tmp_path / "venv" / "bin" / "python"
     clean = {"PATH": "/usr/local/bin:/usr/bin:/bin", "HOME": str(tmp_path)}
