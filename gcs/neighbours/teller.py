@@ -8,7 +8,7 @@ from contextlib import AsyncExitStack
 from urllib.parse import urlsplit
 
 from gcs.neighbours.traffic import adsb, cot
-from gcs.picture.values import Picture
+from gcs.picture.values import Picture, Presence
 from gcs.settings import NeighbourSettings
 from onboard.config.strict import ConfigError
 from onboard.runtime.links import open_link
@@ -18,17 +18,22 @@ from onboard.wire.mavlink.frames import Sender
 from onboard.wire.mavlink.ids import ADSB
 
 EACH_S = 1.0
-SYSTEM = 254  # of the reports: no vehicle's, and not a ground station's usual 255
+NOBODY = 254  # system id of reports while no own vehicle is known
+VEHICLES_MOST = 32  # in whose name one second's reports are sent
 
 
 class Teller:
-    """Sends the tracks of a picture to links and a CoT address; `run` it as a task."""
+    """Sends the tracks of a picture to links and a CoT address; `run` it as a task.
+
+    By MAVLink they come from an ADS-B receiver aboard each own vehicle (its system id, component 156): ground
+    stations show traffic only of the vehicle that they look at.
+    """
 
     def __init__(self, picture: Callable[[], Picture], links: Sequence[Link], cot: Link | None) -> None:
         self._picture = picture
         self._links = links
         self._cot = cot
-        self._sender = Sender(SYSTEM, ADSB)
+        self._senders: dict[int, Sender] = {}
 
     async def run(self) -> None:
         """Tell, once a second, until cancelled."""
@@ -39,15 +44,23 @@ class Teller:
     def tell(self) -> None:
         """Send what is known now."""
         picture = self._picture()
-        if self._links:
-            frames = [self._sender.pack(AdsbHeartbeat())]
-            frames += [self._sender.pack(report) for report in adsb(picture)]
+        for sender in self._aboard(picture) if self._links else ():
+            frames = [sender.pack(AdsbHeartbeat())]
+            frames += [sender.pack(report) for report in adsb(picture)]
             for link in self._links:
                 for frame in frames:
                     link.send(frame)
         if self._cot is not None:
             for event in cot(picture):
                 self._cot.send(event)
+
+
+    def _aboard(self, picture: Picture) -> list[Sender]:
+        """The senders of this second: one for each own vehicle that is there and is not itself a track."""
+        tracked = {track.id for track in picture.tracks}
+        there = [v.id for v in picture.vehicles if v.presence is Presence.PRESENT and v.id not in tracked]
+        ids = there[:VEHICLES_MOST] or [NOBODY]
+        return [self._senders.setdefault(id, Sender(id, ADSB)) for id in ids]
 
 
 async def teller(

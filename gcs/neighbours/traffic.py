@@ -17,7 +17,7 @@ from onboard.wire.geodesy import Frame
 from onboard.wire.mavlink.values import AdsbVehicle
 
 OLD_S = 5.0  # a track that was silent for longer is not told any more
-ICAO_BASE = 0xF00000  # a block that no state has: no aircraft's address
+ICAO_BASE = 0x9FF000  # of a block that no state has; MAVProxy takes those from 0xA00000 on for test obstacles
 STALE_S = 10.0  # after which a display of Cursor-on-Target lets a mark fade
 COT_TYPE = "a-u-A"  # an atom of unknown affiliation in the air: what it is, is not known here
 

@@ -9,16 +9,20 @@ import asyncio
 import os
 from collections import Counter
 from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager
+from contextlib import AsyncExitStack, asynccontextmanager
 from pathlib import Path
 
 import pytest
 
+from gcs.neighbours.teller import teller
+from gcs.picture.values import Picture
+from gcs.settings import NeighbourSettings
 from onboard.game.scenario import Kind
 from onboard.wire.mavlink.tlog import read_tlog
 from tests.support.flown_autopilot import FLOWN
 from tests.support.paths import ROOT
 from tests.support.real_time import patience, until
+from tests.support.sample_messages import Tower, setup, track
 from tests.support.udp_fleet import HOST, fleet, free_port
 
 PROGRAM = ROOT / ".venv-mavproxy" / "bin" / "mavproxy.py"
@@ -63,7 +67,7 @@ class Console:
 
 
 @asynccontextmanager
-async def mavproxy(port: int, folder: Path) -> AsyncIterator[Console]:
+async def mavproxy(port: int, folder: Path, more: str = "") -> AsyncIterator[Console]:
     """MAVProxy listening on a port, with its state and its log in a folder."""
     process = await asyncio.create_subprocess_exec(
         str(PROGRAM.with_name("python")),
@@ -73,7 +77,7 @@ async def mavproxy(port: int, folder: Path) -> AsyncIterator[Console]:
         f"--state-basedir={folder}",
         "--logfile=flight.tlog",
         "--cmd=set flushlogs 1",
-        "--default-modules=log,param,arm,mode,cmdlong,misc",
+        f"--default-modules=log,param,arm,mode,cmdlong,misc{more}",
         cwd=folder,
         env={**os.environ, "HOME": str(folder), "TERM": "dumb"},
         stdin=asyncio.subprocess.PIPE,
@@ -121,6 +125,37 @@ async def test_it_fetches_parameters_changes_the_mode_and_arms(kind: Kind, tmp_p
         assert vehicles.autopilot(2).mode == vehicles.autopilot(2).first_mode
         parameters = len(autopilot.parameters)
     await asyncio.to_thread(check_log, tmp_path, parameters)
+
+
+async def test_it_draws_the_evader_that_the_station_knows_by_tracks(tmp_path: Path) -> None:
+    """Two senders share its port, as on 14550: the autopilot, and the station's reports of traffic."""
+    port, tower = free_port(), Tower()
+    tower.hear(setup(2))
+    where = track(7, position=(300.0, -400.0, -60.0))
+    async with fleet(Kind.ARDUCOPTER, [[port], []], ground=True), AsyncExitStack() as stack:
+        settings = NeighbourSettings(adsb=(f"udpout://{HOST}:{port}",))
+
+        def picture() -> Picture:  # vehicle 1 of the fleet flies beside it; the opponent is known as 7
+            tower.fly(0.1, 1)
+            tower.hear(where)
+            return tower.picture
+
+        told = await teller(picture, settings, stack)
+        assert told is not None
+        telling = asyncio.create_task(told.run())
+        async with asyncio.timeout(patience(PLAYED_S)), mavproxy(port, tmp_path, ",adsb") as console:
+            for wanted in (1, 0):  # it knows the evader; and once nobody tells of it, no more
+                said = f"total threat count: {wanted} "
+                for _ in range(120):
+                    begun = len(console.said)
+                    console.type("adsb status")
+                    await asyncio.sleep(0.5)
+                    if said in console.said[begun:]:
+                        break
+                else:
+                    pytest.fail(f"MAVProxy said:\n{console.said}")
+                telling.cancel()
+        await asyncio.wait([telling])
 
 
 def check_log(folder: Path, parameters: int) -> None:

@@ -68,7 +68,7 @@ def test_a_ground_station_reads_where_the_evader_is_and_where_it_flies() -> None
     )  # fmt: skip
     assert told.flags & asked == asked
     assert not told.flags & mavlink.ADSB_FLAGS_VALID_SQUAWK
-    assert told.ICAO_address >> 20 == 0xF  # no state's
+    assert 0x900000 <= told.ICAO_address <= 0x9FFFFF  # no state's, and no test obstacle of MAVProxy's
 
 
 @pytest.mark.parametrize(
@@ -141,7 +141,10 @@ async def test_pytak_hears_the_events_and_pymavlink_the_reports_on_real_sockets(
     reader, _writer = await pytak.protocol_factory({"COT_URL": f"udp+broadcast://127.0.0.1:{cot_port}"})
     worker = pytak.RXWorker(events, {"COT_URL": "udp://127.0.0.1"}, reader)
     settings = NeighbourSettings(adsb=(f"udpout://127.0.0.1:{adsb_port}",), cot=f"udp://127.0.0.1:{cot_port}")
-    picture = seen().picture
+    tower = seen()
+    tower.fly(1.0, 2)
+    tower.hear(track(1))
+    picture = tower.picture
     async with AsyncExitStack() as stack:
         made = await teller(lambda: picture, settings, stack)
         assert isinstance(made, Teller)
@@ -156,4 +159,6 @@ async def test_pytak_hears_the_events_and_pymavlink_the_reports_on_real_sockets(
     wire.close()
     assert [message.get_type() for message in heard[:2]] == ["HEARTBEAT", "ADSB_VEHICLE"]
     assert heard[0].type == mavlink.MAV_TYPE_ADSB
+    assert {m.get_srcSystem() for m in heard} == {2}, "aboard the pursuer, for that is what is looked at"
+    assert {m.get_srcComponent() for m in heard} == {mavlink.MAV_COMP_ID_ADSB}
     assert ET.fromstring(event).get("uid") == "apollonius.test.track.1"
