@@ -22,6 +22,7 @@ speed = 5
 [[pursuers]]
 position = [10, 20]
 speed = 4
+strategy = "paper"
 [parameters]
 R = 4.0
 horizon = 20.0

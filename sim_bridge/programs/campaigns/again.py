@@ -13,6 +13,7 @@ import numpy as np
 
 from onboard.config.strict import ConfigError
 from onboard.core.game.referee import GameResult
+from onboard.core.strategy.registry import pursuer_named
 from onboard.game.plugins import evader_strategy, pursuer_strategy
 from onboard.game.scenario import Scenario
 from onboard.runtime.run_folder import made
@@ -70,7 +71,8 @@ def replay(game: Game, folder: Path) -> tuple[Row, list[Path]]:
         from sim_bridge.plane_game.figures import draw_game
         from sim_bridge.plane_game.program import play
 
-        return row, draw_game(play(scenario, scenario.pursuers[0].strategy), folder)
+        pursuing = pursuer_named(scenario.pursuers[0].strategy)
+        return row, draw_game(play(scenario, pursuing), folder)
     return row, draw_stages(scenario, _in_space(scenario, row), folder, name)
 
 
