@@ -30,7 +30,7 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
     """What concerns one environment and not its game."""
 
     render_mode: str | None = None  # "rgb_array", or "human": over the bus, in real time
-    compiled: bool = True  # False: interpreted; slower, but the first step comes at once
+    compiled: bool = False  # ten times faster steps, after half a minute or more of compiling
     game: str = "game"  # name of the game on the bus
     bus: str | None = None  # Zenoh endpoint; None = tcp/127.0.0.1:7447
 

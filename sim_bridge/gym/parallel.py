@@ -24,7 +24,7 @@ class GameParallelEnv(ParallelEnv[str, Numbers, Numbers]):  # type: ignore[misc]
     metadata: By = {"name": "apollonius_v0", "render_modes": list(RENDER_MODES), "render_fps": 20}  # noqa: RUF012
 
     def __init__(
-        self, render_mode: str | None = None, compiled: bool = True, game: str = "game",
+        self, render_mode: str | None = None, compiled: bool = False, game: str = "game",
         bus: str | None = None, **wish: Any,
     ) -> None:  # fmt: skip
         """Raises ConfigError for a wish that cannot be."""

@@ -76,7 +76,7 @@ def pettingzoo() -> Contender:
     """The project's own parallel environment, a game at a time."""
     from sim_bridge.gym.parallel import parallel_env
 
-    env = parallel_env(scenario="plane")
+    env = parallel_env(scenario="plane", compiled=True)
     env.reset(seed=1)
     actions = {name: env.action_space(name).sample() for name in env.possible_agents}
 
