@@ -7,7 +7,7 @@ from math import degrees
 
 from gcs.picture.team import band_in_words
 from gcs.picture.terminal_text import cut
-from gcs.picture.values import CommandView, LegState, LogLine, Picture, Presence
+from gcs.picture.values import AssessmentView, CommandView, LegState, LogLine, Picture, Presence
 from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus.messages import Severity
 
@@ -45,15 +45,19 @@ def _game(picture: Picture) -> list[str]:
         by = f" by {game.outcome.captor}" if game.outcome.captor else ""
         parts.append(f"evader {game.outcome.verdict.value}{by}")
     elif picture.assessment is not None:
-        found = picture.assessment
-        gap = "encircled" if found.encircled else f"gap {degrees(found.largest_gap):.0f}°"
-        if found.captured is not None:
-            p, low, high = (100.0 * share for share in found.captured)
-            gap += f", capture {p:.0f} % ({low:.0f}–{high:.0f})"
-        parts.append(f"{gap}{', target denied' if found.target_denied else ''}")
+        parts.append(prospects_in_words(picture.assessment))
     if game.plan is not None:
         parts.append(band_in_words(game.plan))
     return parts
+
+
+def prospects_in_words(found: AssessmentView) -> str:
+    """The widest way out, and the odds, for people."""
+    gap = "encircled" if found.encircled else f"gap {degrees(found.largest_gap):.0f}°"
+    if found.captured is not None:
+        p, low, high = (100.0 * share for share in found.captured)
+        gap += f", capture {p:.0f} % ({low:.0f}–{high:.0f})"
+    return f"{gap}{', target denied' if found.target_denied else ''}"
 
 
 def _fleet(picture: Picture) -> str:

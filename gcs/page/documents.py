@@ -11,13 +11,15 @@ from typing import Any
 
 from gcs.console.command_parser import HELP_LINES, SORTS, WHOM
 from gcs.console.detail import detail as detail_lines
-from gcs.console.status_line import SIGNS, clock, log_lines, spans
+from gcs.console.status_line import SIGNS, clock, log_lines, prospects_in_words, spans
 from gcs.console.vehicle_table import COLUMNS, GRADE_WORDS, Grade, rows, sort_values
 from gcs.page.frames import HEAD, ROLES, TRACK, VEHICLE
 from gcs.picture.current import current
+from gcs.picture.team import band_in_words
 from gcs.picture.values import CommandView, GameView, Picture, VehicleView
 from onboard.game import palette
 from onboard.wire.bus.messages import CommandKind, SupervisorAction
+from onboard.wire.bus.team_messages import TeamPlan
 
 Document = dict[str, Any]
 LOG_MOST = 200  # lines of the event log on the page
@@ -168,7 +170,15 @@ def _game(game: GameView) -> Document:
             "verdict": outcome.verdict.value, "captor": outcome.captor, "time": outcome.time,
             "smallest": _number(outcome.smallest_distance), "reason": outcome.reason,
         },
+        "plan": _plan(game.plan),
     }  # fmt: skip
+
+
+def _plan(plan: TeamPlan | None) -> Document | None:
+    if plan is None:
+        return None
+    parts = [{"id": part.id, "role": part.role.value} for part in plan.parts]
+    return {"words": band_in_words(plan), "parts": parts}
 
 
 def _alerts(picture: Picture) -> list[Document]:
@@ -200,6 +210,7 @@ def _assessment(picture: Picture) -> Document | None:
     if found is None:
         return None
     return {
+        "words": prospects_in_words(found), "captured": found.captured,
         "encircled": found.encircled, "gaps": [list(gap) for gap in found.gaps],
         "largest_gap_deg": degrees(found.largest_gap), "target_denied": found.target_denied,
         "prospects": [

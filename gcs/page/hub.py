@@ -17,6 +17,7 @@ from gcs.console.questions import Questions
 from gcs.console.source import Source
 from gcs.page import documents, requests
 from gcs.page.access import Rights
+from gcs.page.fan import Fans
 from gcs.page.frames import frame
 from gcs.picture.values import Picture
 from onboard.wire.bus.messages import CommandKind
@@ -83,6 +84,7 @@ class Hub:
         self._timeline = timeline
         self._number = 0
         self._field: str = ""
+        self._fans = Fans()
 
     def join(self, rights: Rights) -> Browser | None:
         """A new browser, which has all that stands; None where there are too many."""
@@ -119,10 +121,13 @@ class Hub:
         picture = self.source.picture()
         self._number += 1
         moved = frame(picture, self._number)
+        self._fans.take(picture)
+        fans = _json(self._fans.document())
         slow = self._number % BOARD_EACH == 0
         field = _json(documents.field(picture)) if slow else self._field
         for browser in self.browsers:
             browser.put("frame", moved)
+            browser.put("fans", fans)
             if browser.questions.lapsed(picture.now_ns):
                 browser.say("not done", "answered")
             if field != self._field:

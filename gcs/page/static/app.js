@@ -81,6 +81,7 @@ const hear = {
   trails(message) {
     scene.setTrails(message);
   },
+  fans: (message) => scene.setFans(message),
   board(message) {
     page.board = message;
     drawBoard(message);
@@ -147,9 +148,8 @@ function drawBoard(board) {
     ? `evader ${game.outcome.verdict}${game.outcome.captor ? ` by ${game.outcome.captor}` : ""}`
     : game.phase.toUpperCase();
   $("clock").textContent = game.clock;
-  const found = board.assessment;
-  const gap = found && (found.encircled ? "encircled: no free ray" : `widest gap ${found.largest_gap_deg.toFixed(0)}°`);
-  $("odds").textContent = found ? `${gap}${found.target_denied ? ", target denied" : ""}` : "";
+  $("odds").textContent = board.assessment && !game.outcome ? board.assessment.words : "";
+  $("plan").textContent = game.plan ? game.plan.words : "";
   $("status").textContent = board.status;
   table.setRows(board.vehicles, page.colours);
   drawAlerts(board.alerts);

@@ -39,6 +39,19 @@ function clear(group) {
   }
 }
 
+// A band along a way, so many σ to each side over the ground.
+function strip(way, times) {
+  const sides = way.map(({ at, sigma }, i) => {
+    const before = way[Math.max(0, i - 1)].at;
+    const after = way[Math.min(way.length - 1, i + 1)].at;
+    const [dx, dz] = [after[0] - before[0], after[2] - before[2]];
+    const length = Math.hypot(dx, dz) || 1;
+    const [u, w] = [(-dz / length) * sigma * times, (dx / length) * sigma * times];
+    return [[at[0] + u, at[1], at[2] + w], [at[0] - u, at[1], at[2] - w]];
+  });
+  return points(sides.slice(1).flatMap(([left, right], i) => [sides[i][0], sides[i][1], left, sides[i][1], right, left]));
+}
+
 export function round(value) {
   const power = 10 ** Math.floor(Math.log10(value));
   const step = [1, 2, 5, 10].find((s) => s * power >= value * 0.999999);
@@ -53,7 +66,9 @@ export class Ground {
     this.chosen = new Group(); // of the selected vehicle
     this.aims = new Group();
     this.gaps = new Group();
-    this.group.add(this.still, this.near, this.chosen, this.aims, this.gaps);
+    this.fans = new Group();
+    this.expected = []; // places at the fans' marks, for labels
+    this.group.add(this.still, this.near, this.chosen, this.aims, this.gaps, this.fans);
   }
 
   setColours(colours) {
@@ -153,6 +168,23 @@ export class Ground {
       mesh.rotation.x = -Math.PI / 2;
       mesh.position.set(x, y, z);
       this.gaps.add(mesh);
+    }
+  }
+
+  // Where tracks will be: the mean way, and how far off 1σ and 2σ are; rings at the marks [s].
+  setFans(fans, marks) {
+    clear(this.fans);
+    this.expected = [];
+    if (!this.colours) return;
+    const colour = this.colours.evader;
+    for (const fan of fans) {
+      const way = fan.rows.map(([after, n, e, d, sigma]) => ({ after, sigma, at: place([n, e, d]) }));
+      this.fans.add(new Line(points(way.map((each) => each.at)), new LineBasicMaterial({ color: colour })));
+      for (const times of [1, 2]) this.fans.add(new Mesh(strip(way, times), veil(colour, 0.16)));
+      for (const each of way.filter(({ after }) => marks.includes(after))) {
+        this.expected.push(each);
+        this.fans.add(circle(each.sigma, each.at, colour), circle(2 * each.sigma, each.at, colour, true));
+      }
     }
   }
 

@@ -114,8 +114,16 @@ export class Scene {
 
   setBoard(board) {
     this.board = board;
+    this.parts = new Map(((board.game && board.game.plan && board.game.plan.parts) || []).map((part) => [part.id, part.role]));
     this.ground.setAims(this.shown.aims ? board.aims : [], this.where, this.selected);
     this.ground.setGaps(this.shown.shapes ? board.assessment : null);
+    this.dirty = true;
+  }
+
+  // Where the evaders' tracks will be.
+  setFans(message) {
+    this.fans = message;
+    this.ground.setFans(this.shown.shapes ? message.fans : [], message.marks);
     this.dirty = true;
   }
 
@@ -135,6 +143,7 @@ export class Scene {
     this.fleet.lines.visible = this.shown.trails;
     this.ground.chosen.visible = this.shown.shapes;
     if (this.board) this.setBoard(this.board);
+    if (this.fans) this.setFans(this.fans);
     this.dirty = true;
   }
 
@@ -262,7 +271,8 @@ export class Scene {
       const at = this.onScreen(v.x, v.y, v.z);
       if (!at) continue;
       const evader = this.roles[v.role] === "evader";
-      const name = evader ? `${v.id} evader` : String(v.id);
+      const part = evader ? "evader" : (this.parts && this.parts.get(v.id)) || "";
+      const name = part ? `${v.id} ${part}` : String(v.id);
       this.text(pen, v.fed ? name : `${name} ?`, at[0] + 12, at[1] - 10, v.fed ? colours.ink : colours.faint);
       if (v.id === this.selected) {
         pen.strokeStyle = colours.ink;
@@ -276,6 +286,10 @@ export class Scene {
       const at = this.onScreen(...place(this.field.target));
       if (at) this.text(pen, "target", at[0] + 12, at[1] + 12, colours.target);
     }
+    this.ground.expected.forEach(({ after, at: [x, y, z] }) => {
+      const at = this.onScreen(x, y, z);
+      if (at) this.text(pen, `+${after} s`, at[0] + 6, at[1] + 14, colours.faint);
+    });
   }
 
   drawScale(pen) {

@@ -1,0 +1,55 @@
+"""What a browser shows of the team's plan, of the odds and of the evader's fan."""
+
+from __future__ import annotations
+
+import pytest
+from msgspec.structs import replace
+
+from gcs.page import documents
+from gcs.picture.values import AssessmentView
+from onboard.core.math.constants import NS_PER_S
+from onboard.wire.bus.messages import Phase
+from onboard.wire.bus.team_messages import PartReason, PlannedPart, TeamPlan, TeamRole
+from tests.support.page_stage import chromium, opened, seen, stage
+from tests.support.sample_messages import Tower, phase, setup, state, track
+
+
+def plan(stamp_ns: int) -> TeamPlan:
+    parts = (
+        PlannedPart(2, TeamRole.GOALKEEPER, (300.0, 0.0, -50.0), 0.0, 12.0, PartReason.FIRST_AT_TARGET),
+        PlannedPart(3, TeamRole.CHASER, (0.0, 0.0, -50.0), 0.0, -1.0, PartReason.NO_GAP_IN_REACH),
+    )
+    return TeamPlan(2, stamp_ns, 1.0, parts, False, 0.6, -0.5, 0.0, closer=3, closes=41.0)
+
+
+@pytest.mark.real
+async def test_roles_stand_beside_the_ids_and_the_fan_before_the_evader():
+    async with stage(3) as made, chromium() as browser:
+        made.tell(setup(3))
+        page = await opened(browser, made)
+        made.tell(phase(Phase.RUNNING))
+        now_ns = made.station.picture().now_ns
+        for i in range(5):
+            made.tell(track(1, now_ns + i * NS_PER_S // 10))
+        made.tell(plan(now_ns))
+        await seen(page, "page.scene.parts.get(2) === 'goalkeeper' && page.scene.parts.get(3) === 'chaser'")
+        said = await page.locator("#plan").inner_text()
+        assert said == "plan of 2: way out 34° at 331°, 3 could close it by T+41 s"
+        await seen(page, "page.scene.ground.expected.length === 3")
+        places = await page.evaluate("page.scene.ground.expected.map(({after, at}) => [after, ...at])")
+        for after, east, up, south in places:  # 10 m/s north, from 100 m east
+            assert (east, up, south) == pytest.approx((100.0, 50.0, -10.0 * after), abs=2.0)
+        await page.keyboard.press("o")  # shapes off
+        await seen(page, "page.scene.ground.fans.children.length === 0")
+
+
+def test_the_odds_are_the_consoles_words():
+    tower = Tower()
+    tower.hear(setup(), phase(Phase.RUNNING), state(1), state(2), state(3))
+    found = AssessmentView(
+        encircled=False, gaps=((0.1, 0.6),), largest_gap=0.6, target_denied=True, prospects=(),
+        captured=(0.85, 0.8, 0.89),
+    )  # fmt: skip
+    told = documents.board(replace(tower.picture, assessment=found), "")
+    assert told["assessment"]["words"] == "gap 34°, capture 85 % (80–89), target denied"
+    assert told["game"]["plan"] is None
