@@ -116,8 +116,8 @@ def table(kind: str, ends: Ends) -> list[str]:
 def main() -> None:
     """Play what is missing, write the page."""
     parser = argparse.ArgumentParser(prog="python -m tests.benchmarks.matrix", description=__doc__)
-    parser.add_argument("--plane", type=int, default=400, help="games a pair in the plane")
-    parser.add_argument("--space", type=int, default=100, help="games a pair of aircraft")
+    parser.add_argument("--plane", type=int, default=300, help="games a pair in the plane")
+    parser.add_argument("--space", type=int, default=60, help="games a pair of aircraft")
     parser.add_argument("--parts", type=Path, default=Path(".matrix"))
     parser.add_argument("--only", type=int, choices=range(len(KINDS)), help="number of the one kind to play")
     given = parser.parse_args()
