@@ -22,34 +22,33 @@ from typing import Any, NamedTuple
 import msgspec
 import numpy as np
 
+from onboard.autopilot.arduplane import ArduPlaneEncoder
+from onboard.core.guidance.plane import Reference, Said
 from onboard.core.math.angles import wrap
 from onboard.core.math.vectors import sub, yaw_of
 from onboard.game.scenario import Scenario
 from onboard.game.staging import places_of, start_headings
 from onboard.pilot.predictor_choice import Predicting
 from onboard.runtime.loop import run_virtual, virtual_clock
+from sim_bridge.campaign.aboard import Aboard
 from sim_bridge.campaign.plane_in_wind import Flown
 from sim_bridge.campaign.spatial_campaign import Played, play_drawn, play_seed
-from sim_bridge.campaign.spatial_draw import aboard_of, draw, drawn_scenario, spatial
+from sim_bridge.campaign.spatial_draw import draw, drawn_scenario, spatial
 from sim_bridge.campaign.spatial_game import Evasion
 from sim_bridge.rehearsal import Options, Rehearsal
 from sim_bridge.vehicle.autopilot.arduplane import ArduPlane
 from sim_bridge.vehicle.flight.airframe import Plane
 from sim_bridge.vehicle.flight.plane import PlaneState
 from sim_bridge.vehicle.wind.dryden import GustState
-from sim_bridge.vehicle.wind.estimate import Estimate
 
 VERDICTS, ARRIVALS, CORRELATION = 0.95, 0.02, 0.95  # what is promised
 
 
 class Began(NamedTuple):
-    """One aircraft at t₀, and what its autopilot was told last."""
+    """One aircraft at t₀, what its agent remembers, and what its autopilot was told last."""
 
     plane: PlaneState
-    bank: float  # [rad]
-    height: float  # sought [m]
-    airspeed: float  # [m/s]
-    wind: Estimate  # its own
+    aboard: Aboard
     gusts: GustState  # that it meets
 
 
@@ -85,8 +84,10 @@ def fly(scenario: Scenario) -> Flight:
             def step() -> None:
                 move()
                 if not began and game.master.t0_ns and world.wall_ns >= game.master.t0_ns:
-                    vehicles = enumerate(world.vehicles.values())
-                    began.extend(_begins(vehicle, field._states[n]) for n, vehicle in vehicles)
+                    later = (world.elapsed_ns - game.clock.monotonic_ns()) / 1e9
+                    for n, (id, vehicle) in enumerate(world.vehicles.items()):
+                        aboard = _aboard(vehicle, game.agents[id], scenario, later)
+                        began.append(Began(vehicle.airframe.state, aboard, field._states[n]))
 
             world.step = step  # type: ignore[method-assign]
             outcome = await game.until_ended()
@@ -96,13 +97,23 @@ def fly(scenario: Scenario) -> Flight:
     return run_virtual(play())
 
 
-def _begins(vehicle: Any, gusts: GustState) -> Began:
-    airframe, autopilot = vehicle.airframe, vehicle.autopilot
-    assert isinstance(airframe, Plane)
+def _aboard(vehicle: Any, agent: Any, scenario: Scenario, later: float) -> Aboard:
+    """What agent and autopilot of a vehicle remember; `later` takes the agent's time to the world's [s]."""
+    autopilot = vehicle.autopilot
+    assert isinstance(vehicle.airframe, Plane)
     assert isinstance(autopilot, ArduPlane)
-    wind = autopilot.wind_filter.estimate
-    told = autopilot._roll, -autopilot._altitude_z, autopilot._airspeed_target
-    return Began(airframe.state, *told, wind, gusts)
+    encoder = agent.core.vehicle.adapter._encoder
+    assert isinstance(encoder, ArduPlaneEncoder)
+    last, reference = agent.core.flight._state, encoder._reference
+    return Aboard(
+        last.demand,
+        last.stamp + later,
+        Reference(reference.altitude - scenario.flight.origin.altitude_m, reference.at + later),
+        Said(-autopilot._altitude_z, encoder._altitude._said.at + later),
+        Said(autopilot._airspeed_target, encoder._speed._said.at + later),
+        autopilot._roll,
+        autopilot.wind_filter.estimate,
+    )
 
 
 def compute(scenario: Scenario, seed: int, evasion: Evasion, flight: Flight, compiled: bool = True) -> Played:
@@ -114,9 +125,7 @@ def compute(scenario: Scenario, seed: int, evasion: Evasion, flight: Flight, com
         d.tracks.filters[i, (0, 5, 10)] += off
         d.tracks.waiting[:, i, :3] += off
         players.append(Flown(began.plane, began.gusts))
-        told = aboard_of(began.plane, d.start, began.airspeed, i)
-        altitude = told.altitude._replace(value=began.height)
-        crew.append(told._replace(bank=began.bank, altitude=altitude, wind=began.wind))
+        crew.append(began.aboard)
     return play_drawn(d._replace(players=players, crew=crew), evasion, compiled)
 
 
