@@ -125,7 +125,7 @@ def tally(way: str, games: list[Played]) -> Tally:
         len(games),
         verdicts.count(GameResult.CAPTURED),
         verdicts.count(GameResult.ARRIVED),
-        verdicts.count(GameResult.ESCAPED),
+        verdicts.count(GameResult.ESCAPED) + verdicts.count(GameResult.DENIED),
         float(np.mean(arrivals)) if arrivals else float("nan"),
         float(np.median([g.smallest for g in games])),
         sum(g.reversals for g in games),
