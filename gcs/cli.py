@@ -200,7 +200,7 @@ def export(
 
 @app.command(
     epilog="Examples: gcs page | gcs page --control | gcs page runs/2026-… | gcs page runs/2026-… runs/2026-…"
-    " | gcs page --host 0.0.0.0 --config gcs.toml"
+    " | gcs page --host 0.0.0.0 --config gcs.toml | gcs page --map field.mbtiles"
 )
 @takes(*BUS, "operator", "runs", "record")
 def page(
@@ -215,11 +215,14 @@ def page(
     control: Annotated[
         bool | None, typer.Option("--control", help="Let who opens the address it prints command vehicles.")
     ] = None,
+    map: Annotated[
+        Path | None, typer.Option("--map", help="Your own map: MBTiles, PMTiles, or a folder z/x/y.png.")
+    ] = None,
 ) -> int:
     """Serve the game as a page for any browser: 3-D scene, plan, tables, alerts, orders."""
     from gcs.page import program
 
-    found = options.settings(host=host, port=port, control=control)
+    found = options.settings(host=host, port=port, control=control, map=map and str(map))
     if not recordings:
         return _play(program.live(found))
     options.refuse(("game", "bus", "zenoh", "operator", "runs", "record"), "a recording")

@@ -43,6 +43,7 @@ class PageSettings(StrictConfig, frozen=True):
     enabled: bool = False  # serve it beside the console too
     host: str = "127.0.0.1"  # address to listen at
     port: HttpPort = 8765  # 0 = any
+    map: str = ""  # one's own map: MBTiles, PMTiles or a folder z/x/y.png; "" = none
     control: bool = False  # let who has the token command vehicles
     token_file: str = ""  # a token of one's own, mode 0600; "" = drawn at the start and printed
     tls_certificate: str = ""  # PEM; "" = no TLS

@@ -49,8 +49,8 @@ def colours() -> Document:
     }  # fmt: skip
 
 
-def hello(title: str, *, steers: bool, version: str) -> Document:
-    """What a browser learns first: who this is, what it may do, and how the frames are laid out."""
+def hello(title: str, *, steers: bool, version: str, map: Document | None = None) -> Document:
+    """What a browser learns first: who this is, what it may do, how frames are laid out; the user's map."""
     return {
         "what": "hello", "title": title, "steers": steers, "version": version, "palette": colours(),
         "frame": {"head": HEAD.size, "vehicle": list(VEHICLE), "track": list(TRACK)},
@@ -58,7 +58,7 @@ def hello(title: str, *, steers: bool, version: str) -> Document:
         "grades": [GRADE_WORDS[grade] for grade in Grade],
         "columns": [{"name": c.heading, "sort": c.sort, "help": HELP[c.heading]} for c in COLUMNS],
         "orders": [kind.value for kind in CommandKind], "sorts": list(SORTS),
-        "help": [list(line) for line in HELP_LINES], "whom": WHOM,
+        "help": [list(line) for line in HELP_LINES], "whom": WHOM, "map": map,
     }  # fmt: skip
 
 

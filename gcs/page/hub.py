@@ -79,6 +79,7 @@ class Hub:
 
     def __init__(self, source: Source, version: str, timeline: Timeline | None = None) -> None:
         self.source = source
+        self.map: documents.Document | None = None  # what browsers learn of the user's map
         self.browsers: set[Browser] = set()
         self._version = version
         self._timeline = timeline
@@ -92,7 +93,8 @@ class Hub:
             return None
         browser = Browser(rights)
         steers = rights.command and self.source.steers
-        browser.put("hello", _json(documents.hello(self.source.title, steers=steers, version=self._version)))
+        told = documents.hello(self.source.title, steers=steers, version=self._version, map=self.map)
+        browser.put("hello", _json(told))
         picture = self.source.picture()
         browser.put("field", _json(documents.field(picture)))
         browser.put("trails", _json(documents.trails(picture)))

@@ -130,8 +130,10 @@ async def _hubs_served(
 ) -> AsyncIterator[str]:
     """Serve one hub or two within the block; it yields the line that tells the address."""
     from gcs.page.server import Address, PageServer, served
+    from gcs.page.tiles import opened_map
 
-    server = PageServer(hubs[0], doors, *hubs[1:])
+    map = await off_loop(partial(opened_map, Path(settings.map))) if settings.map else None
+    server = PageServer(hubs[0], doors, hubs[1] if len(hubs) > 1 else None, map)
     async with (
         served(server, Address(settings.host, settings.port, tls)) as port,
         asyncio.TaskGroup() as tasks,

@@ -17,6 +17,7 @@ from aiohttp import WSMsgType, web
 
 from gcs.page.access import COOKIE, Doors, Rights, rights
 from gcs.page.hub import Browser, Hub
+from gcs.page.tiles import TileMap, TileStore, kind_of
 from onboard.config.strict import ConfigError
 
 TYPES = {".js": "text/javascript", ".css": "text/css", ".html": "text/html", ".svg": "image/svg+xml"}
@@ -69,19 +70,25 @@ def policy(nonce: str) -> dict[str, str]:
 class PageServer:
     """Serves a hub to browsers; of two recordings beside each other, two."""
 
-    def __init__(self, hub: Hub, doors: Doors, second: Hub | None = None) -> None:
+    def __init__(self, hub: Hub, doors: Doors, second: Hub | None = None, map: TileMap | None = None) -> None:
         self.hub = hub
         self.second = second
         self.doors = doors
+        self._tiles = TileStore(map) if map is not None else None
+        for each in (hub, second):
+            if each is not None and map is not None:
+                each.map = map.told()
         self._files = static_files()
         self._sockets: set[web.WebSocketResponse] = set()
 
     def app(self) -> web.Application:
         """What aiohttp runs."""
         app = web.Application()
-        app.add_routes(
-            [web.get("/", self._page), web.get("/live", self._live), web.get("/{name}", self._file)]
-        )
+        tile = r"/tiles/{z:\d{1,2}}/{x:\d{1,8}}/{y:\d{1,8}}"
+        app.add_routes([
+            web.get("/", self._page), web.get("/live", self._live), web.get("/{name}", self._file),
+            web.get(tile, self._tile),
+        ])  # fmt: skip
         return app
 
     async def close(self) -> None:
@@ -118,6 +125,17 @@ class PageServer:
         if file is None or file.type == "text/html":
             return web.Response(status=404, text="no such file", headers=policy(""))
         return web.Response(body=file.content, content_type=file.type, headers=policy(""))
+
+    async def _tile(self, request: web.Request) -> web.Response:
+        found = self._rights(request)
+        if not found.look:
+            return _refused(found.reason)
+        z, x, y = (int(request.match_info[name]) for name in "zxy")
+        tile = await self._tiles.get(z, x, y) if self._tiles is not None else None
+        if tile is None:
+            return web.Response(status=404, text="the map has no such tile", headers=policy(""))
+        headers = policy("") | {"Cache-Control": "private, max-age=3600"}
+        return web.Response(body=tile, content_type=kind_of(tile), headers=headers)
 
     async def _live(self, request: web.Request) -> web.StreamResponse:
         found = self._rights(request)

@@ -16,6 +16,7 @@ from gcs.console.source import Key
 from gcs.page.access import Doors
 from gcs.page.hub import Hub
 from gcs.page.server import Address, PageServer, served
+from gcs.page.tiles import TileMap
 from gcs.picture.values import Picture
 from gcs.station import Station, StationSetup
 from onboard.runtime.bus_memory import MemoryBroker
@@ -100,7 +101,13 @@ class Stage:
 
 @asynccontextmanager
 async def stage(
-    count: int = 3, *, control: bool = True, loss: float = 0.0, port: int = 0, seed: int = 1
+    count: int = 3,
+    *,
+    control: bool = True,
+    loss: float = 0.0,
+    port: int = 0,
+    seed: int = 1,
+    map: TileMap | None = None,
 ) -> AsyncIterator[Stage]:
     """A page of `count` vehicles. `loss`: share of all messages of the bus that is lost, each way."""
     clock = RealClock()
@@ -109,7 +116,7 @@ async def stage(
     station = Station(broker.connect("gcs"), clock, StationSetup(GAME))
     agents = [AnsweringAgent(broker.connect(f"agent {i}"), clock, i) for i in range(1, count + 1)]
     hub = Hub(LiveSource(station), "0")
-    server = PageServer(hub, Doors(TOKEN, control, "127.0.0.1"))
+    server = PageServer(hub, Doors(TOKEN, control, "127.0.0.1"), map=map)
     made = Stage(station, hub, server, broker, agents)
     async with served(server, Address("127.0.0.1", port)) as bound:
         made.port = bound

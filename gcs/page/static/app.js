@@ -1,6 +1,7 @@
 // The live page: one WebSocket, the scene, tables, alerts and orders. Texts are set as text, never as markup.
 import { colours } from "colours";
 import { reader } from "frames";
+import { GroundMap } from "map";
 import { Scene } from "scene";
 import { VehicleTable } from "table";
 import { Timeline } from "timeline";
@@ -59,6 +60,7 @@ function theme() {
   page.colours = colours(page.hello.palette, dark.matches);
   scene.setColours(page.colours);
   timeline.setColours(page.colours);
+  if (page.map) page.map.setDark(dark.matches);
 }
 dark.addEventListener("change", theme);
 
@@ -71,11 +73,15 @@ const hear = {
     $("abort").hidden = !message.steers;
     drawOrders();
     table.setColumns(message.columns, message.grades);
+    if (message.map && !page.map) page.map = new GroundMap(scene, message.map);
+    $("map").hidden = !message.map;
+    $("credit").textContent = message.map ? message.map.credit : "";
     theme();
   },
   field(message) {
     page.field = message;
     scene.setField(message);
+    if (page.map) page.map.setOrigin(message.origin);
   },
   marks: (message) => timeline.setMarks(message),
   trails(message) {
@@ -261,7 +267,7 @@ function showHelp() {
   const rows = [
     ["x", "ABORT ALL: everybody holds or returns"], ["h r b l", "hold, resume, return, land those selected; return and land ask"],
     ["y n", "answer"], [":", "type an order"], ["a", "the topmost alert was seen"], ["↑ ↓ j k", "select the vehicle above or below"],
-    ["v f c", "plan or 3-D; fit; follow the selected vehicle"], ["t o i", "trails, shapes, aims on and off"],
+    ["v f c", "plan or 3-D; fit; follow the selected vehicle"], ["t o i m", "trails, shapes, aims, map on and off"],
     ["space ← → , .", "replay: pause; 10 s; 0.1 s"], ["?", "this help"],
     ...(page.hello ? page.hello.help : []),
   ];
@@ -292,10 +298,15 @@ function follow() {
   scene.following = press($("follow")) ? page.selected : null;
 }
 
+function showMap() {
+  if (page.map) page.map.show(press($("map")));
+}
+
 for (const button of document.querySelectorAll("[data-view]")) button.addEventListener("click", () => view(button.dataset.view));
 for (const button of document.querySelectorAll("[data-show]")) button.addEventListener("click", () => scene.show(button.dataset.show, press(button)));
 $("fit").addEventListener("click", () => scene.fit());
 $("follow").addEventListener("click", follow);
+$("map").addEventListener("click", () => showMap());
 $("abort").addEventListener("click", () => send({ do: "abort" }));
 $("yes").addEventListener("click", () => { $("question").close(); send({ do: "yes" }); });
 $("no").addEventListener("click", () => { $("question").close(); send({ do: "no" }); });
@@ -324,6 +335,7 @@ document.addEventListener("keydown", (event) => {
   else if (key === "v") view(scene.view === "plan" ? "space" : "plan");
   else if (key === "f") scene.fit();
   else if (key === "c") follow();
+  else if (key === "m") showMap();
   else if (toggles[key]) scene.show(toggles[key], press(document.querySelector(`[data-show=${toggles[key]}]`)));
   else if (key === "?") showHelp();
   else if (!timeline.key(key)) return;
