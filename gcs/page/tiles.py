@@ -172,11 +172,13 @@ def _mbtiles(path: Path) -> TileMap:
 
 
 def _pmtiles(path: Path) -> TileMap:
-    from pmtiles.reader import MmapSource, Reader
+    from pmtiles import reader as untyped
     from pmtiles.tile import Compression, TileType
 
+    package: Any = untyped  # it has no types
+
     with path.open("rb") as file:
-        reader = Reader(MmapSource(file))  # the mapping outlives the file
+        reader = package.Reader(package.MmapSource(file))  # the mapping outlives the file
     try:
         head = reader.header()
         if head["tile_type"] not in (TileType.PNG, TileType.JPEG, TileType.WEBP):
