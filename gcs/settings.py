@@ -48,6 +48,7 @@ class PageSettings(StrictConfig, frozen=True):
     token_file: str = ""  # a token of one's own, mode 0600; "" = drawn at the start and printed
     tls_certificate: str = ""  # PEM; "" = no TLS
     tls_key: str = ""  # PEM; "" = in the certificate's file
+    tls_keys: str = ""  # the listener's folder of `gcs keys`: TLS, and certificates of the roster's stations
     tls_clients: str = ""  # PEM of the authority whose client certificates are let in
 
 

@@ -9,6 +9,7 @@ from cryptography import x509
 from cryptography.exceptions import InvalidSignature
 from cryptography.hazmat.primitives import hashes, serialization
 from cryptography.hazmat.primitives.asymmetric import ec
+from cryptography.hazmat.primitives.serialization import pkcs12
 from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
 EARLY = timedelta(minutes=5)  # certificates begin before they are made: members' clocks differ
@@ -78,6 +79,15 @@ def common_name(certificate: x509.Certificate) -> str:
 def fingerprint(certificate: x509.Certificate) -> str:
     """The first 16 hexadecimal digits of a certificate's SHA-256, for people to compare."""
     return certificate.fingerprint(hashes.SHA256()).hex()[:16]
+
+
+def for_browser(name: str, certificate_pem: bytes, key_pem: bytes) -> bytes:
+    """A member's pair as PKCS #12 without a password, as browsers import it."""
+    key = serialization.load_pem_private_key(key_pem, None)
+    assert isinstance(key, ec.EllipticCurvePrivateKey)
+    certificate = x509.load_pem_x509_certificate(certificate_pem)
+    plain = serialization.NoEncryption()
+    return pkcs12.serialize_key_and_certificates(name.encode(), key, certificate, None, plain)
 
 
 def pem(certificate: x509.Certificate) -> bytes:

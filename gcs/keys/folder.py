@@ -3,6 +3,7 @@
     authority.key, authority.pem     stay where they were made
     roster.toml                      the roster they were made from
     MEMBER/zenoh.json5               the bus: certificate, private key, and the listener's access rules
+    MEMBER/browser.p12               certificate and private key for a browser, no password
     MEMBER/mavlink.key               MAVLink signing key (vehicles)
     MEMBER/member.json               who the member is, until when, and the keys of its datagrams
 
@@ -22,7 +23,7 @@ from typing import Any, NamedTuple
 
 from cryptography import x509
 
-from gcs.keys.authority import Authority, common_name, fingerprint, pem
+from gcs.keys.authority import Authority, common_name, fingerprint, for_browser, pem
 from onboard.config.strict import ConfigError
 from onboard.game import access, field_roster
 from onboard.game.access import Use
@@ -34,6 +35,7 @@ from onboard.wire.bus.topics import Party
 
 ZENOH_FILE = "zenoh.json5"
 MAVLINK_FILE = "mavlink.key"
+BROWSER_FILE = "browser.p12"
 ROSTER_FILE = "roster.toml"
 KEY_BYTES = 32
 
@@ -65,6 +67,8 @@ def init(roster: FieldRoster, roster_text: bytes, folder: Path, now: datetime) -
         pairs[member.name], made = _certificate(authority, roster, member, place, now)
         if member.vehicle is not None and (made or not (place / MAVLINK_FILE).exists()):
             write_secret(place / MAVLINK_FILE, secrets.token_bytes(KEY_BYTES).hex().encode() + b"\n")
+        if made or not (place / BROWSER_FILE).exists():
+            write_secret(place / BROWSER_FILE, for_browser(member.certificate, *pairs[member.name]))
         datagrams[member.name] = _datagram_key(place, made)
         issued.append(_issued(place, member, pairs[member.name][0], made))
     for member, entry in zip(members, issued, strict=True):

@@ -33,6 +33,7 @@ class Doors(NamedTuple):
     host: str  # that it listens at
     names: tuple[str, ...] = ()  # under which it may also be asked for: of this computer
     certificates: bool = False  # TLS asks for client certificates and has checked them
+    members: Mapping[str, bool] | None = None  # of a field's keys: whom they let in, and whether to order
 
 
 def loopback(host: str) -> bool:
@@ -43,8 +44,9 @@ def loopback(host: str) -> bool:
         return False
 
 
-def rights(doors: Doors, headers: Mapping[str, str], token: str, peer: str) -> Rights:
-    """The rights of a request with these headers and this token, from this address.
+def rights(doors: Doors, headers: Mapping[str, str], token: str, peer: str, member: str = "") -> Rights:
+    """The rights of a request with these headers and this token, from this address; `member`: the name in the
+    client's certificate, which TLS has checked.
 
     A name in `Host` that is not the page's own is refused (a stranger's name that leads here), and so is an
     `Origin` other than the page itself (a stranger's page in the user's browser).
@@ -56,6 +58,10 @@ def rights(doors: Doors, headers: Mapping[str, str], token: str, peer: str) -> R
     origin = headers.get("Origin")
     if origin is not None and urlsplit(origin).netloc.lower() != host.lower():
         return Rights(False, False, "another page asked")
+    if doors.members is not None:
+        if member not in doors.members:
+            return Rights(False, False, f"{member[:80]!r} is no station of the roster that hears the game")
+        return Rights(True, doors.control and doors.members[member])
     known = hmac.compare_digest(token.encode(), doors.token.encode()) or doors.certificates
     if known:
         return Rights(True, doors.control)

@@ -105,7 +105,8 @@ async def beside(session: Session, settings: PageSettings) -> AsyncIterator[None
     if not settings.enabled:
         yield
         return
-    if not settings.token_file and (settings.control or not loopback(settings.host)):
+    far = not loopback(settings.host)
+    if not settings.token_file and not settings.tls_keys and (settings.control or far):
         raise ConfigError(
             "page.token_file: found none, expected one for a page beside the console that commands"
         )
@@ -149,8 +150,8 @@ async def _hubs_served(
 def address_line(settings: PageSettings, doors: Doors, port: int) -> str:
     """Where the page is, for people; with the token where it is needed."""
     host = "localhost" if loopback(settings.host) else settings.host
-    scheme = "https" if settings.tls_certificate else "http"
-    needed = settings.control or not loopback(settings.host)
+    scheme = "https" if settings.tls_certificate or settings.tls_keys else "http"
+    needed = (settings.control or not loopback(settings.host)) and doors.members is None
     query = f"/?token={doors.token}" if needed and not settings.token_file else "/"
     what = "shows and commands" if settings.control else "shows only; --control lets it command"
     return f"page: {scheme}://{host}:{port}{query} ({what})"
@@ -158,6 +159,8 @@ def address_line(settings: PageSettings, doors: Doors, port: int) -> str:
 
 def guarded(settings: PageSettings) -> tuple[Doors, ssl.SSLContext | None]:
     """Who is let in, and the encryption. Raises ConfigError."""
+    if settings.tls_keys:
+        return _by_field_keys(settings)
     far = not loopback(settings.host)
     if settings.token_file:
         token = read_secret(Path(settings.token_file), "token of the page").decode("ascii", "replace").strip()
@@ -177,6 +180,16 @@ def guarded(settings: PageSettings) -> tuple[Doors, ssl.SSLContext | None]:
             " without TLS the token can be read on its way"
         )
     return Doors(token, settings.control, settings.host, (), bool(settings.tls_clients)), _tls(settings)
+
+
+def _by_field_keys(settings: PageSettings) -> tuple[Doors, ssl.SSLContext]:
+    from gcs.page.field_tls import field_keys
+
+    for other in ("tls_certificate", "tls_key", "tls_clients", "token_file"):
+        if getattr(settings, other):
+            raise ConfigError(f"page.tls_keys: found with page.{other}, expected one of the two")
+    keys = field_keys(Path(settings.tls_keys))
+    return Doors("", settings.control, settings.host, (keys.host,), True, keys.members), keys.tls
 
 
 def _tls(settings: PageSettings) -> ssl.SSLContext | None:

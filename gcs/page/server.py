@@ -16,6 +16,7 @@ from typing import NamedTuple
 from aiohttp import WSMsgType, web
 
 from gcs.page.access import COOKIE, Doors, Rights, rights
+from gcs.page.field_tls import name_in
 from gcs.page.hub import Browser, Hub
 from gcs.page.tiles import TileMap, TileStore, kind_of
 from onboard.config.strict import ConfigError
@@ -99,7 +100,8 @@ class PageServer:
 
     def _rights(self, request: web.Request) -> Rights:
         token = request.query.get("token", "") or request.cookies.get(COOKIE, "")
-        return rights(self.doors, request.headers, token, request.remote or "")
+        member = name_in(request.get_extra_info("peercert"))
+        return rights(self.doors, request.headers, token, request.remote or "", member)
 
     async def _page(self, request: web.Request) -> web.Response:
         found = self._rights(request)

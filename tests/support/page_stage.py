@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import ssl
 from collections.abc import AsyncIterator, Iterable
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
@@ -108,6 +109,8 @@ async def stage(
     port: int = 0,
     seed: int = 1,
     map: TileMap | None = None,
+    doors: Doors | None = None,
+    tls: ssl.SSLContext | None = None,
 ) -> AsyncIterator[Stage]:
     """A page of `count` vehicles. `loss`: share of all messages of the bus that is lost, each way."""
     clock = RealClock()
@@ -116,9 +119,9 @@ async def stage(
     station = Station(broker.connect("gcs"), clock, StationSetup(GAME))
     agents = [AnsweringAgent(broker.connect(f"agent {i}"), clock, i) for i in range(1, count + 1)]
     hub = Hub(LiveSource(station), "0")
-    server = PageServer(hub, Doors(TOKEN, control, "127.0.0.1"), map=map)
+    server = PageServer(hub, doors or Doors(TOKEN, control, "127.0.0.1"), map=map)
     made = Stage(station, hub, server, broker, agents)
-    async with served(server, Address("127.0.0.1", port)) as bound:
+    async with served(server, Address("127.0.0.1", port, tls)) as bound:
         made.port = bound
         tasks = [asyncio.create_task(run) for run in (station.run(), hub.run(), made.speak())]
         try:
