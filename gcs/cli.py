@@ -167,13 +167,19 @@ def assess(
     return _play(programs.assess_bus(options.settings(), wait_s=wait))
 
 
-@app.command(epilog="Example: gcs report runs/2026-…")
+@app.command(epilog="Examples: gcs report runs/2026-… | gcs report runs/2026-… --gif")
 @takes("config")
-def report(options: Options, run: RunArgument) -> int:
+def report(
+    options: Options,
+    run: RunArgument,
+    gif: Annotated[
+        bool, typer.Option("--gif", help="The scene as a GIF, too; a Chromium of this computer draws it.")
+    ] = False,
+) -> int:
     """Write the run's report: one page for any browser, without network, and pictures."""
     from gcs import programs
 
-    return programs.report(run, options.settings().alerts)
+    return programs.report(run, options.settings().alerts, gif=gif)
 
 
 @app.command(

@@ -232,12 +232,17 @@ def decide_again(run: Path, strategies: dict[Role, str]) -> int:
     return 1 if any(fed.otherwise for fed in comparison.fed) else 0
 
 
-def report(run: Path, limits: Thresholds) -> int:
-    """The report of a run."""
+def report(run: Path, limits: Thresholds, *, gif: bool = False) -> int:
+    """The report of a run; with `gif` its scene as a GIF, too."""
     from gcs.report.program import write_report
 
     with Progress("gcs") as progress:
         written = write_report(run, limits, version(), progress.show)
+        if gif:
+            from gcs.report.moving import write_gif
+
+            moving = write_gif(written.page, written.page.with_suffix(".gif"), progress.show)
+            written = written._replace(pictures=(*written.pictures, moving))
     for note in written.notes:
         print(f"gcs: {note}", file=sys.stderr)
     print(written.page)

@@ -13,7 +13,9 @@ import pytest
 from PIL import Image
 from playwright.sync_api import Browser, Page, sync_playwright
 
+from gcs.report import moving
 from gcs.report.program import read_run, write_report
+from onboard.config.strict import ConfigError
 from tests.support.run_folders import make_run
 
 BROWSERS = ("/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome")
@@ -208,3 +210,26 @@ def test_the_page_forbids_itself_the_network(tab: Page, report: Path) -> None:
         "fetch('http://127.0.0.1:9/').catch(() => 0); })"
     )
     assert blocked == "connect-src"
+
+
+@pytest.mark.real
+def test_the_scene_becomes_a_gif_that_moves(
+    report: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    browser_path()
+    monkeypatch.setattr(moving, "FRAMES", 6)
+    told: list[float] = []
+    gif = moving.write_gif(report, tmp_path / "run.gif", lambda share, what: told.append(share))
+    with Image.open(gif) as picture:
+        assert picture.size == moving.SIZE
+        assert 4 <= picture.n_frames <= 6  # equal ones are one, shown longer
+        frames = []
+        for number in range(picture.n_frames):
+            picture.seek(number)
+            frames.append(np.asarray(picture.convert("RGB"), dtype=float))
+    assert all(np.abs(a - b).max() > 50.0 for a, b in itertools.pairwise(frames)), "everybody moves"
+    assert frames[0][-60:, 150:].std() > 1.0, "the scene fills the picture to its lower edge"
+    assert told == sorted(told)
+    monkeypatch.setattr(moving, "BROWSERS", ("/nowhere",))
+    with pytest.raises(ConfigError, match="--gif: found no Chromium"):
+        moving.write_gif(report, tmp_path / "none.gif")
