@@ -18,7 +18,7 @@ from gcs.picture.current import current
 from gcs.picture.team import band_in_words
 from gcs.picture.values import CommandView, GameView, Picture, VehicleView
 from onboard.game import palette
-from onboard.wire.bus.messages import CommandKind, SupervisorAction
+from onboard.wire.bus.messages import CommandKind, Role, SupervisorAction
 from onboard.wire.bus.team_messages import TeamPlan
 
 Document = dict[str, Any]
@@ -224,7 +224,8 @@ def _aim(vehicle: VehicleView) -> Document:
     decision = vehicle.decision
     assert decision is not None
     return {
-        "id": vehicle.id, "rule": decision.rule, "aim": list(decision.aim),
+        "id": vehicle.id, "evader": vehicle.role is Role.EVADER, "rule": decision.rule,
+        "aim": list(decision.aim),
         "supervisor": decision.supervisor.value, "level": decision.level.value,
     }  # fmt: skip
 

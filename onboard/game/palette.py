@@ -34,9 +34,9 @@ TARGET = Colour("#b8860b", "#ffd54a")
 CAPTURE = Colour("#2f3641", "#d5dae3")  # the capture radius R
 SAFETY = Colour("#8a8a8a", "#8f8f8f")  # the safety distance ρ
 FENCE = Colour("#7b8794", "#8b98a8")  # the geofence
-APOLLONIUS = Colour("#17aebf", "#3fd5e6")  # Apollonius circles
+APOLLONIUS = Colour("#0899a8", "#3fd5e6")  # Apollonius circles
 FORCE = Colour("#9467bd", "#b99be0")  # the resultant force F_res
-CONE = Colour("#e3a35b", "#e8b06c")  # headings that a pursuer blocks
+CONE = Colour("#c47f2e", "#e8b06c")  # headings that a pursuer blocks
 
 # Fills wide enough to need no second shade on a dark screen. Rules of routes fly apart from those of games.
 RULES = {

@@ -182,7 +182,11 @@ export class Curves {
       pen.fillText(String(row.id), LEFT - 4, ROW * i + ROW / 2 + 1);
       for (const [start, end, rule] of row.bands) {
         pen.fillStyle = this.colours.rule(rule);
-        pen.fillRect(x(start), ROW * i + 2, Math.max(1, x(end) - x(start)), ROW - 4);
+        const band = [x(start), ROW * i + 2, Math.max(1, x(end) - x(start)), ROW - 4];
+        pen.fillRect(...band);
+        pen.strokeStyle = this.colours.faint;
+        pen.lineWidth = 1;
+        pen.strokeRect(...band);
       }
     });
   }

@@ -144,7 +144,7 @@ export class Ground {
       const to = place(aim.aim);
       const chosen = aim.id === selected;
       const material = new LineDashedMaterial({
-        color: this.colours.rule(aim.rule), transparent: true, opacity: chosen ? 1 : 0.45,
+        color: this.colours.vehicle(aim.id, aim.evader), transparent: true, opacity: chosen ? 1 : 0.45,
         dashSize: this.reach / 90, gapSize: this.reach / 150,
       });
       const line = new Line(points([from, to]), material);
@@ -152,7 +152,7 @@ export class Ground {
       this.aims.add(line);
       if (chosen) {
         const mark = this.reach / 120;
-        this.aims.add(new LineSegments(points([[to[0] - mark, to[1], to[2] - mark], [to[0] + mark, to[1], to[2] + mark], [to[0] - mark, to[1], to[2] + mark], [to[0] + mark, to[1], to[2] - mark]]), new LineBasicMaterial({ color: this.colours.rule(aim.rule) })));
+        this.aims.add(new LineSegments(points([[to[0] - mark, to[1], to[2] - mark], [to[0] + mark, to[1], to[2] + mark], [to[0] - mark, to[1], to[2] + mark], [to[0] + mark, to[1], to[2] - mark]]), new LineBasicMaterial({ color: this.colours.vehicle(aim.id, aim.evader) })));
       }
     }
   }
@@ -203,7 +203,10 @@ export class Ground {
         const mesh = new Mesh(sector, veil(colours.cone, 0.22));
         mesh.rotation.x = -Math.PI / 2;
         mesh.position.set(...from);
-        this.chosen.add(mesh);
+        const [x, y, z] = from;
+        const edge = (angle) => [x + length * Math.sin(angle), y, z - length * Math.cos(angle)];
+        const edges = points([edge(heading - half), from, edge(heading + half)]);
+        this.chosen.add(mesh, new Line(edges, new LineBasicMaterial({ color: colours.cone })));
       } else {
         const height = length * Math.cos(open);
         const cone = new ConeGeometry(length * Math.sin(open), height, 40, 1, true);
@@ -211,7 +214,10 @@ export class Ground {
         const mesh = new Mesh(cone, veil(colours.cone, 0.16));
         mesh.quaternion.setFromUnitVectors(new Vector3(0, -1, 0), axis);
         mesh.position.set(...from);
-        this.chosen.add(mesh);
+        const rim = circle(length * Math.sin(open), [0, -height, 0], colours.cone);
+        rim.quaternion.copy(mesh.quaternion);
+        rim.position.copy(mesh.position);
+        this.chosen.add(mesh, rim);
       }
     }
     for (const [n, e, d, radius] of decision.circles) {

@@ -284,7 +284,7 @@ export class Scene {
     }
     if (this.field && this.field.target) {
       const at = this.onScreen(...place(this.field.target));
-      if (at) this.text(pen, "target", at[0] + 12, at[1] + 12, colours.target);
+      if (at) this.text(pen, "target", at[0] + 12, at[1] + 12, colours.ink);
     }
     this.ground.expected.forEach(({ after, at: [x, y, z] }) => {
       const at = this.onScreen(x, y, z);
