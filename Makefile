@@ -53,7 +53,7 @@ demo: install
 	@echo "  $(BIN)/sim-bridge serve demo                 and beside it: $(BIN)/gcs"
 
 test: install
-	$(BIN)/python -m pytest -n 2 --dist worksteal
+	$(BIN)/python -m pytest -n 3 --dist worksteal
 
 check: install
 	$(BIN)/ruff check

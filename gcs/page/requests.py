@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import msgspec
 
+from onboard.config.undecodable import UNDECODABLE
 from onboard.wire.bus.messages import CommandKind
 
 IDS_MOST = 1024
@@ -71,7 +72,7 @@ def request(text: str) -> Request | str:
     """What was said, or what is wrong with it in one line."""
     try:
         found = _DECODER.decode(text)
-    except (msgspec.DecodeError, UnicodeEncodeError, RecursionError) as error:
+    except (*UNDECODABLE, UnicodeEncodeError) as error:
         return f"not understood: {error}"
     if isinstance(found, Give) and (not found.ids or len(found.ids) > IDS_MOST):
         return f"an order: found {len(found.ids)} vehicles, expected 1 to {IDS_MOST}"

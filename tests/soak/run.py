@@ -31,7 +31,7 @@ from onboard.wire.bus.messages import Command, CommandKind, Phase  # noqa: E402
 from onboard.wire.bus.topics import COMMAND  # noqa: E402
 from tests.soak.faults import NAMES, OF_ALL, OF_ONE, Rng, Undo  # noqa: E402
 from tests.support.flown_autopilot import FLOWN  # noqa: E402
-from tests.support.whole_games import WholeGame, flies, game_of, quoting  # noqa: E402
+from tests.support.whole_games import TO_START_S, WholeGame, flies, game_of, quoting  # noqa: E402
 
 GAME_S = 600.0
 LOOK_S = 0.1
@@ -101,7 +101,7 @@ class Soak:
     async def play(self, seconds: float) -> None:
         """Strike and watch for so long, then let all faults pass and demand that everybody flies."""
         game = self.game
-        await game.forward(60.0, until=self.all_fly)
+        await game.forward(TO_START_S, until=self.all_fly)
         end, next_at = self.now + seconds, self.now + 2.0
         while self.now < end or any(v.active for v in self.vehicles.values()) or not self.all_fly():
             if game.phase is not Phase.RUNNING:

@@ -36,7 +36,7 @@ from sim_bridge.rehearsal import Options, Rehearsal
 from sim_bridge.vehicle.autopilot.autopilot import Autopilot
 
 STORY = ["staging", "ready", "running", "ended", "recovery"]
-TO_START_S = 120.0  # of game time; planes fly to their places first
+TO_START_S = 300.0  # of game time; planes fly to their places first
 LAST_EVENTS = 20  # of each vehicle, in the text of a failure
 SETPOINT = 84  # SET_POSITION_TARGET_LOCAL_NED, as the eighth byte of a frame tells
 

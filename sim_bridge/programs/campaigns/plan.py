@@ -15,6 +15,7 @@ import msgspec
 
 from onboard.config import strict
 from onboard.config.strict import ConfigError, FieldError
+from onboard.config.undecodable import UNDECODABLE
 from onboard.game.scenario import Scenario
 from sim_bridge.campaign.spatial_draw import Spread, demand_spatial
 from sim_bridge.programs.campaigns.fingerprint import Fingerprint
@@ -246,7 +247,7 @@ def checked(data: bytes, name: str) -> Plan:
     """A manifest's plan. Raises ConfigError that begins with `name`."""
     try:
         plan = msgspec.json.decode(data, type=Plan)
-    except (msgspec.DecodeError, FieldError) as error:
+    except (*UNDECODABLE, FieldError) as error:
         raise ConfigError(f"{name}: no manifest of a campaign: {error}") from None
     if plan.format != FORMAT:
         raise ConfigError(f"{name}: found format {plan.format}, expected {FORMAT}")

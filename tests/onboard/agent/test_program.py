@@ -71,7 +71,7 @@ def test_help_imports_neither_numpy_nor_the_dialect() -> None:
         (["--autopilot", "horse"], "autopilot"),
         (["--strategy", "papr"], "options: strategy: found 'papr', expected one of a pursuer's: paper"),
         (["--strategy", "straight"], "options: strategy: found 'straight', expected one of a pursuer's"),
-        (["--role", "evader", "--strategy", "pure-pursuit"], "expected one of an evader's: paper, straight"),
+        (["--role", "evader", "--strategy", "pure-pursuit"], "expected one of an evader's: paper, "),
         (["--route", "x.toml"], "route: found 'x.toml', expected none: a pursuer follows no route"),
         (["check", "--seconds", "0"], "--seconds: found 0, expected 0.5 to 600 s"),
     ],

@@ -88,7 +88,7 @@ def test_the_scenario_in_the_folder_holds_every_value_that_was_used(twice: list[
     assert used.rules == asked.rules
     assert [spec.limits() for spec in used.vehicles] == [spec.limits() for spec in asked.vehicles]
     assert (used.ids, used.flight, used.seed) == (asked.ids, asked.flight, asked.seed)
-    assert [spec.strategy for spec in used.vehicles] == ["paper", "paper"]
+    assert [spec.strategy for spec in used.vehicles] == ["paper", "parallel-pursuit"]
     written = tomllib.loads((folder / "scenario.toml").read_text(encoding="utf-8"))
     assert written["parameters"]["rho"] == asked.rules.rho  # 2R, which the file left out
     assert written["flight"]["impairment"]["loss"] == 0.1
