@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import os
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from io import BytesIO
 from pathlib import Path
 
@@ -219,7 +220,11 @@ def test_the_scene_becomes_a_gif_that_moves(
     browser_path()
     monkeypatch.setattr(moving, "FRAMES", 6)
     told: list[float] = []
-    gif = moving.write_gif(report, tmp_path / "run.gif", lambda share, what: told.append(share))
+    with ThreadPoolExecutor(1) as apart:  # a browser of other tests has its loop in this thread
+        drawn = apart.submit(
+            moving.write_gif, report, tmp_path / "run.gif", lambda share, what: told.append(share)
+        )
+        gif = drawn.result()
     with Image.open(gif) as picture:
         assert picture.size == moving.SIZE
         assert 4 <= picture.n_frames <= 6  # equal ones are one, shown longer

@@ -58,7 +58,9 @@ def test_on_a_terminal_a_bar_grows_and_goes_and_lines_stand_above_it(monkeypatch
         clock.s = 3.0
         progress.show(0.75, "games with names far longer than what is left of such a window")
         progress.clear()
-        shown = os.read(master, 65536).decode()
+        shown = ""
+        while shown.count("\r\x1b[K") < 4:  # a terminal hands on what was written in pieces
+            shown += os.read(master, 65536).decode()
     os.close(master)
     bar, line, rest = re.split(r"\r\x1b\[K", shown)[1:4]
     assert bar == "############------------  50 % games, 0:02 left"
