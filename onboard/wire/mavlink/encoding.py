@@ -45,10 +45,11 @@ def _boot_ms(time_boot_s: float) -> int:
     return int(time_boot_s * 1e3) & 0xFFFFFFFF
 
 
-def _heartbeat(_: OwnHeartbeat) -> MavMessage:
+def _heartbeat(m: OwnHeartbeat | AdsbHeartbeat) -> MavMessage:
+    aboard = isinstance(m, OwnHeartbeat)
     return _new(
         dialect.MAVLink_heartbeat_message,
-        type=dialect.MAV_TYPE_ONBOARD_CONTROLLER,
+        type=dialect.MAV_TYPE_ONBOARD_CONTROLLER if aboard else dialect.MAV_TYPE_ADSB,
         autopilot=dialect.MAV_AUTOPILOT_INVALID,
         base_mode=0,
         custom_mode=0,
@@ -145,18 +146,6 @@ def _setup_signing(m: SetupSigning) -> MavMessage:
     return _new(kind, m.to.system, m.to.component, list(m.key), m.stamp)
 
 
-def _adsb_heartbeat(_: AdsbHeartbeat) -> MavMessage:
-    return _new(
-        dialect.MAVLink_heartbeat_message,
-        type=dialect.MAV_TYPE_ADSB,
-        autopilot=dialect.MAV_AUTOPILOT_INVALID,
-        base_mode=0,
-        custom_mode=0,
-        system_status=dialect.MAV_STATE_ACTIVE,
-        mavlink_version=3,
-    )
-
-
 def _adsb_vehicle(m: AdsbVehicle) -> MavMessage:
     """Course and speeds over ground; a height above mean sea level is what displays take as geometric."""
     assert all(map(isfinite, (m.latitude_deg, m.longitude_deg, m.altitude_m))), m
@@ -201,6 +190,6 @@ _WRITERS: dict[type, Callable[[Any], MavMessage]] = {
     ParamRead: _param_read,
     Timesync: _timesync,
     SetupSigning: _setup_signing,
-    AdsbHeartbeat: _adsb_heartbeat,
+    AdsbHeartbeat: _heartbeat,
     AdsbVehicle: _adsb_vehicle,
 }
