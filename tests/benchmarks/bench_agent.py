@@ -39,6 +39,7 @@ from onboard.wire.bus.messages import Master, Phase, PhaseChange, Role, State, T
 from onboard.wire.mavlink.dialect import DialectSender
 from onboard.wire.mavlink.signing import MemoryStore, Signing
 from sim_bridge.world.world import World
+from tests.benchmarks import yardstick
 from tests.support import benchmark_record
 from tests.support.bus_stages import free_port
 from tests.support.setpoint_stopwatch import Stopwatch
@@ -374,8 +375,12 @@ def report() -> tuple[list[Taken], dict[str, float]]:
 def test_an_agent_takes_what_was_promised() -> None:
     pytest.importorskip("mavsdk")
     taken, medians = report()
+    for kind in ("agent", "agent, signed"):
+        yardstick.ratio(f"position to setpoint by a bare echo's, {kind}", medians[kind] / medians["echo"])
     assert imports() == []
     for one in taken:
+        yardstick.cost(f"an agent's second in flight, {one.role}", one.core)
+        yardstick.cost(f"an agent's start, {one.role}", one.start_cpu_s)
         assert one.memory_later_mb <= 80.0, one
         assert one.start_s < 1.5, one
     assert taken[0].role == "pursuer"

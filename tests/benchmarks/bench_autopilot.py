@@ -7,6 +7,7 @@ from time import process_time
 from onboard.core.math.vectors import Vec
 from onboard.game.scenario import Kind
 from onboard.wire.mavlink.dialect import DialectSender, dialect
+from tests.benchmarks import yardstick
 from tests.support.flown_autopilot import FlownAutopilot
 
 SECONDS = 10
@@ -35,6 +36,7 @@ def test_six_autopilots_and_airframes_beside_bare_encoding_of_what_they_send() -
             airframe.step(autopilot.step(now_ns, airframe.motion, air), air, flown.tick_ns * 1e-9)
             frames += len(autopilot.outgoing())
         taken = process_time() - began
+        yardstick.cost(f"a simulated autopilot's second, {kind.value}", taken / SECONDS)
         sender = DialectSender(1, 1)
         began = process_time()
         for number in range(frames):

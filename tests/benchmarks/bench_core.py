@@ -7,11 +7,8 @@ to benchmarks/results/core.md.
 from __future__ import annotations
 
 import os
-import platform
 from collections.abc import Callable
-from datetime import UTC, datetime
 from math import cos, pi, sin
-from pathlib import Path
 from time import process_time
 from typing import Any, NamedTuple
 
@@ -29,8 +26,9 @@ from onboard.core.strategy.evasion import evader
 from onboard.core.strategy.knowledge import RuleId
 from onboard.core.strategy.pursuit import pursuer
 from sim_bridge.campaign.compiled import Starts, campaign, starts_of
-from tests.benchmarks import numpy_core, plain_kernel
-from tests.support.paths import RESULTS
+from tests.benchmarks import numpy_core, plain_kernel, yardstick
+from tests.benchmarks.yardstick import Yard
+from tests.support import benchmark_record
 
 COMMAND = "make bench"
 TARGET = Vec(300.0, 0.0, 0.0)
@@ -116,6 +114,7 @@ def test_evader_beside_numpy(
     print(f"\nevader, {name}: {mine:.1f} µs, NumPy {numpys:.1f} µs, × {found.ratio:.2f}")
     benchmark.extra_info.update(numpy_us=found.theirs * 1e6, ratio=found.ratio)
     benchmark(evader_decides, team)
+    yardstick.cost(f"evader's decision, {name}", found.ours)
     assert found.ratio >= 1.0
 
 
@@ -146,6 +145,7 @@ def test_pursuer_beside_numpy(bearing: float, benchmark: BenchmarkFixture) -> No
           f"its direction alone in the leanest NumPy {least:.2f} µs")  # fmt: skip
     benchmark.extra_info.update(numpy_us=found.theirs * 1e6, ratio=found.ratio, lean_us=spare.theirs * 1e6)
     benchmark(ours)
+    yardstick.cost(f"pursuer's decision, {decision.rule.name}", found.ours)
     assert found.ratio >= 5.0  # promised; intercept and parallel flight miss it (decisions.md)
 
 
@@ -183,14 +183,6 @@ def compiled_row(pursuers: int) -> tuple[float, float, float]:
     return float(ends.steps.sum()) / found.ours, sum(r[0] for r in theirs) / found.theirs, same
 
 
-def processor() -> str:
-    """What the machine calls itself."""
-    file = Path("/proc/cpuinfo")
-    lines = file.read_text(encoding="utf-8").splitlines() if file.exists() else []
-    named = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
-    return f"{named[0] if named else platform.processor() or platform.machine()}, {os.cpu_count()} cores"
-
-
 def test_compiled_play_beside_a_plain_kernel() -> None:
     rows = [
         "| pursuers | compiled core | plain kernel | ratio | games that end alike |",
@@ -203,15 +195,11 @@ def test_compiled_play_beside_a_plain_kernel() -> None:
         speeds = f"{ours / 1e3:,.0f} k | {theirs / 1e3:,.0f} k | {ours / theirs:.2f}"
         rows.append(f"| {pursuers} | {speeds} | {same:.0%} |")
         print(rows[-1])
+        yardstick.cost(f"compiled game step, {pursuers} pursuers", 1.0 / ours, Yard.COMPILED)
         assert same >= 0.9
-    text = "\n".join([
-        "# The compiled core beside a plain hand-written kernel", "",
-        "Spatial game, simple motion, one evader; game steps (all decisions, moves and the referee) "
-        "a CPU-second, one thread.", "",
-        f"{processor()}; Python {platform.python_version()}; {datetime.now(UTC):%Y-%m-%d}; `{COMMAND}`", "",
-        *rows, "",
-    ])  # fmt: skip
+    about = "Spatial game, simple motion, one evader; game steps (all decisions, moves and the referee) "
+    about += "a CPU-second, one thread."
     if SIZES == (2, 5, 10, 20, 50):
-        RESULTS.mkdir(parents=True, exist_ok=True)
-        (RESULTS / "core.md").write_text(text, encoding="utf-8")
+        title = "The compiled core beside a plain hand-written kernel"
+        benchmark_record.write("core.md", title, COMMAND, [about, "", *rows])
     assert ratios[5] >= 0.7

@@ -13,6 +13,7 @@ from onboard.core.math.states import FREE, Vehicle, VehicleLimits
 from onboard.core.math.vectors import ZERO, Vec
 from onboard.core.strategy.knowledge import RuleId
 from onboard.core.strategy.registry import EVADERS
+from tests.benchmarks import yardstick
 
 COUNT = 8
 SLOW = VehicleLimits(40.0, 50.0, pitch_min=-0.35, pitch_max=0.35, turn_rate=0.0785)
@@ -46,6 +47,8 @@ def test_the_played_decision_stays_within_five_milliseconds(planar: bool) -> Non
             spent.append(process_time() - start)
         costs[name] = sorted(spent)[len(spent) // 2]
     assert decision.rule == RuleId.PLAYED
+    for name, spent_s in costs.items():
+        yardstick.cost(f"evader among eight, {name}, {'plane' if planar else 'space'}", spent_s)
     told = ", ".join(f"{name} {1e3 * cost:.2f} ms" for name, cost in costs.items())
     ratio = costs["evasive"] / costs["paper"]
     print(f"\n{'plane' if planar else 'space'}, eight pursuers: {told}; {ratio:.0f} of the paper's")

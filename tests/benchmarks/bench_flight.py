@@ -18,7 +18,8 @@ from onboard.core.strategy.evasion import evader
 from sim_bridge.campaign.spatial_draw import draw, kernel_of, sky_of, spatial
 from sim_bridge.vehicle.flight.aircraft import named
 from sim_bridge.vehicle.flight.plane import Command, Steer, start_state, step_plane, trimmed
-from tests.benchmarks import plain_aircraft
+from tests.benchmarks import plain_aircraft, yardstick
+from tests.benchmarks.yardstick import Yard
 
 
 def cost(work: Any, count: int, rounds: int = 7) -> float:
@@ -59,6 +60,7 @@ def test_a_step_of_an_aircraft_beside_an_evader_s_decision(name: str) -> None:
     step = cost(lambda: step_plane(state, model, command, wind, gust), 2000)
     decide = cost(decision(), 500)
     print(f"\n{name}: a step {1e6 * step:.1f} us, an evader's decision {1e6 * decide:.1f} us")
+    yardstick.cost(f"aircraft's step, {name}", step)
     assert step < decide
 
 
@@ -124,4 +126,5 @@ def test_the_compiled_game_of_six_aircraft_beside_a_plain_kernel() -> None:
         f"\nsix aircraft in wind at 100 Hz: compiled {steps / fast / 1e3:.0f} k game steps a CPU-second,"
         f" plain kernel {steps / plain / 1e3:.0f} k, ratio {plain / fast:.2f}"
     )
+    yardstick.cost("compiled game step of six aircraft", fast / steps, Yard.COMPILED)
     assert plain / fast >= 0.1  # ours also filters the tracks, supervises, and draws its own numbers

@@ -21,6 +21,7 @@ from onboard.pilot.predictor_choice import Predicting
 from onboard.runtime.loop import run_virtual, virtual_clock
 from onboard.runtime.resources import configs
 from sim_bridge.rehearsal import Options, Rehearsal
+from tests.benchmarks import yardstick
 from tests.support import benchmark_record
 
 PROMISES = {Predicting.CONSTANT_VELOCITY: 10.0, Predicting.NETWORK: 4.0}
@@ -114,6 +115,8 @@ def report() -> dict[Predicting, Played]:
 
 def test_six_vehicles_play_faster_than_real_time() -> None:
     played = report()
+    for predicting, game in played.items():
+        yardstick.cost(f"a second of fly --fast, {predicting.value}", 1.0 / game.ratio)
     for predicting, promise in PROMISES.items():
         assert played[predicting].ratio >= promise, predicting
 

@@ -19,6 +19,7 @@ import pytest
 from gcs.picture.reducer import PictureReducer
 from gcs.recording.reader import Recording
 from gcs.recording.recorder import Recorder
+from tests.benchmarks import yardstick
 from tests.support.chase_messages import Item, chase
 from tests.support.recording_process import kill_while_recording
 
@@ -88,6 +89,8 @@ def test_picture_and_recorder_leave_most_of_a_core_free(load: Load, tmp_path: Pa
         f"read back at {cost.reading:,.0f} messages/s",
         flush=True,
     )
+    yardstick.cost(f"a second in the picture, {load.name()}", cost.picture)
+    yardstick.cost(f"a second in the recorder, {load.name()}", cost.recorder)
     assert cost.recorded == cost.messages
     assert cost.picture + cost.recorder < 0.70
 

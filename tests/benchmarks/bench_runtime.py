@@ -16,6 +16,7 @@ from onboard.runtime.loop import run_virtual, virtual_clock
 from onboard.runtime.protocols import Sample
 from onboard.runtime.tasks import Pace, periodic
 from onboard.wire.bus.topics import STATE
+from tests.benchmarks import yardstick
 from tests.support.bus_stages import free_port
 from tests.support.real_time import until
 from tests.support.scripted_agents import for_a_while
@@ -49,6 +50,7 @@ def test_virtual_wake_ups_beside_the_stock_loops() -> None:
     asyncio.run(stock())
     theirs = (process_time() - begun) / wakes
     print(f"virtual wake-up, periodic task {ours * 1e6:.1f} µs; stock loop, sleep(0) {theirs * 1e6:.1f} µs")
+    yardstick.cost("virtual wake-up of a periodic task", ours)
     assert ours < 20 * theirs
 
 
@@ -71,6 +73,7 @@ def test_a_state_to_six_sessions_in_memory() -> None:
 
     cost = run_virtual(main())
     print(f"memory bus: one state to six sessions {cost * 1e6:.1f} µs")
+    yardstick.cost("a state to six sessions in memory", cost)
     assert cost < 0.01
 
 
@@ -117,4 +120,5 @@ async def test_round_trips_over_zenoh_beside_bare_udp() -> None:
             await bus.close()
     for name, times in (("asyncio UDP", udp), ("Zenoh through a station", zenoh)):
         print(f"{name}: median {median(times) * 1e6:.0f} µs, p99 {quantiles(times, n=100)[98] * 1e6:.0f} µs")
+    yardstick.ratio("round trip over Zenoh, by UDP's", median(zenoh) / median(udp))
     assert median(zenoh) < 20 * median(udp)

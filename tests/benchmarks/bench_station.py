@@ -24,6 +24,7 @@ from gcs.session import on_air
 from gcs.settings import BusSettings, RecordingSettings, Settings
 from onboard.runtime.bus_zenoh import open_zenoh
 from onboard.wire.bus import topics
+from tests.benchmarks import yardstick
 from tests.support.bus_stages import free_port
 from tests.support.real_time import until
 from tests.support.sample_messages import GAME, decision, health, on_bus, state, track
@@ -149,6 +150,7 @@ def test_nothing_is_lost_and_most_of_a_core_stays_free(load: Load) -> None:
         f"console {found.refreshes_hz:.1f} Hz",
         flush=True,
     )
+    yardstick.cost(f"a second of the ground station, {load.name()}", found.core)
     assert found.received == found.recorded == found.sent
     assert found.core < 0.70
     assert found.refreshes_hz > 0.8 * REFRESH_HZ

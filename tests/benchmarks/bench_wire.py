@@ -14,6 +14,7 @@ from onboard.wire.mavlink.dialect import DialectSender, dialect
 from onboard.wire.mavlink.frames import Framer
 from onboard.wire.mavlink.signing import EPOCH_NS, MemoryStore, Signing
 from onboard.wire.mavlink.tlog import read_tlog
+from tests.benchmarks import yardstick
 from tests.support.paths import RECORDINGS
 
 RECORDING = RECORDINGS / "arduplane-4.5.6-guided.tlog"
@@ -33,6 +34,8 @@ def test_geodesy_beside_pymap3d() -> None:
     their_back = cost(lambda: pymap3d.ned2geodetic(5000.0, -3000.0, -400.0, 47.4, 8.5, 500.0), 200)
     print(f"geodesy: there {there * 1e6:.2f} µs, back {back * 1e6:.2f} µs")
     print(f"pymap3d: there {their_there * 1e6:.2f} µs, back {their_back * 1e6:.2f} µs")
+    yardstick.cost("geodetic to NED", there)
+    yardstick.cost("NED to geodetic", back)
     assert there < their_there / 2
     assert back < their_back / 5
 
@@ -54,6 +57,7 @@ def test_framing_and_decoding_beside_pymavlink() -> None:
 
     a, b = cost(ours, 1) / len(frames), cost(theirs, 1) / len(frames)
     print(f"a frame framed, decoded, observed {a * 1e6:.1f} µs; pymavlink's parse_buffer {b * 1e6:.1f} µs")
+    yardstick.cost("a frame framed, decoded, observed", a)
     assert a < 1.5 * b
 
 
@@ -70,4 +74,6 @@ def test_signing_and_verifying() -> None:
     bare = cost(lambda: through(plain, bare_framer), 2000)
     checked = cost(lambda: through(signed, checked_framer), 2000)
     print(f"a message packed and read: {bare * 1e6:.1f} µs, signed {checked * 1e6:.1f} µs")
+    yardstick.cost("a message packed and read", bare)
+    yardstick.cost("a message packed and read, signed", checked)
     assert checked < 3 * bare

@@ -15,13 +15,12 @@ import sys
 import tarfile
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from time import process_time
 from typing import Annotated, NamedTuple
 
-import numba
 import numpy as np
 import typer
 
+from tests.benchmarks import yardstick
 from tests.support import benchmark_record
 from tests.support.paths import ROOT
 
@@ -67,25 +66,6 @@ class Player:
         return self._process.stdout.readline().strip()
 
 
-@numba.njit
-def _compiled_yard(count: int) -> float:
-    x = 0.5
-    for _ in range(count):
-        x = 3.9 * x * (1.0 - x)
-    return x
-
-
-def yardstick() -> tuple[float, float]:
-    """Millions of rounds a CPU-second: of a fixed loop of Python, and of the same loop compiled."""
-    begin = process_time()
-    x = 0.5
-    for _ in range(300_000):
-        x = 3.9 * x * (1.0 - x)
-    middle = process_time()
-    _compiled_yard(10_000_000)
-    return 0.3 / (middle - begin), 10.0 / (process_time() - middle)
-
-
 class Sum(NamedTuple):
     """What a version played in all rounds."""
 
@@ -102,7 +82,7 @@ def beside(players: list[Player], rounds: int, games: int) -> tuple[list[Sum], t
     costs: list[list[dict[str, float]]] = [[] for _ in players]
     yards = []
     for number in range(rounds):
-        yards.append(yardstick())
+        yards.append(yardstick.rates())
         for player, cost in zip(players, costs, strict=True):
             cost.append(player.play(1 + number * games, games))
     sums = []
@@ -166,7 +146,6 @@ def main(
     kinds: Annotated[str, typer.Option(help="Games to compare.")] = "flown,plane,space",
 ) -> None:
     """Measure and write benchmarks/results/campaign.md."""
-    _compiled_yard(10)
     lines = [
         f"Both versions play the same seeds in turn, {rounds} turns; rates are medians over the turns,",
         "in CPU time of a core. Yardsticks: millions of rounds a CPU-second of a loop, in Python and numba.",

@@ -11,7 +11,6 @@ seed leaves a row in `--rows`; `--for` stops after as many seconds.
 from __future__ import annotations
 
 import argparse
-import platform
 import time
 from datetime import UTC, datetime
 from inspect import getclosurevars
@@ -40,6 +39,7 @@ from sim_bridge.vehicle.autopilot.arduplane import ArduPlane
 from sim_bridge.vehicle.flight.airframe import Plane
 from sim_bridge.vehicle.flight.plane import PlaneState
 from sim_bridge.vehicle.wind.dryden import GustState
+from tests.support import benchmark_record
 
 VERDICTS, ARRIVALS, CORRELATION = 0.95, 0.02, 0.95  # what is promised
 
@@ -280,7 +280,7 @@ def main() -> None:
             path.write_bytes(msgspec.json.encode(row_of(scenario, seed)))
         rows.append(read(path))
         print(rows[-1], flush=True)
-    made = f"{datetime.now(UTC):%Y-%m-%d} on {platform.machine()}, Python {platform.python_version()}"
+    made = f"{datetime.now(UTC):%Y-%m-%d} on {benchmark_record.machine()}"
     command = f"python -m tests.benchmarks.flown_computed --seeds {options.seeds}"
     short = "" if len(rows) == options.seeds else f" Of these seeds the first {len(rows)} have been flown."
     page = report(options.scenario, rows, scenario.parameters.R)

@@ -9,8 +9,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
-import platform
 from math import atan2, cos, degrees, pi, sin
 from pathlib import Path
 
@@ -30,6 +28,7 @@ from sim_bridge.campaign.compiled import campaign, starts_of
 from sim_bridge.campaign.plane_in_wind import drawn_wind
 from sim_bridge.campaign.spatial_draw import draw, kernel_of, sky_of, spatial
 from sim_bridge.campaign.spatial_game import Chosen
+from tests.support import benchmark_record
 from tests.support.paths import RESULTS
 
 COUNT = 5
@@ -132,8 +131,7 @@ def main() -> None:
         if path.exists():
             lines += table(kind, json.loads(path.read_text(encoding="utf-8")))
     command = f"python -m tests.benchmarks.matrix --plane {given.plane} --space {given.space}"
-    where = f"{platform.machine()} ({os.cpu_count()} cores)"
-    head = ["# Evaders against pursuers", "", f"`{command}` on {where}."]
+    head = ["# Evaders against pursuers", "", f"`{command}` on {benchmark_record.machine()}."]
     head.append(f"Five pursuers; Wilson's 95 % intervals. γ = 0.8; plane: horizon {PLANE.horizon:g} s.")
     (RESULTS / "matrix.md").write_text("\n".join(head + lines) + "\n", encoding="utf-8")
     print("\n".join(lines))

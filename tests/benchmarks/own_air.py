@@ -10,7 +10,6 @@ Ways go in pairs; how near two pursuers ever came is told beside the separation 
 from __future__ import annotations
 
 import argparse
-import platform
 from itertools import combinations
 from math import cos, degrees, pi, sin
 from pathlib import Path
@@ -25,6 +24,7 @@ from onboard.game.scenario import Scenario
 from sim_bridge.campaign.spatial_campaign import Played, mcnemar, play_seed, share
 from sim_bridge.campaign.spatial_draw import drawn_wind, spatial
 from sim_bridge.campaign.spatial_game import Evasion
+from tests.support import benchmark_record
 
 RADIUS, HEIGHT = 2000.0, 1500.0  # [m]
 PAPER = ("paper", "paper-own-air")
@@ -94,8 +94,8 @@ def main() -> None:
     teams = " ".join(map(str, given.teams))
     command = f"python -m tests.benchmarks.own_air --seeds {given.seeds} --teams {teams} --ways "
     text = ["# Gusts taken out of the own way\n"]
-    text.append(f"`{command}{' '.join(given.ways)}` on {platform.machine()}, Python "
-                f"{platform.python_version()}, NumPy {np.__version__}.\n")  # fmt: skip
+    text.append(f"`{command}{' '.join(given.ways)}` on {benchmark_record.machine()}, "
+                f"NumPy {np.__version__}.\n")  # fmt: skip
     text.append(str(__doc__).split("\n\n", 2)[2].strip().replace("\n", " ") + "\n")
     for pursuers in given.teams:
         text += [*table(given.seeds, pursuers, tuple(given.ways)), ""]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import platform
 import re
 import statistics
 import subprocess
@@ -14,6 +13,7 @@ import psutil
 from playwright.sync_api import sync_playwright
 
 from tests.benchmarks.page_fleet import MINUTE_MS
+from tests.support import benchmark_record
 from tests.support.bus_stages import free_port
 from tests.support.page_stage import OPTIONS, browser_path
 
@@ -22,7 +22,7 @@ RESULT = Path("benchmarks/results/page.md")
 ROWS = ((200, 10.0), (1000, 2.0))
 HEAD = """# The page: what a browser sees of a large fleet
 
-`make bench-page` on {machine} ({cores} cores), Python {python}, Chromium headless with software rendering, {seconds:.0f} s a row,
+`make bench-page` on {machine}, Chromium headless with software rendering, {seconds:.0f} s a row,
 {date}; fleet, station, page and browser share the machine, whose load before was {load:.1f}. The goal: 200 vehicles at 10 Hz with
 9.5 pictures a second or more, 250 ms or less from the bus to the pixel for 95 % of them, 35 % of a core or less for
 the server, and its memory flat; 1000 vehicles at 2 Hz.
@@ -97,8 +97,7 @@ def main(seconds: float = 60.0) -> None:
     load = psutil.getloadavg()[0]
     rows = [measured(vehicles, hz, seconds) for vehicles, hz in ROWS]
     head = HEAD.format(
-        machine=platform.machine(), cores=psutil.cpu_count(), python=platform.python_version(),
-        seconds=seconds, date=time.strftime("%Y-%m-%d"), load=load,
+        machine=benchmark_record.machine(), seconds=seconds, date=time.strftime("%Y-%m-%d"), load=load,
     )  # fmt: skip
     RESULT.write_text(head + "\n".join(rows) + "\n", encoding="utf-8")
     print(RESULT.read_text(encoding="utf-8"))

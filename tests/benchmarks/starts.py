@@ -9,7 +9,6 @@ headings, winds and courses drawn by the seed. Half fly at 50 m/s, half at 40.
 from __future__ import annotations
 
 import argparse
-import platform
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -18,6 +17,7 @@ from numpy.typing import NDArray
 
 from onboard.game.scenario import WindSpec
 from tests.onboard.pilot.test_approach import Passed, Way
+from tests.support import benchmark_record
 
 SKIES = {
     "calm": WindSpec(),
@@ -44,7 +44,7 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument("--out", type=Path, default=Path("benchmarks/results/starts.md"))
     options = parser.parse_args()
-    made = f"{datetime.now(UTC):%Y-%m-%d} on {platform.machine()}, Python {platform.python_version()}"
+    made = f"{datetime.now(UTC):%Y-%m-%d} on {benchmark_record.machine()}"
     command = f"python -m tests.benchmarks.starts --seeds {options.seeds}"
     lines = [
         "# At the start in time\n",

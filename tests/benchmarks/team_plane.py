@@ -11,7 +11,6 @@ then) in which the pursuers fly to the slots of the team's plan.
 from __future__ import annotations
 
 import argparse
-import platform
 from math import cos, pi, sin
 from pathlib import Path
 from typing import NamedTuple
@@ -30,6 +29,7 @@ from onboard.core.strategy.team.plan_types import Heights, Margin, Member, Situa
 from onboard.core.strategy.team.planner import no_plan, plan
 from sim_bridge.campaign.compiled import campaign, starts_of
 from sim_bridge.campaign.spatial_campaign import mcnemar, share
+from tests.support import benchmark_record
 
 RULES = Rules(2.0, 4.0, horizon=300.0, planar=True, target_known=True)
 STEP = 0.1  # [s]
@@ -144,7 +144,7 @@ def page(games: int, ring_games: int, staged_games: int) -> str:
         any(in_time(t, p.position, p.speed, ZERO, EVADER.speed) for p in g.pursuers)
         for g, t in zip(drawn.games, drawn.targets, strict=True)
     ]
-    made = f"{platform.machine()}, Python {platform.python_version()}, NumPy {np.__version__}"
+    made = f"{benchmark_record.machine()}, NumPy {np.__version__}"
     command = f"python -m tests.benchmarks.team_plane --games {games} --rings {ring_games}"
     command += f" --staged {staged_games}"
     words = __doc__.split("\n\n", 2)[2].strip().replace("\n", " ")

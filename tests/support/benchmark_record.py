@@ -1,4 +1,4 @@
-"""What a benchmark's result file says of itself: machine, command, day; and where a profile's time went."""
+"""What a benchmark's page says of itself: machine, yardsticks, command; and where a profile's time went."""
 
 from __future__ import annotations
 
@@ -11,13 +11,14 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
+from tests.benchmarks import yardstick
 from tests.support.paths import RESULTS, ROOT
 
 LIBRARIES = ("numpy", "pymavlink", "msgspec", "mcap", "zenoh", "asyncio")
 
 
 def machine() -> str:
-    """Processor, cores, load, versions."""
+    """Processor, cores, load, versions, and how fast it is just now: every page's head says this."""
     model = platform.machine()
     info = Path("/proc/cpuinfo")
     if info.exists():
@@ -25,7 +26,8 @@ def machine() -> str:
         names = [row.split(":", 1)[1].strip() for row in rows if row.startswith("model name")]
         model = f"{model}, {names[0]}" if names else model
     load = os.getloadavg()[0]
-    return f"{model}, {os.cpu_count()} cores with a load of {load:.1f}, Python {platform.python_version()}"
+    seen = f"{model}, {os.cpu_count()} cores with a load of {load:.1f}, Python {platform.python_version()}"
+    return f"{seen}, {yardstick.words()}"
 
 
 def write(name: str, title: str, command: str, lines: list[str]) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import platform
 from collections.abc import Callable
 from pathlib import Path
 from time import perf_counter
@@ -15,6 +14,7 @@ from tests.benchmarks.predictor import games, regime, study
 from tests.benchmarks.predictor.families import CONDITIONS, FAMILIES, Array, trajectory
 from tests.benchmarks.predictor.methods import Flying, Paper
 from tests.benchmarks.predictor.study import HORIZONS, Study
+from tests.support import benchmark_record
 
 STEADY, MINE, BASE, ONLINE = "constant velocity", "s-parabola", "ridge base", "s-parabola, online"
 CLEAN, WIND, BOTH = CONDITIONS
@@ -159,8 +159,7 @@ def _page(m: Measured, found: list[Target], missed: int) -> list[str]:
         "# Predictors compared",
         "",
         f"One run of `make bench-predictor` of {m.seconds / 60.0:.0f} minutes on "
-        f"{platform.machine()}, Python "
-        f"{platform.python_version()}, NumPy {np.__version__}, one thread. Only ratios of "
+        f"{benchmark_record.machine()}, NumPy {np.__version__}, one thread. Only ratios of "
         f"times mean something.",
         "",
         f"{len(FAMILIES)} families × {len(study.SEEDS)} held-out seeds, 15 m/s, 0.2 s steps; "
