@@ -6,7 +6,6 @@ from onboard.runtime.early import one_line_interrupts
 
 one_line_interrupts("gcs", __name__)
 
-import asyncio
 import os
 import sys
 from collections.abc import Coroutine
@@ -53,6 +52,8 @@ RunArgument = Annotated[Path, typer.Argument(help="Run folder, or a recording in
 
 def _play(program: Coroutine[Any, Any, int]) -> int:
     """Run a program to its exit code; a ConfigError from within its tasks comes out as such."""
+    import asyncio
+
     try:
         return asyncio.run(program)
     except* ConfigError as group:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from pathlib import Path
 from typing import Annotated
 
@@ -36,6 +35,8 @@ def tracks(
     ] = None,
 ) -> int:
     """Feed tracks of opponents into a game from MAVLink telemetry, ADS-B receivers or files."""
+    import asyncio
+
     from gcs.tracks import program
     from gcs.tracks.report import Corrections, mapping
 
@@ -60,6 +61,8 @@ def sign(
     yes: Annotated[bool, typer.Option("--yes", help="Send the key over a network, readable.")] = False,
 ) -> int:
     """List which keys the autopilots on a link sign with; set one with --set, on the ground."""
+    import asyncio
+
     from gcs import signing
 
     return asyncio.run(signing.sign(link, keys or [], set_, system or 0, yes))
@@ -78,6 +81,8 @@ def take_off(
     ] = 180.0,
 ) -> int:
     """Bring vehicles from the ground to their places in a scenario, one after the other."""
+    import asyncio
+
     from gcs import takeoff
     from onboard.game.scenario import load
 
