@@ -178,10 +178,18 @@ def test_commands_take_the_names_of_what_is_shipped(command: str, said: str) -> 
         ("sim-bridge fly --fast one-on-one --bus tcp/127.0.0.1:9", "--bus: found with --fast"),
         ("sim-bridge predict one-on-one --epochs 5", "--epochs: found with one-on-one, expected only"),
         ("sim-bridge predict one-on-one --printed", "--printed: found with one-on-one, expected only"),
+        # What a script's variable that nobody has set leaves of an option.
+        ("sim-bridge campaign row01 --shard=", "--shard: found '', expected a value"),
+        ("sim-bridge campaign run row01 --shard ''", "--shard: found '', expected a value"),
+        ("sim-bridge campaign row01 --dask ''", "--dask: found '', expected a value"),
+        ("sim-bridge bench --evader paper --evader '' --games 2", "--evader: found '', expected a value"),
+        ("sim-bridge campaign show ''", "FOLDER: found '', expected a value"),
+        ("gcs --bus '' status", "--bus: found '', expected a value"),
+        ("gcs game run one-on-one --take-over ''", "--take-over: found '', expected a value"),
     ],
 )
 def test_an_option_that_would_do_nothing_is_refused(command: str, said: str) -> None:
-    program, *arguments = command.split()
+    program, *arguments = shlex.split(command)
     told = run(program, *arguments)
     assert (told.returncode, told.stdout, told.stderr.count("\n")) == (2, "", 1)
     assert said in told.stderr

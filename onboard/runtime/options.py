@@ -10,16 +10,56 @@ from enum import Enum
 from typing import Annotated, Any
 
 import typer
+from typer.core import TyperCommand, TyperGroup
 
 from onboard.config.option_value import parsed
+from onboard.config.strict import ConfigError
 from onboard.runtime.resources import Shelf, named_files
+
+
+class Command(TyperCommand):
+    """A command that takes no empty value: see `demand_no_empty_value`."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """As every command, once the values are looked at."""
+        demand_no_empty_value(self, ctx, args)
+        return super().parse_args(ctx, args)
+
+
+class Group(TyperGroup):
+    """A group of commands that takes no empty value: see `demand_no_empty_value`."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """As every group, once the values are looked at."""
+        demand_no_empty_value(self, ctx, args)
+        return super().parse_args(ctx, args)
+
+
+class _Application(typer.Typer):
+    def command(self, *arguments: Any, **named: Any) -> Any:
+        return super().command(*arguments, **{"cls": Command, **named})
 
 
 def group(words: str, **more: Any) -> typer.Typer:
     """A group of commands, as all of this project's are; `words` is its help."""
     settings = {"help_option_names": ["-h", "--help"]}
-    return typer.Typer(help=words, context_settings=settings, pretty_exceptions_enable=False,
-                       rich_markup_mode=None, **more)  # fmt: skip
+    return _Application(help=words, context_settings=settings, pretty_exceptions_enable=False,
+                        rich_markup_mode=None, **{"cls": Group, **more})  # fmt: skip
+
+
+def demand_no_empty_value(command: Any, ctx: Any, args: list[str]) -> None:
+    """Raise ConfigError for an option or argument that is given as an empty word.
+
+    In a script it is a variable that nobody has set, and would count as an option that was not given.
+    """
+    if not any(word == "" or word.endswith("=") for word in args):
+        return
+    values, _rest, _order = command.make_parser(ctx).parse_args(args=list(args))
+    for param in command.get_params(ctx):
+        found = values.get(param.name)
+        if found == "" or (isinstance(found, list | tuple) and "" in found):
+            name = param.opts[0] if param.param_type_name == "option" else param.name.upper()
+            raise ConfigError(f"{name}: found '', expected a value")
 
 
 def value(kind: Any, *flags: str, words: str, unit: str = "") -> Any:

@@ -18,7 +18,7 @@ from onboard.core.game.views import EvaderView, PursuerView
 from onboard.core.math.each import each
 from onboard.core.math.states import Vehicle
 from onboard.core.math.vectors import ZERO, Vec
-from onboard.core.strategy.features import answer, evader_features, pursuer_features
+from onboard.core.strategy.features import Form, Turn, answer, evader_features, pursuer_features
 from onboard.core.strategy.knowledge import Decision
 from onboard.core.strategy.team.planner import no_plan
 from sim_bridge.campaign.ledger import known
@@ -39,7 +39,7 @@ from sim_bridge.campaign.spatial_play import Motion, head
 from sim_bridge.campaign.team_play import opened, seat, stand_by
 from sim_bridge.campaign.tracks import Tracks
 from sim_bridge.gym.exchange import Exchange
-from sim_bridge.gym.simple import Run, idle_evader, idle_pursuer, note_end, reward, turn_at
+from sim_bridge.gym.simple import Run, idle_evader, idle_pursuer, note_end, reward
 from sim_bridge.gym.starts import Here, Table, World, vec_of, write
 
 Array = NDArray[np.float64]
@@ -57,11 +57,26 @@ class Skies(NamedTuple):
 
 
 class Chair(NamedTuple):
-    """Who is asked: in place of the number of a strategy."""
+    """Who is asked, in place of the number of a strategy, and what it takes to answer.
+
+    Everybody's is handed through all of a decision: of the game's arrays it holds its own rows alone, or the
+    kernel compiles for a quarter of an hour.
+    """
+
+    learns: bool
+    acts: Any  # its rows of `Exchange`
+    sees: Any
+    turn: Array  # (2,): axes of the observation
+    form: Form
+    evade: EvaderStrategy
+    pursue: PursuerStrategy
+
+
+class Seats(NamedTuple):
+    """What chairs are made of (for `each`)."""
 
     here: Here
     exchange: Exchange
-    player: int
     evade: EvaderStrategy
     pursue: PursuerStrategy
 
@@ -93,48 +108,57 @@ def ways_of(evader: Any, pursuer: Any, chair: Any, chairs: Any) -> Ways:
     return Ways(evader, pursuer, Chosen(chair, chairs), stand_by)
 
 
-def chair_of(_vehicle: Vehicle, index: int, chair: Chair) -> Chair:
+def chair_of(_vehicle: Vehicle, index: int, seats: Seats) -> Chair:
     """The chair of pursuer `index` (for `each`)."""
-    return Chair(chair.here, chair.exchange, index + 1, chair.evade, chair.pursue)
+    here, exchange, k = seats.here, seats.exchange, index + 1
+    g = here.game
+    return Chair(
+        here.world.learns[k], exchange.pursuers_act[g, index], exchange.pursuers_see[g, index],
+        here.table.turns[g, k], here.world.form, seats.evade, seats.pursue,
+    )  # fmt: skip
+
+
+def evaders_chair(seats: Seats) -> Chair:
+    """The evader's."""
+    here, exchange, g = seats.here, seats.exchange, seats.here.game
+    return Chair(
+        here.world.learns[0], exchange.evader_acts[g], exchange.evader_sees[g], here.table.turns[g, 0],
+        here.world.form, seats.evade, seats.pursue,
+    )  # fmt: skip
 
 
 def ask(view: PursuerView, chair: Chair) -> Decision:
     """A pursuer's decision: its action, or its strategy's."""
-    here = chair.here
-    if not here.world.learns[chair.player]:
+    if not chair.learns:
         return chair.pursue(view)
-    action = chair.exchange.pursuers_act[here.game, chair.player - 1]
-    return answer(view.own, view.limits, action, turn_at(here, chair.player), here.world.form)
+    return answer(view.own, view.limits, chair.acts, Turn(chair.turn[0], chair.turn[1]), chair.form)
 
 
 def ask_evader(view: EvaderView, chair: Chair) -> Decision:
     """The evader's decision: its action, or its strategy's."""
-    here = chair.here
-    if not here.world.learns[0]:
+    if not chair.learns:
         return chair.evade(view)
-    action = chair.exchange.evader_acts[here.game]
-    return answer(view.own, view.limits, action, turn_at(here, 0), here.world.form)
+    return answer(view.own, view.limits, chair.acts, Turn(chair.turn[0], chair.turn[1]), chair.form)
 
 
 def look(view: PursuerView, chair: Chair) -> Decision:
     """Write what a pursuer sees where it would decide."""
-    here = chair.here
-    if here.world.learns[chair.player]:
-        seen = chair.exchange.pursuers_see[here.game, chair.player - 1]
-        turn = pursuer_features(view, here.world.form, seen)
-        here.table.turns[here.game, chair.player, 0] = turn.x
-        here.table.turns[here.game, chair.player, 1] = turn.y
+    if chair.learns:
+        keep_turn(pursuer_features(view, chair.form, chair.sees), chair.turn)
     return idle_pursuer(view)
 
 
 def look_of_evader(view: EvaderView, chair: Chair) -> Decision:
     """Write what the evader sees where it would decide."""
-    here = chair.here
-    if here.world.learns[0]:
-        turn = evader_features(view, here.world.form, chair.exchange.evader_sees[here.game])
-        here.table.turns[here.game, 0, 0] = turn.x
-        here.table.turns[here.game, 0, 1] = turn.y
+    if chair.learns:
+        keep_turn(evader_features(view, chair.form, chair.sees), chair.turn)
     return idle_evader(view)
+
+
+def keep_turn(turn: Turn, row: Array) -> None:
+    """Write the axes of an observation down."""
+    row[0] = turn.x
+    row[1] = turn.y
 
 
 def standing_at(vehicle: Vehicle, index: int, here: Here) -> Vehicle:
@@ -168,16 +192,15 @@ def judge_now(here: Here, start: Start, states: Array, exchange: Exchange) -> No
     t.clock[g, 2] = after.score.unsafe
 
 
-def team_at(here: Here, skies: Skies, ways: Ways, sky: Any) -> Deciding:
-    """Everybody before a decision; the team has no plan."""
-    g, start = here.game, skies.starts[here.game]
+def team_at(g: int, start: Start, skies: Skies, ways: Ways, sky: Any) -> Deciding:
+    """Everybody in game `g` before a decision; the team has no plan."""
     talk = opened(no_plan(each(seat, start.game.pursuers, start.planning), 0.0))
     return Deciding(start, skies.before[g], sky.seen, skies.samples[g], ways, skies.decided[g], talk)
 
 
-def glide(here: Here, skies: Skies, exchange: Exchange, craft: Craft, decided: bool) -> None:
+def glide(here: Here, start: Start, skies: Skies, exchange: Exchange, craft: Craft, decided: bool) -> None:
     """Fly on until everybody decides again, or the game ends; `decided`: they have just done so."""
-    g, start, motion = here.game, skies.starts[here.game], craft.motion
+    g, motion = here.game, craft.motion
     sky, pace, now = craft.sky_at(skies.skies, g), start.pace, skies.now[g]
     watched = decided
     while True:
@@ -200,22 +223,15 @@ def glide(here: Here, skies: Skies, exchange: Exchange, craft: Craft, decided: b
                 return
 
 
-def look_around(here: Here, skies: Skies, exchange: Exchange, craft: Craft) -> None:
-    """Write what everybody sees who learns."""
-    chair = Chair(here, exchange, 0, craft.decide_evader, craft.decide_pursuer)
-    chairs = each(chair_of, here.world.template.pursuers, chair)
-    ways = ways_of(look_of_evader, look, chair, chairs)
-    team = team_at(here, skies, ways, craft.sky_at(skies.skies, here.game))
-    look_of_evader(evader_sees(team), chair)
-    each(decide_pursuer, here.world.template.pursuers, team)
-
-
 def fly_all(table: Table, skies: Skies, shared: tuple[World, Exchange], run: Run, craft: Craft) -> None:
     """One control step of every game of the run; or, of games that begin, all until the first decision."""
     world, exchange = shared
     for g in range(run.first, run.last):
         here = Here(table, world, g)
+        start = skies.starts[g]
         sky = craft.sky_at(skies.skies, g)
+        seats = Seats(here, exchange, craft.decide_evader, craft.decide_pursuer)
+        chair, chairs = evaders_chair(seats), each(chair_of, world.template.pursuers, seats)
         if run.begins:
             exchange.verdicts[g] = 0
             craft.motion.note(sky, skies.now[g])
@@ -226,12 +242,12 @@ def fly_all(table: Table, skies: Skies, shared: tuple[World, Exchange], run: Run
                 exchange.rewards[g, i] = 0.0
             continue
         else:
-            chair = Chair(here, exchange, 0, craft.decide_evader, craft.decide_pursuer)
-            chairs = each(chair_of, world.template.pursuers, chair)
             ways = ways_of(ask_evader, ask, chair, chairs)
-            decide_all(team_at(here, skies, ways, sky), sky.crew, table.steps[g])
+            decide_all(team_at(g, start, skies, ways, sky), sky.crew, table.steps[g])
             craft.motion.order(sky)
-        glide(here, skies, exchange, craft, not run.begins)
-        look_around(here, skies, exchange, craft)
+        glide(here, start, skies, exchange, craft, not run.begins)
+        team = team_at(g, start, skies, ways_of(look_of_evader, look, chair, chairs), sky)
+        look_of_evader(evader_sees(team), chair)
+        each(decide_pursuer, world.template.pursuers, team)
         if exchange.verdicts[g] != 0:
             note_end(here, exchange)

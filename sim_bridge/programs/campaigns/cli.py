@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from typer.core import TyperGroup
 
 from onboard.config.bounds import Count, Seed
 from onboard.runtime import options
@@ -17,7 +16,7 @@ Folder = Annotated[Path, typer.Argument(help="Folder of a campaign.")]
 Game = Annotated[str, typer.Argument(help="CELL:SEED, as `show` numbers the cells.")]
 
 
-class RunByDefault(TyperGroup):
+class RunByDefault(options.Group):
     """A group in which `campaign SCENARIO…` is `campaign run SCENARIO…`."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
@@ -67,7 +66,9 @@ def run(
         int | None, options.value(Count, "--games", words="Games of each kind [100].", unit="N")
     ] = None,
     seed: Annotated[int, options.value(Seed, "--seed", words="The first seed.", unit="N")] = 1,
-    until: Annotated[str, typer.Option(help="Rule that ends it: 'ci<0.01', 'ci(arrived)<0.02'.")] = "",
+    until: Annotated[
+        str | None, typer.Option(help="Rule that ends it: 'ci<0.01', 'ci(arrived)<0.02'.")
+    ] = None,
     max_games: Annotated[
         int | None, options.value(Count, "--max-games", words="At most so many games in all.", unit="N")
     ] = None,
@@ -78,8 +79,8 @@ def run(
     workers: Annotated[
         int | None, options.value(Count, "--workers", words="Processes [one a core].", unit="N")
     ] = None,
-    dask: Annotated[str, typer.Option(help="Scheduler of a Dask cluster, tcp://HOST:8786.")] = "",
-    shard: Annotated[str, typer.Option(help="Play part I of N alone: I/N, for array jobs.")] = "",
+    dask: Annotated[str | None, typer.Option(help="Scheduler of a Dask cluster, tcp://HOST:8786.")] = None,
+    shard: Annotated[str | None, typer.Option(help="Play part I of N alone: I/N, for array jobs.")] = None,
     shard_games: Annotated[
         int, options.value(Count, "--shard-games", words="About so many games a file.", unit="N")
     ] = 1000,

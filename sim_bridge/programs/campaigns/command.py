@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from onboard.config.names import file_name
 from onboard.config.strict import ConfigError
 from onboard.core.strategy.registry import EVADERS, PURSUERS
-from onboard.game.plugins import evader_strategy, plugin_names, pursuer_strategy
+from onboard.game.plugins import demand_name, evader_strategy, plugin_names, pursuer_strategy
 from onboard.game.scenario import load
 from onboard.runtime.resources import SCENARIOS, shipped_file
 from sim_bridge.programs.campaigns import sweep
@@ -47,12 +47,12 @@ class Options(NamedTuple):
 
 
 class Played(NamedTuple):
-    """What it can be told of who plays."""
+    """What it can be told of who plays; None: nothing is said."""
 
     workers: int | None = None
-    dask: str = ""
-    shard: str = ""
-    until: str = ""
+    dask: str | None = None
+    shard: str | None = None
+    until: str | None = None
 
 
 def plan_of(options: Options, until: bool) -> Plan:
@@ -108,12 +108,16 @@ def named(names: tuple[str, ...], role: str) -> list[str]:
 
     Raises ConfigError for an unknown one.
     """
+    if not names:
+        return [AS_WRITTEN]
     find: Callable[[str], object] = evader_strategy if role == "evader" else pursuer_strategy
+    where = "--evader" if role == "evader" else "--pursuers"
     found: list[str] = []
-    for name in names or (AS_WRITTEN,):
+    for name in names:
         if name == ALL:
             found += all_of(role)
         else:
+            demand_name(name, role, where)
             find(name)
             found.append(name)
     return list(dict.fromkeys(found))
@@ -136,15 +140,16 @@ def all_of(role: str) -> list[str]:
 
 def ways_of(played: Played) -> Ways:
     """By whom it is played. Raises ConfigError for options that exclude each other."""
-    if played.dask and played.workers is not None:
+    workers, dask, shard, until = played
+    if dask is not None and workers is not None:
         raise ConfigError("--workers: found with --dask, whose cluster has workers of its own")
-    if played.until and played.shard:
+    if until is not None and shard is not None:
         raise ConfigError("--until: found with --shard, whose jobs do not see each other's games")
     return Ways(
-        played.workers or len(os.sched_getaffinity(0)),
-        played.dask,
-        part_of(played.shard) if played.shard else (1, 1),
-        parse(played.until) if played.until else None,
+        workers or len(os.sched_getaffinity(0)),
+        dask or "",
+        (1, 1) if shard is None else part_of(shard),
+        None if until is None else parse(until),
     )
 
 

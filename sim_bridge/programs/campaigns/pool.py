@@ -145,11 +145,14 @@ def play_on_dask(plan: Plan, shards: list[Shard], address: str) -> Played:
     """
     try:
         import distributed
+        from distributed.comm.addressing import get_address_host_port
     except ImportError:
         raise ConfigError("--dask: found no Dask here, expected: pip install 'apollonius[cluster]'") from None
     make: Any = distributed.Client
     completed: Any = distributed.as_completed
+    located: Callable[..., Any] = get_address_host_port
     try:
+        located(address, strict=True)  # for a client of a misspelt address tells it a second time as it goes
         client: Any = make(address, timeout="10s", set_as_default=False)
     except (OSError, ValueError, TimeoutError) as error:
         raise ConfigError(f"--dask: {address}: found {error}, expected a scheduler of Dask") from None

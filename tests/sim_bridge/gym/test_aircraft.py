@@ -72,6 +72,7 @@ def test_what_is_not_flown_is_refused() -> None:
 
 
 @pytest.mark.long
+@pytest.mark.timeout(600)
 def test_compiled_flights_are_the_interpreted_ones_and_ended_games_begin_anew() -> None:
     scenario = short(1.5, "spatial/five")
     task = make_task(

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 import random
+import re
 import signal
 import subprocess
 import sys
@@ -16,7 +17,6 @@ from pathlib import Path
 import psutil
 import pytest
 
-from onboard.config.strict import ConfigError
 from onboard.runtime.resources import configs
 from sim_bridge.campaign.spatial_campaign import play_seed
 from sim_bridge.campaign.spatial_draw import spatial
@@ -25,7 +25,6 @@ from sim_bridge.plane_game.program import play
 from sim_bridge.programs.campaigns import shards
 from sim_bridge.programs.campaigns.command import Options, all_of, plan_of
 from sim_bridge.programs.campaigns.play import drawn, rows
-from sim_bridge.programs.campaigns.run import Ways, run
 from tests.support.campaign_runs import begin, contents, duel, environment, ran, wait_for_shard
 from tests.support.dask_cluster import cluster
 from tests.support.real_time import patience
@@ -145,10 +144,11 @@ def test_a_dask_cluster_that_loses_a_worker_gives_the_same_bytes(
     assert contents(folder) == wanted
 
 
-def test_nobody_at_the_schedulers_address_is_told(tmp_path: Path) -> None:
-    plan = plan_of(Options((duel(tmp_path),), games=2), until=False)
-    with pytest.raises(ConfigError, match=r"--dask: nonsense: found .* expected a scheduler of Dask"):
-        run(tmp_path / "folder", plan, Ways(dask="nonsense"), print)
+@pytest.mark.parametrize("address", ["nonsense", "tcp://host", "smoke://host:1"])
+def test_nobody_at_the_schedulers_address_is_told(address: str, tmp_path: Path) -> None:
+    told = ran(duel(tmp_path), "--games", 2, "--dask", address, "--out", tmp_path / "folder", code=2)
+    assert told.stderr.count("\n") == 1, told.stderr  # nothing of a client that goes
+    assert re.search(f"--dask: {address}: found .* expected a scheduler of Dask", told.stderr)
 
 
 @pytest.mark.long
