@@ -6,6 +6,10 @@ The dialect module is imported, never mavutil, which blocks and is heavy.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from hashlib import sha256
+from operator import attrgetter
+from struct import Struct
 from typing import Any, NamedTuple, Protocol
 
 from pymavlink.dialects.v20 import ardupilotmega as dialect
@@ -18,7 +22,9 @@ __all__ = [
     "SIGNATURE",
     "DialectPacket",
     "DialectSender",
+    "Layout",
     "MavMessage",
+    "checksum",
     "dialect",
     "dialect_packet",
     "layout_of",
@@ -28,6 +34,18 @@ HEADER_1, HEADER_2 = 6, 10
 """Bytes of a MAVLink 1 and a MAVLink 2 frame before the payload."""
 SIGNATURE: int = dialect.MAVLINK_SIGNATURE_BLOCK_LEN
 """Bytes of a signature at the end of a MAVLink 2 frame."""
+
+
+_HEADER = Struct("<BBBBBBBHB")  # of MAVLink 2
+
+
+def _checksum(data: bytes) -> int:
+    crc: int = dialect.x25crc(data).crc
+    return crc
+
+
+checksum: Callable[[bytes], int] = dialect.mcrf4xx or _checksum
+"""The checksum of a frame: of its bytes from the length on, and its message's extra byte (X.25)."""
 
 
 class MavMessage(Protocol):
@@ -51,35 +69,64 @@ class MavMessage(Protocol):
 
 
 class Layout:
-    """How the payload of one kind of message is read: precomputed, so that a frame costs few steps."""
+    """How the payload of one kind of message is read and written: precomputed, so that it costs few steps."""
 
-    __slots__ = ("crc_extra", "kind", "name", "order", "size", "spans", "unpack")
+    __slots__ = (
+        "crc_extra", "fields", "kind", "name", "number", "order", "plain", "size", "spans", "unpacker"
+    )  # fmt: skip
 
     def __init__(self, kind: Any) -> None:
         self.kind = kind
         self.name: str = kind.msgname
+        self.number: int = kind.id
         self.crc_extra = bytes([kind.crc_extra])
-        self.size: int = kind.unpacker.size
-        self.unpack = kind.unpacker.unpack
-        plain = all(length == 1 for length in kind.lengths)
-        self.order: tuple[int, ...] = tuple(kind.orders) if plain else ()
+        self.unpacker: Struct = kind.unpacker
+        self.size = self.unpacker.size
+        self.plain = all(length == 1 for length in kind.lengths)  # one value a field: no arrays
+        self.order: tuple[int, ...] = tuple(kind.orders) if self.plain else ()
         starts = [sum(kind.lengths[:i]) for i in range(len(kind.lengths))]
         # (first value, number of values) of each field, in the order of the constructor
         self.spans = tuple((starts[i], kind.lengths[i]) for i in kind.orders)
+        types = dict(zip(kind.fieldnames, kind.fieldtypes, strict=True))
+        sizes = dict(zip(kind.ordered_fieldnames, kind.array_lengths, strict=True))
+        # in the order of the wire; texts are kept as they came beside what people read
+        names = [f"_{name}_raw" if types[name] == "char" and sizes[name] else name for name in sizes]
+        several, one = attrgetter(*names), attrgetter(names[0])
+        self.fields: Callable[[Any], tuple[Any, ...]] = (
+            several if len(names) > 1 else lambda message: (one(message),)
+        )
+
+    def values(self, payload: bytes) -> tuple[Any, ...]:
+        """Return the values of a payload of any length, cut or filled up with zeros, in the wire's order."""
+        size = self.size
+        if len(payload) < size:
+            payload = payload.ljust(size, b"\0")
+        elif len(payload) > size:
+            payload = payload[:size]  # extension fields newer than this dialect
+        return self.unpacker.unpack(payload)
 
     def message(self, payload: bytes) -> Any:
-        """Return the dialect's message of a payload of any length: cut, or filled up with zeros."""
-        if len(payload) < self.size:
-            payload += bytes(self.size - len(payload))
-        elif len(payload) > self.size:
-            payload = payload[: self.size]  # extension fields newer than this dialect
-        values = self.unpack(payload)
+        """Return the dialect's message of a payload of any length."""
+        values = self.values(payload)
         if self.order:
             message = self.kind(*[values[i] for i in self.order])
         else:
             message = self.kind(*[values[i] if n == 1 else list(values[i : i + n]) for i, n in self.spans])
         message._payload = payload
         return message
+
+    def payload(self, message: MavMessage) -> bytes:
+        """Return the whole payload of a message. Raises struct.error for what its fields cannot hold."""
+        fields = self.fields(message)
+        if self.plain:
+            return self.unpacker.pack(*fields)
+        values: list[Any] = []
+        for value, length in zip(fields, self.kind.lengths, strict=True):
+            if length == 1:
+                values.append(value)
+            else:
+                values += value[:length]
+        return self.unpacker.pack(*values)
 
 
 _LAYOUTS: dict[int, Layout] = {}
@@ -139,18 +186,26 @@ class DialectSender:
     ) -> None:
         self.system = system
         self.component = component
+        self._sequence = sequence
         self._signing = signing
-        self._mav = dialect.MAVLink(None, srcSystem=system, srcComponent=component)
-        self._mav.seq = sequence
-        if signing is not None:
-            self._mav.signing.secret_key = signing.key
-            self._mav.signing.link_id = link_id
-            self._mav.signing.sign_outgoing = True
+        self._link_id = link_id
 
     def pack(self, message: MavMessage, wall_ns: int = 0) -> bytes:
         """Return the frame of a message; `wall_ns` [ns since the epoch] counts for signing alone."""
-        if self._signing is not None:
-            self._mav.signing.timestamp = self._signing.next_stamp(wall_ns)
-        frame = message.pack(self._mav)
-        self._mav.seq = (self._mav.seq + 1) & 0xFF
-        return frame
+        layout = layout_of(message.get_msgId())
+        assert layout is not None, message
+        return self.frame(layout, layout.payload(message), wall_ns)
+
+    def frame(self, layout: Layout, payload: bytes, wall_ns: int = 0) -> bytes:
+        """Return the frame of a whole payload. MAVLink 2 leaves out the zeros at its end, but for a first."""
+        payload = payload.rstrip(b"\0") or b"\0"
+        signing, number = self._signing, layout.number
+        flags = 0 if signing is None else dialect.MAVLINK_IFLAG_SIGNED
+        sequence, self._sequence = self._sequence, (self._sequence + 1) & 0xFF
+        head = (dialect.PROTOCOL_MARKER_V2, len(payload), flags, 0, sequence, self.system, self.component)
+        frame = _HEADER.pack(*head, number & 0xFFFF, number >> 16) + payload
+        frame += checksum(frame[1:] + layout.crc_extra).to_bytes(2, "little")
+        if signing is None:
+            return frame
+        frame += bytes((self._link_id,)) + signing.next_stamp(wall_ns).to_bytes(6, "little")
+        return frame + sha256(signing.key + frame).digest()[:6]

@@ -23,7 +23,7 @@ from onboard.wire.mavlink.commands import (
     SetupSigning,
     VelocityTarget,
 )
-from onboard.wire.mavlink.dialect import MavMessage, dialect
+from onboard.wire.mavlink.dialect import Layout, MavMessage, dialect, layout_of
 from onboard.wire.mavlink.values import AdsbVehicle, Timesync
 
 VELOCITY_ONLY = 0x0DC7  # ArduPilot: ignore position, acceleration, yaw and yaw rate
@@ -32,9 +32,21 @@ PLACE_ONLY = 0x0DF8  # PX4: ignore velocity, acceleration, yaw and yaw rate
 ROLL_ONLY = 198  # ArduPlane reads: roll alone, keep altitude and speed (ignore the rest and throttle)
 
 
-def encode(message: Outgoing) -> MavMessage:
-    """Return the dialect's message for what the agent sends."""
-    return _WRITERS[type(message)](message)
+def written(message: Outgoing) -> tuple[Layout, bytes]:
+    """Return the kind of message for what the agent sends, and its whole payload."""
+    plain = _STREAMED.get(type(message))
+    if plain is not None:
+        layout, values = plain
+        return layout, layout.unpacker.pack(*values(message))
+    sent = _WRITERS[type(message)](message)
+    layout = _layout(sent.get_msgId())
+    return layout, layout.payload(sent)
+
+
+def _layout(number: int) -> Layout:
+    layout = layout_of(number)
+    assert layout is not None, number
+    return layout
 
 
 def _new(kind: Callable[..., MavMessage], *fields: Any, **named: Any) -> MavMessage:
@@ -70,27 +82,11 @@ def _command_int(m: CommandInt) -> MavMessage:
     return _new(kind, m.to.system, m.to.component, m.frame, m.command, 0, 0, *params, m.x, m.y, m.z)
 
 
-def _velocity_target(m: VelocityTarget) -> MavMessage:
+def _velocity_target(m: VelocityTarget) -> tuple[float, ...]:
     assert is_finite(m.velocity), m
-    return _new(
-        dialect.MAVLink_set_position_target_local_ned_message,
-        time_boot_ms=_boot_ms(m.time_boot_s),
-        target_system=m.to.system,
-        target_component=m.to.component,
-        coordinate_frame=dialect.MAV_FRAME_LOCAL_NED,
-        type_mask=VELOCITY_ONLY if m.yaw is None else VELOCITY_AND_YAW,
-        x=0.0,
-        y=0.0,
-        z=0.0,
-        vx=m.velocity.x,
-        vy=m.velocity.y,
-        vz=m.velocity.z,
-        afx=0.0,
-        afy=0.0,
-        afz=0.0,
-        yaw=0.0 if m.yaw is None else m.yaw,
-        yaw_rate=0.0,
-    )
+    mask, yaw = (VELOCITY_ONLY, 0.0) if m.yaw is None else (VELOCITY_AND_YAW, m.yaw)
+    to = (m.to.system, m.to.component, dialect.MAV_FRAME_LOCAL_NED)
+    return (_boot_ms(m.time_boot_s), 0.0, 0.0, 0.0, *m.velocity, 0.0, 0.0, 0.0, yaw, 0.0, mask, *to)
 
 
 def _roll_target(m: RollTarget) -> MavMessage:
@@ -109,27 +105,11 @@ def _roll_target(m: RollTarget) -> MavMessage:
     )
 
 
-def _place_target(m: PlaceTarget) -> MavMessage:
+def _place_target(m: PlaceTarget) -> tuple[float, ...]:
     assert all(map(isfinite, (m.latitude_deg, m.longitude_deg, m.altitude_m))), m
-    return _new(
-        dialect.MAVLink_set_position_target_global_int_message,
-        time_boot_ms=_boot_ms(m.time_boot_s),
-        target_system=m.to.system,
-        target_component=m.to.component,
-        coordinate_frame=dialect.MAV_FRAME_GLOBAL_INT,
-        type_mask=PLACE_ONLY,
-        lat_int=round(m.latitude_deg * 1e7),
-        lon_int=round(m.longitude_deg * 1e7),
-        alt=m.altitude_m,
-        vx=0.0,
-        vy=0.0,
-        vz=0.0,
-        afx=0.0,
-        afy=0.0,
-        afz=0.0,
-        yaw=0.0,
-        yaw_rate=0.0,
-    )
+    place = (round(m.latitude_deg * 1e7), round(m.longitude_deg * 1e7), m.altitude_m)
+    to = (m.to.system, m.to.component, dialect.MAV_FRAME_GLOBAL_INT)
+    return (_boot_ms(m.time_boot_s), *place, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, PLACE_ONLY, *to)
 
 
 def _param_read(m: ParamRead) -> MavMessage:
@@ -184,12 +164,16 @@ _WRITERS: dict[type, Callable[[Any], MavMessage]] = {
     OwnHeartbeat: _heartbeat,
     CommandLong: _command_long,
     CommandInt: _command_int,
-    VelocityTarget: _velocity_target,
     RollTarget: _roll_target,
-    PlaceTarget: _place_target,
     ParamRead: _param_read,
     Timesync: _timesync,
     SetupSigning: _setup_signing,
     AdsbHeartbeat: _heartbeat,
     AdsbVehicle: _adsb_vehicle,
+}
+
+# What goes out with every control step: its values in the wire's order.
+_STREAMED: dict[type, tuple[Layout, Callable[[Any], tuple[float, ...]]]] = {
+    VelocityTarget: (_layout(dialect.MAVLINK_MSG_ID_SET_POSITION_TARGET_LOCAL_NED), _velocity_target),
+    PlaceTarget: (_layout(dialect.MAVLINK_MSG_ID_SET_POSITION_TARGET_GLOBAL_INT), _place_target),
 }

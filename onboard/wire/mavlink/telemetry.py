@@ -12,8 +12,7 @@ from struct import Struct, error
 from typing import Any
 
 from onboard.core.math.vectors import Vec
-from onboard.wire.finite import all_finite
-from onboard.wire.mavlink.dialect import MavMessage, dialect
+from onboard.wire.mavlink.dialect import Layout, MavMessage, dialect, layout_of
 from onboard.wire.mavlink.modes import kind_of, mode_name
 from onboard.wire.mavlink.values import (
     UNKNOWN,
@@ -48,9 +47,22 @@ _ACCURACY_M = {5: 926.0, 6: 555.6, 7: 185.2, 8: 92.6, 9: 30.0, 10: 10.0, 11: 3.0
 _PLANE_95 = 2.45  # radius of 95 % of a normal distribution in a plane [sigma]
 
 
+def value_of(layout: Layout, payload: bytes) -> Value | None:
+    """Return what a payload says; None for a message that nobody reads and for one that is not sound."""
+    plain = _PLAIN.get(layout.number)
+    if plain is not None:
+        return plain(layout.values(payload))
+    reader = _READERS.get(layout.number)
+    return reader(layout.message(payload)) if reader is not None else None
+
+
 def decode(message: MavMessage) -> Value | None:
     """Return the value of a message that somebody reads; None for others and for one that is not sound."""
-    reader = _READERS.get(message.get_msgId())
+    number = message.get_msgId()
+    layout = layout_of(number)
+    plain, reader = _PLAIN.get(number), _READERS.get(number)
+    if plain is not None and layout is not None:
+        return plain(layout.fields(message))
     return reader(message) if reader is not None else None
 
 
@@ -58,84 +70,79 @@ def _on_earth(latitude_e7: int, longitude_e7: int) -> bool:
     return -900_000_000 <= latitude_e7 <= 900_000_000 and -1_800_000_000 <= longitude_e7 <= 1_800_000_000
 
 
-def _heartbeat(m: Any) -> Heartbeat:
-    kind = kind_of(m.autopilot, m.type)
-    armed = bool(m.base_mode & dialect.MAV_MODE_FLAG_SAFETY_ARMED)
-    return Heartbeat(
-        kind, m.type, m.autopilot, m.custom_mode, mode_name(kind, m.custom_mode), armed, m.system_status
-    )
+# ---------------------------------------------------------------------- what comes often: `v` are the values
+# of the wire, in its order. A sum of numbers of 32 bits is finite where all of them are.
 
 
-def _global_position(m: Any) -> GlobalPosition | None:
-    if not _on_earth(m.lat, m.lon):
+def _heartbeat(v: tuple[Any, ...]) -> Heartbeat:
+    custom_mode, type, autopilot, base_mode, system_status, _version = v
+    kind = kind_of(autopilot, type)
+    armed = bool(base_mode & dialect.MAV_MODE_FLAG_SAFETY_ARMED)
+    return Heartbeat(kind, type, autopilot, custom_mode, mode_name(kind, custom_mode), armed, system_status)
+
+
+def _global_position(v: tuple[Any, ...]) -> GlobalPosition | None:
+    boot_ms, lat, lon, alt, relative_alt, vx, vy, vz, _heading = v
+    if not _on_earth(lat, lon):
         return None
-    velocity = Vec(m.vx * 0.01, m.vy * 0.01, m.vz * 0.01)
-    return GlobalPosition(
-        m.time_boot_ms * 1e-3, m.lat * 1e-7, m.lon * 1e-7, m.alt * 1e-3, m.relative_alt * 1e-3, velocity
-    )
+    velocity = Vec(vx * 0.01, vy * 0.01, vz * 0.01)
+    return GlobalPosition(boot_ms * 1e-3, lat * 1e-7, lon * 1e-7, alt * 1e-3, relative_alt * 1e-3, velocity)
 
 
-def _attitude(m: Any) -> Attitude | None:
-    if not all_finite((m.roll, m.pitch, m.yaw, m.rollspeed, m.pitchspeed, m.yawspeed)):
+def _attitude(v: tuple[Any, ...]) -> Attitude | None:
+    boot_ms, roll, pitch, yaw, rollspeed, pitchspeed, yawspeed = v
+    if not isfinite(roll + pitch + yaw + rollspeed + pitchspeed + yawspeed):
         return None
-    if abs(m.roll) > 2 * pi or abs(m.pitch) > 2 * pi or abs(m.yaw) > 4 * pi:
+    if abs(roll) > 2 * pi or abs(pitch) > 2 * pi or abs(yaw) > 4 * pi:
         return None
-    rates = Vec(m.rollspeed, m.pitchspeed, m.yawspeed)
-    return Attitude(m.time_boot_ms * 1e-3, m.roll, m.pitch, m.yaw, rates)
+    return Attitude(boot_ms * 1e-3, roll, pitch, yaw, Vec(rollspeed, pitchspeed, yawspeed))
 
 
-def _air_data(m: Any) -> AirData | None:
-    if not all_finite((m.airspeed, m.groundspeed, m.climb, m.alt)):
+def _air_data(v: tuple[Any, ...]) -> AirData | None:
+    airspeed, groundspeed, alt, climb, _heading, throttle = v
+    if not isfinite(airspeed + groundspeed + climb + alt):
         return None
-    return AirData(m.airspeed, m.groundspeed, m.climb, m.throttle * 0.01, m.alt)
+    return AirData(airspeed, groundspeed, climb, throttle * 0.01, alt)
 
 
-def _wind(m: Any) -> Wind | None:
+def _wind(v: tuple[Any, ...]) -> Wind | None:
     """ArduPilot: `direction` is where it comes from [deg], `speed` is in the ground plane, `speed_z` down."""
-    if not all_finite((m.direction, m.speed, m.speed_z)):
+    direction, speed, speed_z = v
+    if not isfinite(direction + speed + speed_z):
         return None
-    origin = radians(m.direction)
-    return Wind(Vec(-m.speed * cos(origin), -m.speed * sin(origin), m.speed_z))
+    origin = radians(direction)
+    return Wind(Vec(-speed * cos(origin), -speed * sin(origin), speed_z))
 
 
-def _wind_cov(m: Any) -> Wind | None:
+def _wind_cov(v: tuple[Any, ...]) -> Wind | None:
     """PX4: the vector itself; it does not know the vertical part (NaN)."""
-    if not all_finite((m.wind_x, m.wind_y)):
+    _usec, wind_x, wind_y, wind_z, *_ = v
+    if not isfinite(wind_x + wind_y):
         return None
-    return Wind(Vec(m.wind_x, m.wind_y, m.wind_z if isfinite(m.wind_z) else 0.0))
+    return Wind(Vec(wind_x, wind_y, wind_z if isfinite(wind_z) else 0.0))
 
 
-def _sys_status(m: Any) -> SysStatus:
+def _sys_status(v: tuple[Any, ...]) -> SysStatus:
+    present, enabled, health, load, voltage, _current, drop_rate, *_, remaining, _, _, _ = v
     bit = dialect.MAV_SYS_STATUS_PREARM_CHECK
-    enabled, health = m.onboard_control_sensors_enabled, m.onboard_control_sensors_health
     return SysStatus(
-        battery=m.battery_remaining * 0.01 if 0 <= m.battery_remaining <= 100 else UNKNOWN,
-        voltage=m.voltage_battery * 1e-3 if 0 < m.voltage_battery < 65535 else UNKNOWN,
-        pre_arm_known=bool(m.onboard_control_sensors_present & bit),
+        battery=remaining * 0.01 if 0 <= remaining <= 100 else UNKNOWN,
+        voltage=voltage * 1e-3 if 0 < voltage < 65535 else UNKNOWN,
+        pre_arm_known=bool(present & bit),
         pre_arm_ok=bool(health & bit),
         unhealthy=enabled & ~health,
-        load=m.load * 1e-3,
-        drop_rate=m.drop_rate_comm * 1e-4,
+        load=load * 1e-3,
+        drop_rate=drop_rate * 1e-4,
     )
 
 
-def _battery(m: Any) -> Battery:
-    cells = [mv for mv in (*m.voltages, *(mv for mv in m.voltages_ext if mv)) if mv != 65535]
-    return Battery(
-        id=m.id,
-        remaining=m.battery_remaining * 0.01 if 0 <= m.battery_remaining <= 100 else UNKNOWN,
-        voltage=sum(cells) * 1e-3 if cells else UNKNOWN,
-        time_left_s=float(m.time_remaining) if m.time_remaining > 0 else UNKNOWN,
-        function=m.battery_function,
-    )
-
-
-def _gps_fix(m: Any) -> GpsFix:
+def _gps_fix(v: tuple[Any, ...]) -> GpsFix:
+    _usec, _lat, _lon, _alt, eph, _epv, _vel, _cog, fix_type, satellites, _ellipsoid, h_acc, *_ = v
     return GpsFix(
-        fix=m.fix_type,
-        satellites=m.satellites_visible if m.satellites_visible != 255 else -1,
-        hdop=m.eph * 0.01 if m.eph != 65535 else UNKNOWN,
-        accuracy_m=m.h_acc * 1e-3 if m.h_acc else UNKNOWN,
+        fix=fix_type,
+        satellites=satellites if satellites != 255 else -1,
+        hdop=eph * 0.01 if eph != 65535 else UNKNOWN,
+        accuracy_m=h_acc * 1e-3 if h_acc else UNKNOWN,
     )
 
 
@@ -161,22 +168,41 @@ def _ekf(flags: int, faults: int, rejecting: int, ratios: tuple[float, ...]) -> 
     return EkfStatus(flags, estimated and not flags & faults and worst <= 1.0, worst, estimated)
 
 
-def _ekf_status_report(m: Any) -> EkfStatus:
-    ratios = (m.velocity_variance, m.pos_horiz_variance, m.pos_vert_variance, m.compass_variance)
-    return _ekf(m.flags, _EKF_FAULTS, _EKF_REJECTING, ratios)
+def _ekf_status_report(v: tuple[Any, ...]) -> EkfStatus:
+    velocity, horizontal, vertical, compass, _terrain, flags, _airspeed = v
+    return _ekf(flags, _EKF_FAULTS, _EKF_REJECTING, (velocity, horizontal, vertical, compass))
 
 
-def _estimator_status(m: Any) -> EkfStatus:
-    ratios = (m.vel_ratio, m.pos_horiz_ratio, m.pos_vert_ratio, m.mag_ratio)
-    return _ekf(m.flags, _FAULTS, _REJECTING, ratios)
+def _estimator_status(v: tuple[Any, ...]) -> EkfStatus:
+    _usec, velocity, horizontal, vertical, mag, *_, flags = v
+    return _ekf(flags, _FAULTS, _REJECTING, (velocity, horizontal, vertical, mag))
 
 
-def _extended_state(m: Any) -> ExtendedState:
-    return ExtendedState(m.vtol_state, m.landed_state)
+def _extended_state(v: tuple[Any, ...]) -> ExtendedState:
+    return ExtendedState(*v)
 
 
-def _command_ack(m: Any) -> CommandAck:
-    return CommandAck(m.command, m.result, m.target_system, m.target_component)
+def _command_ack(v: tuple[Any, ...]) -> CommandAck:
+    command, result, _progress, _param2, system, component = v
+    return CommandAck(command, result, system, component)
+
+
+def _timesync(v: tuple[Any, ...]) -> Timesync:
+    return Timesync(*v)
+
+
+# ---------------------------------------------------------------------- what comes seldom
+
+
+def _battery(m: Any) -> Battery:
+    cells = [mv for mv in (*m.voltages, *(mv for mv in m.voltages_ext if mv)) if mv != 65535]
+    return Battery(
+        id=m.id,
+        remaining=m.battery_remaining * 0.01 if 0 <= m.battery_remaining <= 100 else UNKNOWN,
+        voltage=sum(cells) * 1e-3 if cells else UNKNOWN,
+        time_left_s=float(m.time_remaining) if m.time_remaining > 0 else UNKNOWN,
+        function=m.battery_function,
+    )
 
 
 def _status_text(m: Any) -> StatusText:
@@ -220,10 +246,6 @@ def _version(m: Any) -> Version:
     v = m.flight_sw_version
     flight = (v >> 24 & 0xFF, v >> 16 & 0xFF, v >> 8 & 0xFF, v & 0xFF)
     return Version(m.capabilities, flight, m.board_version, m.uid)
-
-
-def _timesync(m: Any) -> Timesync:
-    return Timesync(m.tc1, m.ts1)
 
 
 def _adsb_vehicle(m: Any) -> AdsbVehicle | None:
@@ -293,7 +315,7 @@ def _text(raw: str | bytes) -> str:
     return raw.rstrip("\0")
 
 
-_READERS: dict[int, Callable[[Any], Value | None]] = {
+_PLAIN: dict[int, Callable[[tuple[Any, ...]], Value | None]] = {
     dialect.MAVLINK_MSG_ID_HEARTBEAT: _heartbeat,
     dialect.MAVLINK_MSG_ID_GLOBAL_POSITION_INT: _global_position,
     dialect.MAVLINK_MSG_ID_ATTITUDE: _attitude,
@@ -301,17 +323,19 @@ _READERS: dict[int, Callable[[Any], Value | None]] = {
     dialect.MAVLINK_MSG_ID_WIND: _wind,
     dialect.MAVLINK_MSG_ID_WIND_COV: _wind_cov,
     dialect.MAVLINK_MSG_ID_SYS_STATUS: _sys_status,
-    dialect.MAVLINK_MSG_ID_BATTERY_STATUS: _battery,
     dialect.MAVLINK_MSG_ID_GPS_RAW_INT: _gps_fix,
     dialect.MAVLINK_MSG_ID_EKF_STATUS_REPORT: _ekf_status_report,
     dialect.MAVLINK_MSG_ID_ESTIMATOR_STATUS: _estimator_status,
     dialect.MAVLINK_MSG_ID_EXTENDED_SYS_STATE: _extended_state,
     dialect.MAVLINK_MSG_ID_COMMAND_ACK: _command_ack,
+    dialect.MAVLINK_MSG_ID_TIMESYNC: _timesync,
+}
+_READERS: dict[int, Callable[[Any], Value | None]] = {
+    dialect.MAVLINK_MSG_ID_BATTERY_STATUS: _battery,
     dialect.MAVLINK_MSG_ID_STATUSTEXT: _status_text,
     dialect.MAVLINK_MSG_ID_HOME_POSITION: _home,
     dialect.MAVLINK_MSG_ID_PARAM_VALUE: _param_value,
     dialect.MAVLINK_MSG_ID_AUTOPILOT_VERSION: _version,
-    dialect.MAVLINK_MSG_ID_TIMESYNC: _timesync,
     dialect.MAVLINK_MSG_ID_ADSB_VEHICLE: _adsb_vehicle,
     dialect.MAVLINK_MSG_ID_OPEN_DRONE_ID_BASIC_ID: _drone_identity,
     dialect.MAVLINK_MSG_ID_OPEN_DRONE_ID_LOCATION: _drone_location,
@@ -321,7 +345,7 @@ _READERS: dict[int, Callable[[Any], Value | None]] = {
     dialect.MAVLINK_MSG_ID_RC_CHANNELS: _rc_channels,
 }
 
-READ = frozenset(_READERS)
+READ = frozenset((*_PLAIN, *_READERS))
 """Numbers of the messages that `decode` has a value for."""
 FLIGHT = READ - {dialect.MAVLINK_MSG_ID_STATUSTEXT}
 """Those that flight depends on: all but the words for people."""
