@@ -101,13 +101,11 @@ class Lost(Record, frozen=True, tag=4):
 
 def recorded(effects: Sequence[AnyEffect]) -> tuple[AnyRecorded, ...]:
     """The effects as they are recorded."""
-    kept: list[AnyRecorded] = []
-    for effect in effects:
-        if isinstance(effect, Think):
-            kept.append(Asked(effect.number, effect.side, effect.strategy))
-        elif not isinstance(effect, Keep):
-            kept.append(effect)
-    return tuple(kept)
+    return tuple(
+        Asked(effect.number, effect.side, effect.strategy) if isinstance(effect, Think) else effect
+        for effect in effects
+        if not isinstance(effect, Keep)
+    )
 
 
 # ---------------------------------------------------------------------- writing
@@ -198,7 +196,7 @@ class EventFile:
         """Record an event and its effects."""
         if self.full:
             return
-        self._add(Happened(now, event, recorded(effects)))
+        self._add(Happened(now, event, recorded(effects) if effects else ()))
         if len(self._buffer) >= CHUNK or now.s - self._flushed >= FLUSH_S:
             self._flushed = now.s
             self._flush()
@@ -213,18 +211,16 @@ class EventFile:
         return {"events_unrecorded": self.lost, "events_file_full": int(self.full)}
 
     def _add(self, record: Record) -> None:
-        start = len(self._buffer)
-        self._buffer += b"\x00\x00\x00\x00"
-        self._encoder.encode_into(record, self._buffer, start + 4)
-        size = len(self._buffer) - start
+        data = self._encoder.encode(record)
+        size = 4 + len(data)
         if self._size + size > self._limit and not self.full:
-            del self._buffer[start:]
             self.full = True
             self._add(Full(self._limit))
             self._flush()
             return
         self._size += size
-        self._buffer[start : start + 4] = (size - 4).to_bytes(4, "little")
+        self._buffer += len(data).to_bytes(4, "little")
+        self._buffer += data
 
     def _flush(self) -> None:
         if not self._buffer:

@@ -224,18 +224,19 @@ class Agent:
         if self._busy:
             return
         self._busy = True
+        core, waiting, do, events = self.core, self._waiting, self._effects, self._equipment.events
         try:
-            while self._waiting or self.core.pending:
-                if self._waiting:
-                    event, now = self._waiting.popleft()
-                    effects = self.core.handle(event, now)
+            while waiting or core.pending:
+                if waiting:
+                    event, now = waiting.popleft()
+                    effects = core.handle(event, now)
                 else:
                     event, now = Idle(), self._instant()
-                    effects = self.core.idle(now)
+                    effects = core.idle(now)
                 for effect in effects:
-                    self._effects[type(effect)](effect)
-                if self._equipment.events is not None:
-                    self._equipment.events.add(now, event, effects)
+                    do[type(effect)](effect)
+                if events is not None:
+                    events.add(now, event, effects)
             self._arm()
         except Exception as error:  # on a loop's callback it would only be logged: the agent must end
             if not self._ended.done():

@@ -62,6 +62,7 @@ class Batteries:
         self._reports: dict[int, Gauged] = {}  # the last of each, whatever it is for
         self._status = _Gauge()
         self._now = NEVER
+        self.share = self.voltage = UNKNOWN  # [0…1], [V] of the emptiest flight battery; UNKNOWN: nobody says
 
     def take(self, now: float, battery: Battery) -> None:
         """Take in a BATTERY_STATUS that came at `now` [s, monotonic]."""
@@ -73,22 +74,18 @@ class Batteries:
             self._gauges.pop(battery.id, None)
         elif battery.id in self._gauges or len(self._gauges) < MOST:
             self._gauges.setdefault(battery.id, _Gauge()).take(now, battery.remaining, battery.voltage)
+        self._weigh()
 
     def take_status(self, status: SysStatus) -> None:
         """Take in a SYS_STATUS."""
         self._status.take(self._now, status.battery, status.voltage)
+        self._weigh()
 
-    @property
-    def share(self) -> float:
-        """What is left in the emptiest flight battery [0…1]; UNKNOWN where nobody says."""
+    def _weigh(self) -> None:
+        """Take in what changed; what nobody says of the batteries, SYS_STATUS says."""
         gauge = self._emptiest()
-        return self._status.share if gauge is None or gauge.share == UNKNOWN else gauge.share
-
-    @property
-    def voltage(self) -> float:
-        """The voltage of the emptiest flight battery [V]; UNKNOWN where nobody says."""
-        gauge = self._emptiest()
-        return self._status.voltage if gauge is None or gauge.voltage == UNKNOWN else gauge.voltage
+        self.share = self._status.share if gauge is None or gauge.share == UNKNOWN else gauge.share
+        self.voltage = self._status.voltage if gauge is None or gauge.voltage == UNKNOWN else gauge.voltage
 
     @property
     def each(self) -> tuple[Gauged, ...]:

@@ -170,8 +170,10 @@ class Track:
             north += 0.5 * (sample.velocity.x + after.velocity.x) * dt
             east += 0.5 * (sample.velocity.y + after.velocity.y) * dt
             after = sample
+            if last.at - sample.at < LEAST:
+                continue
             covered = hypot(north, east)
-            if last.at - sample.at >= LEAST and covered >= MOVED:
+            if covered >= MOVED:
                 moved = hypot(last.north - sample.north, last.east - sample.east)
                 if moved < STILL * covered:
                     return True
@@ -240,6 +242,7 @@ class EstimatorWatch:
     def __init__(self) -> None:
         self._estimated = Recent()
         self._rejecting: deque[tuple[float, bool]] = deque(maxlen=100)
+        self.ok = False  # whether the estimate is good
 
     def take(self, now: float, report: EkfStatus) -> None:
         """Take in one more report that came at `now` [s, monotonic]."""
@@ -248,10 +251,9 @@ class EstimatorWatch:
         window.append((now, report.rejecting))
         while len(window) > RATIOS and now - window[0][0] > RATIOS_S:
             window.popleft()
+        self.ok = self._judged()
 
-    @property
-    def ok(self) -> bool:
-        """Whether the estimate is good; ValueError before any report came."""
+    def _judged(self) -> bool:
         window = [rejecting for _, rejecting in self._rejecting]
         never_good = all(window) and len(window) < RATIOS  # no better report was heard yet
         rejecting = 2 * sum(window) > max(len(window), RATIOS)

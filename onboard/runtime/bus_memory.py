@@ -9,14 +9,14 @@ asks again, sooner than TCP would), all others come late instead, as over TCP.
 from __future__ import annotations
 
 import asyncio
-from collections import Counter, deque
+from collections import Counter
 from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING
 
 from onboard.runtime.impairment import Channel, Impairment
 from onboard.runtime.inbox import LATER_S
-from onboard.runtime.memory_delivery import MemoryDelivery
+from onboard.runtime.memory_delivery import Kept, Listener, MemoryDelivery, Parcel, Watcher
 from onboard.runtime.patterns import matches
 from onboard.runtime.protocols import Sample
 from onboard.runtime.rate_limit import PAYLOAD_MAX, BusLimit
@@ -25,7 +25,6 @@ from onboard.wire.bus.topics import Delivery
 if TYPE_CHECKING:
     from numpy.random import Generator
 
-EVENTS_KEPT = 256  # events a publisher keeps of each key
 ROUTES_MAX = 10_000  # keys whose hearers are remembered
 RECONNECT_S = 0.5  # a connection is back at most this long after the broker
 
@@ -43,36 +42,6 @@ class _Undo:
             undo()
 
 
-class _Kept:
-    """What a publisher keeps of one key: (number, payload), the oldest first."""
-
-    def __init__(self, delivery: Delivery) -> None:
-        self.number = 0
-        self.entries: deque[tuple[int, bytes]] = deque(
-            maxlen=EVENTS_KEPT if delivery is Delivery.EVENT else 1
-        )
-
-
-class _Listener:
-    """One subscription of one connection; numbers tell what it has had already."""
-
-    def __init__(self, pattern: str, receiver: Callable[[Sample], None]) -> None:
-        self.pattern = pattern
-        self.receiver = receiver
-        self.had: dict[tuple[int, str], int] = {}  # (publisher, key) → number last delivered
-        self.open = True
-
-
-class _Watcher:
-    """One presence subscription: what it believes, so that it is told changes only."""
-
-    def __init__(self, pattern: str, receiver: Callable[[str, bool], None]) -> None:
-        self.pattern = pattern
-        self.receiver = receiver
-        self.alive: set[str] = set()
-        self.open = True
-
-
 class MemoryBroker:
     """Joins the connections of one process; can be killed and brought back."""
 
@@ -83,7 +52,7 @@ class MemoryBroker:
         self._rng = rng
         self.up = True
         self.buses: list[MemoryBus] = []
-        self._routes: dict[str, list[tuple[MemoryBus, tuple[_Listener, ...]]]] = {}
+        self._routes: dict[str, list[tuple[MemoryBus, tuple[Listener, ...]]]] = {}
         self._made = 0
 
     def connect(self, name: str = "") -> MemoryBus:
@@ -111,7 +80,7 @@ class MemoryBroker:
         for bus in self.buses:
             asyncio.get_running_loop().call_later(RECONNECT_S, bus._returned)
 
-    def route(self, key: str) -> list[tuple[MemoryBus, tuple[_Listener, ...]]]:
+    def route(self, key: str) -> list[tuple[MemoryBus, tuple[Listener, ...]]]:
         """Who hears a key: connections, and their subscriptions to it."""
         found = self._routes.get(key)
         if found is None:
@@ -145,12 +114,12 @@ class MemoryBus:
         self.number = number  # of the connection, for as long as the broker exists
         self.name = name
         self.channel = channel
-        self.listeners: list[_Listener] = []
+        self.listeners: list[Listener] = []
         self.tokens: list[str] = []
         self._broker = broker
-        self._watchers: list[_Watcher] = []
+        self._watchers: list[Watcher] = []
         self._servers: list[tuple[str, Callable[[bytes], bytes]]] = []
-        self._kept: dict[str, _Kept] = {}
+        self._kept: dict[str, Kept] = {}
         self._counts: Counter[str] = Counter()
         self._delivery = MemoryDelivery(channel, self._counts)
         self._limit = BusLimit()
@@ -169,7 +138,7 @@ class MemoryBus:
         if delivery in (Delivery.CACHED, Delivery.EVENT):
             kept = self._kept.get(key)
             if kept is None:
-                kept = self._kept[key] = _Kept(delivery)
+                kept = self._kept[key] = Kept(delivery)
             kept.number += 1
             number = kept.number
             kept.entries.append((number, payload))
@@ -177,16 +146,21 @@ class MemoryBus:
             self._counts["no_bus"] += 1
             return
         self._counts["published"] += 1
-        sample = Sample(key, payload)
+        parcel = Parcel(Sample(key, payload), delivery, (self.number, key), number)
+        at_once: list[tuple[MemoryBus, tuple[Listener, ...]]] = []
         for bus, listeners in self._broker.route(key):
-            if bus._online:
-                bus._hand(listeners, sample, delivery, (self.number, key), number)
+            if not bus._online:
+                continue
+            if bus.channel is not None:
+                bus._hand(listeners, parcel)
+            elif bus._delivery.begin(delivery):
+                at_once.append((bus, listeners))
+        if at_once:
+            asyncio.get_running_loop().call_soon(_arrive, at_once, parcel)
 
-    def subscribe(
-        self, pattern: str, receiver: Callable[[Sample], None], *, every: bool = False
-    ) -> _Undo:
+    def subscribe(self, pattern: str, receiver: Callable[[Sample], None], *, every: bool = False) -> _Undo:
         """Call `receiver` for what matches (here it is every message); what publishers keep comes first."""
-        listener = _Listener(pattern, receiver)
+        listener = Listener(pattern, receiver)
         self.listeners.append(listener)
         self._broker.changed()
         if self._online:
@@ -256,7 +230,7 @@ class MemoryBus:
 
     def presence(self, pattern: str, receiver: Callable[[str, bool], None]) -> _Undo:
         """Call `receiver(key, alive)`, for tokens that already exist first."""
-        watcher = _Watcher(pattern, receiver)
+        watcher = Watcher(pattern, receiver)
         self._watchers.append(watcher)
         self._look()
 
@@ -316,53 +290,51 @@ class MemoryBus:
                     bus._take_kept(self, listener)
         self._broker.tokens_changed()
 
-    def _catch_up(self, listener: _Listener) -> None:
+    def _catch_up(self, listener: Listener) -> None:
         """Hand a listener what all publishers keep and it has not had."""
         for publisher in self._broker.buses:
             if publisher._online:
                 self._take_kept(publisher, listener)
 
-    def _take_kept(self, publisher: MemoryBus, listener: _Listener) -> None:
+    def _take_kept(self, publisher: MemoryBus, listener: Listener) -> None:
         for key, kept in publisher._kept.items():
             if matches(listener.pattern, key):
                 source = (publisher.number, key)
                 for number, payload in kept.entries:
-                    self._hand((listener,), Sample(key, payload), Delivery.CACHED, source, number)
+                    self._hand((listener,), Parcel(Sample(key, payload), Delivery.CACHED, source, number))
 
-    def _hand(
-        self,
-        listeners: tuple[_Listener, ...],
-        sample: Sample,
-        delivery: Delivery,
-        source: tuple[int, str],
-        number: int,
-    ) -> None:
-        """Bring a sample to own listeners, through the impairment: all of them hear it, or none."""
+    def _hand(self, listeners: tuple[Listener, ...], parcel: Parcel) -> None:
+        """Bring a parcel to own listeners, through the impairment: all of them hear it, or none."""
+        self._delivery.bring(parcel.delivery, parcel.sample.payload, partial(self._admit, listeners, parcel))
 
-        def admitted(payload: bytes) -> None:
-            loop, key = asyncio.get_running_loop(), sample.key
-            if self._limit.admits(key, len(payload), loop.time()):
-                self._later.pop((key, source[0]), None)
-                arrived(payload)
-            elif delivery is Delivery.LATEST and len(payload) <= PAYLOAD_MAX:
-                if not self._later:  # the newest of a flood counts, but not every one of them
-                    loop.call_later(LATER_S, self._take_later)
-                self._later[(key, source[0])] = partial(arrived, payload)
+    def _admit(self, listeners: tuple[Listener, ...], parcel: Parcel, payload: bytes) -> None:
+        """Let own listeners hear what came of a parcel, within the bounds."""
+        loop, sample = asyncio.get_running_loop(), parcel.sample
+        if payload is not sample.payload:
+            sample = Sample(sample.key, payload)
+        slot = (sample.key, parcel.source[0])
+        if self._limit.admits(sample.key, len(payload), loop.time()):
+            if self._later:
+                self._later.pop(slot, None)
+            self._arrived(listeners, parcel, sample)
+        elif parcel.delivery is Delivery.LATEST and len(payload) <= PAYLOAD_MAX:
+            if not self._later:  # the newest of a flood counts, but not every one of them
+                loop.call_later(LATER_S, self._take_later)
+            self._later[slot] = partial(self._arrived, listeners, parcel, sample)
 
-        def arrived(payload: bytes) -> None:
-            for listener in listeners:
-                if not self._online or not listener.open:
+    def _arrived(self, listeners: tuple[Listener, ...], parcel: Parcel, sample: Sample) -> None:
+        number, source = parcel.number, parcel.source
+        for listener in listeners:
+            if not self._online or not listener.open:
+                continue
+            if number:
+                if listener.had.get(source, 0) >= number:
                     continue
-                if number:
-                    if listener.had.get(source, 0) >= number:
-                        continue
-                    listener.had[source] = number
-                self._counts["received"] += 1
-                if self.tap is not None:
-                    self.tap(Sample(sample.key, payload))
-                listener.receiver(Sample(sample.key, payload))
-
-        self._delivery.bring(delivery, sample.payload, admitted)
+                listener.had[source] = number
+            self._counts["received"] += 1
+            if self.tap is not None:
+                self.tap(sample)
+            listener.receiver(sample)
 
     def _take_later(self) -> None:
         later, self._later = self._later, {}
@@ -379,6 +351,19 @@ class MemoryBus:
             watcher.alive = seen
 
     @staticmethod
-    def _tell(watcher: _Watcher, key: str, alive: bool, _: bytes) -> None:
+    def _tell(watcher: Watcher, key: str, alive: bool, _: bytes) -> None:
         if watcher.open:
             watcher.receiver(key, alive)
+
+
+def _arrive(hearers: list[tuple[MemoryBus, tuple[Listener, ...]]], parcel: Parcel) -> None:
+    """A parcel arrives at connections without an impairment, one after the other."""
+    payload = parcel.sample.payload
+    for number, (bus, listeners) in enumerate(hearers, 1):
+        bus._delivery.end()
+        try:
+            bus._admit(listeners, parcel, payload)
+        except BaseException:  # one hearer's fault is not the others'
+            if hearers[number:]:
+                asyncio.get_running_loop().call_soon(_arrive, hearers[number:], parcel)
+            raise

@@ -2,7 +2,8 @@
 
 `Channel` decides, from a seeded generator and the time, what becomes of each datagram of one
 direction; `Impaired` puts two of them around a link. Every datagram takes the same count of random
-numbers whatever the impairment is, so that changing one share leaves the other fates as they were.
+numbers whatever the impairment is, so that changing one share leaves the other fates as they were. A channel
+that does nothing but delay draws them once it does more.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 IN_FLIGHT_MAX = 20_000  # delayed datagrams of one direction before the next are dropped
 HELD_BACK_S = (0.02, 0.06)  # how much later a reordered datagram comes: later ones overtake it
 _DRAWS = 8  # random numbers a datagram takes
+_AT_ONCE = 8192  # datagrams whose numbers are made up for in one call
 _STRETCH_S = (1e-3, 1e6)  # shortest and longest stretch of a burst or of good time
 
 
@@ -48,6 +50,11 @@ CLEAR = Impairment()
 CUT = Impairment(cut=True)
 
 
+def steady(impairment: Impairment) -> bool:
+    """Whether nothing is left to chance: every datagram arrives, as it is, in order and `delay_s` late."""
+    return msgspec.structs.replace(impairment, delay_s=0.0) == CLEAR
+
+
 class Channel:
     """The fate of datagrams in one direction; deterministic for a seed and the instants of sending."""
 
@@ -59,6 +66,8 @@ class Channel:
         self._turn_ns = 0  # when the present stretch, good or burst, ends
         self._in_burst = False
         self._impairment = impairment
+        self._steady = steady(impairment)
+        self._owed = 0  # datagrams whose random numbers are not drawn yet
         self._started = False
 
     @property
@@ -69,12 +78,21 @@ class Channel:
     @impairment.setter
     def impairment(self, impairment: Impairment) -> None:
         old, self._impairment = self._impairment, impairment
+        self._steady = steady(impairment)
         if (old.burst_rate, old.burst_s) != (impairment.burst_rate, impairment.burst_s):
             self._started = False
 
     def fate(self, data: bytes, now_ns: int) -> list[tuple[int, bytes]]:
         """When (the instant, ns) and in what shape the copies of a datagram sent at `now_ns` arrive."""
         impairment = self._impairment
+        if self._steady:
+            self._owed += 1
+            self._latest_ns = max(self._latest_ns, now_ns + round(impairment.delay_s * NS_PER_S))
+            return [(self._latest_ns, data)]
+        while self._owed:
+            late = min(self._owed, _AT_ONCE)
+            self._rng.random(late * _DRAWS)
+            self._owed -= late
         u = self._rng.random(_DRAWS).tolist()
         burst = self._burst(now_ns)
         if impairment.cut:

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from collections import Counter, OrderedDict
 from collections.abc import Hashable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from onboard.wire.bus.topics import ID, TOPICS, Delivery
+from onboard.wire.bus.topics import ID, TOPICS, Delivery, Topic
 
 BUCKETS_MAX = 1024
 PAYLOAD_MAX = 65_536  # [bytes] of a message on the bus: none of the table comes near it
@@ -56,7 +56,10 @@ class RateLimit:
             if len(self._buckets) >= BUCKETS_MAX:
                 key = ("", "")  # the rest share one
             bucket = self._buckets.setdefault(key, _Bucket(rate.burst, now))
-        left = min(rate.burst, bucket.left + (now - bucket.at) * rate.per_s)
+        per_s, burst = rate
+        left = bucket.left + (now - bucket.at) * per_s
+        if left > burst:
+            left = burst
         bucket.at = now
         if left < 1.0:
             bucket.left = left
@@ -71,6 +74,7 @@ class BusLimit:
 
     def __init__(self) -> None:
         self._limit = RateLimit()
+        self._bounds: dict[Topic[Any], tuple[str, Rate]] = {}
 
     def admits(self, key: str, size: int, now: float) -> bool:
         """Whether a message of `size` bytes on a key is within its bound."""
@@ -80,12 +84,20 @@ class BusLimit:
             return False
         if place is None:
             return self._limit.admits("", "foreign", FOREIGN, now)
-        kind = place.topic.suffix.replace(f"/{ID}", "").replace("/", "_")
-        return self._limit.admits(key, kind, rate_of(place.topic.delivery, place.topic.rate_hz), now)
+        bound = self._bounds.get(place.topic)
+        if bound is None:
+            bound = self._bounds[place.topic] = _bound_of(place.topic)
+        return self._limit.admits(key, *bound, now)
 
     def counters(self) -> dict[str, int]:
         """How many were over their bound, by kind: `limited_KIND`."""
         return {f"limited_{kind}": number for kind, number in self._limit.limited.items()}
+
+
+def _bound_of(topic: Topic[Any]) -> tuple[str, Rate]:
+    """The kind under which a topic's messages are counted, and their bound."""
+    kind = topic.suffix.replace(f"/{ID}", "").replace("/", "_")
+    return kind, rate_of(topic.delivery, topic.rate_hz)
 
 
 def rate_of(delivery: Delivery, nominal_hz: float) -> Rate:

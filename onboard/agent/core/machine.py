@@ -145,7 +145,8 @@ class AgentCore:
         """When to call `handle` with a `Tick` at the latest [s, monotonic]; inf = not by itself."""
         if self.ending.begun:
             return self.ending.at
-        return min(self._step_at, self._chores.at, self._heartbeat.at, self._health.at, self._answer_by)
+        at = min(self._step_at, self._chores.at, self._heartbeat.at, self._health.at)
+        return at if self.flight.open is None else min(at, self._answer_by)
 
     @property
     def _answer_by(self) -> float:

@@ -49,6 +49,7 @@ class Requests:
     def __init__(self, to: Target, kind: Kind, control_rate_hz: float, link: str, signed: bool) -> None:
         baud = baud_of(link)
         self.parameters: dict[str, float] = {}
+        self.revision = 0  # counts how often they were told
         self.clock = TimesyncEstimator()
         capacity, needs = capacity_of(baud) if baud else None, needs_of(kind, control_rate_hz)
         self._rates = StreamRates(kind, to, capacity, signed=signed, needs=needs)
@@ -92,6 +93,7 @@ class Requests:
         """Keep a parameter's value."""
         if value.name not in self._wanted:
             return
+        self.revision += 1
         self.parameters[value.name] = value.bytewise if self._px4 else value.value
         if value.name in self._missing:
             names = next((names for names in ALIASES if value.name in names), (value.name,))

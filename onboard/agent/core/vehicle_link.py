@@ -124,6 +124,8 @@ class VehicleLink:
         self._heartbeat: Heartbeat | None = None
         self._answers = AnswerTimes()
         self._asking: Requests | None = None
+        self._limits_of: tuple[Kind, int] | None = None  # of which parameters the limits were read
+        self._limits = FlightLimits()
         self._reboots = 0
         self.components: list[int] = []  # others that beat under the vehicle's own system id
         self._second_at = NEVER  # when a second autopilot was last heard [s]
@@ -156,7 +158,12 @@ class VehicleLink:
     @property
     def limits(self) -> FlightLimits:
         """What the autopilot itself lets the vehicle do, as far as it has said."""
-        return FlightLimits() if self.adapter is None else read_limits(self.adapter.kind, self.parameters)
+        if self.adapter is None:
+            return FlightLimits()
+        read = (self.adapter.kind, -1 if self._asking is None else self._asking.revision)
+        if read != self._limits_of:
+            self._limits_of, self._limits = read, read_limits(self.adapter.kind, self.parameters)
+        return self._limits
 
     @property
     def unread(self) -> tuple[str, ...]:

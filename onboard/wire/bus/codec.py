@@ -18,12 +18,14 @@ class Codec(Generic[M]):
     """Encodes and decodes one type of message. A bad payload gives None and is counted by its cause.
 
     The causes: `undecodable`, `schema` (of another version), `not_finite` (a number is NaN or infinite).
+    A payload that several hear in one process, the same object, is decoded once: messages do not change.
     """
 
     def __init__(self, kind: type[M]) -> None:
         self._decoder = msgspec.msgpack.Decoder(tuple[int, kind])  # type: ignore[valid-type]
         self._version = msgspec.msgpack.Decoder(tuple[int, msgspec.Raw])
         self._encoder = msgspec.msgpack.Encoder()
+        self._latest: tuple[bytes, M] | None = None  # the last good payload and what it says
 
     def encode(self, message: M) -> bytes:
         """The payload of a message."""
@@ -31,6 +33,9 @@ class Codec(Generic[M]):
 
     def decode(self, payload: bytes, drops: Counter[str]) -> M | None:
         """The message of a payload; None (and one more in `drops`) for a bad one."""
+        latest = self._latest
+        if latest is not None and latest[0] is payload:
+            return latest[1]
         try:
             version, message = self._decoder.decode(payload)
         except UNDECODABLE:
@@ -42,6 +47,8 @@ class Codec(Generic[M]):
         if not all_finite(msgspec.structs.astuple(message)):
             drops["not_finite"] += 1
             return None
+        if type(payload) is bytes:  # which cannot change
+            self._latest = payload, message
         return message
 
     def _other_version(self, payload: bytes) -> bool:

@@ -166,3 +166,29 @@ async def test_a_process_started_again_is_another_publisher() -> None:
         await vehicle.close()
         del vehicle
     assert events.payloads == [b"life %d" % life for life in range(50)]
+
+
+def test_one_hearers_fault_is_not_the_others_and_all_hear_the_same_object() -> None:
+    """On a loop that goes on after a callback's error, as a program's does."""
+
+    async def main() -> tuple[list[bytes], list[bytes]]:
+        broker, failures = MemoryBroker(), []
+        asyncio.get_running_loop().set_exception_handler(lambda loop, context: failures.append(context))
+        station = broker.connect("station")
+        before, after = Heard(broker.connect("a"), STATE), broker.connect("b")
+
+        def fails(sample: Sample) -> None:
+            raise ValueError(sample.key)
+
+        after.subscribe(STATE, fails)
+        last = Heard(broker.connect("c"), STATE)
+        payload = bytes(range(9))
+        station.publish(STATE, payload, Delivery.LATEST)
+        await asyncio.sleep(0.0)
+        await asyncio.sleep(0.0)
+        assert [str(failure["exception"]) for failure in failures] == [STATE]
+        assert all(heard is payload for heard in (*before.payloads, *last.payloads))
+        return before.payloads, last.payloads
+
+    first, last = asyncio.run(main())
+    assert first == last == [bytes(range(9))]

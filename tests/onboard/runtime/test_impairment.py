@@ -51,6 +51,22 @@ def test_nothing_arrives_before_its_delay_and_nothing_is_invented(impairment: Im
             assert flipped.bit_count() <= (1 if impairment.bit_error > 0 else 0)
 
 
+@given(later=impairments, quiet=st.integers(0, 9000), seed=st.integers(0, 2**32))
+@settings(max_examples=30, deadline=None)
+def test_what_a_clean_channel_did_not_draw_it_draws_before_it_does_more(
+    later: Impairment, quiet: int, seed: int
+) -> None:
+    """Beside a channel that drew all the while, for a loss too small to happen."""
+    clean = Channel(Impairment(delay_s=0.01), np.random.default_rng(seed))
+    drawing = Channel(Impairment(delay_s=0.01, loss=1e-300), np.random.default_rng(seed))
+    for index in range(quiet):
+        assert clean.fate(b"a", index * MS) == drawing.fate(b"a", index * MS)
+    clean.impairment = drawing.impairment = later
+    for index in range(quiet, quiet + 20):
+        assert clean.fate(b"abc", index * MS) == drawing.fate(b"abc", index * MS)
+    assert clean.counts == drawing.counts
+
+
 @pytest.mark.parametrize("loss", [0.05, 0.3, 0.9])
 def test_the_share_of_loss_comes_true(loss: float) -> None:
     count = 20_000

@@ -97,7 +97,8 @@ def test_a_place_becomes_pymavlinks_bytes(
     expected = dialect.MAVLink_set_position_target_global_int_message(
         time_boot_ms=int(boot * 1e3) & 0xFFFFFFFF, target_system=2, target_component=1,
         coordinate_frame=5, type_mask=0b0000_1101_1111_1000, lat_int=round(latitude * 1e7),
-        lon_int=round(longitude * 1e7), alt=altitude, vx=0, vy=0, vz=0, afx=0, afy=0, afz=0, yaw=0, yaw_rate=0,
+        lon_int=round(longitude * 1e7), alt=altitude, vx=0, vy=0, vz=0, afx=0, afy=0, afz=0, yaw=0,
+        yaw_rate=0,
     )  # fmt: skip
     ours = Sender(7, 191, signing=signing(signed), link_id=3)
     assert ours.pack(sent, NOW) == expected.pack(theirs(signed, 0, 7, 191))
