@@ -108,7 +108,7 @@ class Recorder:
         self._last_ns = max(self._last_ns, now_ns)
         if self._closed:
             return
-        if self._views is not None and not self._full:
+        if self._views is not None and self._last_ns >= self._views.next_ns and not self._full:
             for at_ns, view in self._views.due(self._last_ns):
                 self._put(view.topic, view.layout, view.payload, at_ns)
         if self._last_ns - self._flushed_ns >= FLUSH_NS:

@@ -92,7 +92,7 @@ class Views:
         self._frame: Frame | None = None
         self._target: Triple | None = None
         self._changed = False  # what does not move
-        self._next_ns = 0
+        self.next_ns = 0
         self._drops: Counter[str] = Counter()
         self._encode = msgspec.json.Encoder().encode
 
@@ -149,12 +149,12 @@ class Views:
 
     def due(self, stamp_ns: int) -> Iterator[tuple[int, View]]:
         """What the stream's time reaching `stamp_ns` asks for, with the instant it is of."""
-        if self._next_ns == 0:
-            self._next_ns = -(-stamp_ns // STEP_NS) * STEP_NS
-        if stamp_ns < self._next_ns:
+        if self.next_ns == 0:
+            self.next_ns = -(-stamp_ns // STEP_NS) * STEP_NS
+        if stamp_ns < self.next_ns:
             return
         at_ns = stamp_ns // STEP_NS * STEP_NS  # after a silence: the newest instant alone
-        self._next_ns = at_ns + STEP_NS
+        self.next_ns = at_ns + STEP_NS
         for view in self._draw(at_ns):
             yield at_ns, view
 

@@ -153,9 +153,10 @@ class World:
 
     def _flush(self, vehicle: SimVehicle) -> None:
         frames = vehicle.autopilot.outgoing()
-        for link in vehicle.links:
-            for frame in frames:
-                link.send(frame)
+        if frames:
+            for link in vehicle.links:
+                for frame in frames:
+                    link.send(frame)
 
     def _listen(self, vehicle: SimVehicle, link: Link, number: int) -> None:
         def arrived(data: bytes, peer: Hashable) -> None:

@@ -49,6 +49,9 @@ class Place(NamedTuple):
     altitude_m: float  # above mean sea level
 
 
+BATTERY_LEVELS = ((1, "BATT_LOW_VOLT", "BATT_LOW_MAH"), (2, "BATT_CRT_VOLT", "BATT_CRT_MAH"))
+
+
 class ArduPilot(Autopilot):
     """What ArduCopter and ArduPlane do alike: modes by number, the watched ground station, failsafes."""
 
@@ -219,8 +222,8 @@ class ArduPilot(Autopilot):
         used = (1.0 - h.battery) * self.setup.options.battery_s * CURRENT_FLYING / 3.6  # [mAh]
         left = p["BATT_CAPACITY"] - used
         level = 0
-        for number, which in ((1, "LOW"), (2, "CRT")):
-            volt, charge = p[f"BATT_{which}_VOLT"], p[f"BATT_{which}_MAH"]
+        for number, voltage, reserve in BATTERY_LEVELS:
+            volt, charge = p[voltage], p[reserve]
             if (volt > 0.0 and h.voltage < volt) or (charge > 0.0 and left < charge):
                 level = number
         if h.battery <= 0.0:

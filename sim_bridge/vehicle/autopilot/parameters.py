@@ -55,6 +55,7 @@ class Parameters:
         self._table = tuple(sorted(self._delivered(parameter) for parameter in table))
         self._numbers = {parameter.name: number for number, parameter in enumerate(self._table)}
         self._values = {p.name: p.default for p in self._table}
+        self._read: dict[str, float] = {}  # what was read lately, by the names it is read under
         unknown = sorted(name for name in overrides if name not in self)
         if unknown:
             raise ValueError(f"no such parameters: {', '.join(unknown)}")
@@ -64,8 +65,12 @@ class Parameters:
         self._listing = len(self._table)  # next number to send; beyond the last: none
 
     def __getitem__(self, name: str) -> float:
-        alias = self._aliases.get(name)
-        return self._values[name] if alias is None else self._values[alias.name] / alias.factor
+        value = self._read.get(name)
+        if value is None:
+            alias = self._aliases.get(name)
+            value = self._values[name] if alias is None else self._values[alias.name] / alias.factor
+            self._read[name] = value
+        return value
 
     def __len__(self) -> int:
         return len(self._table)
@@ -78,6 +83,7 @@ class Parameters:
         alias = self._aliases.get(name, Renamed(name))
         if alias.name not in self._numbers:
             raise KeyError(name)
+        self._read.clear()
         self._values[alias.name] = min(max(value * alias.factor, -LARGEST), LARGEST)
 
     def list_all(self) -> None:
@@ -110,6 +116,7 @@ class Parameters:
             if parameter.kind != REAL32:
                 low, high = RANGES[parameter.kind]
                 value = float(min(max(round(value), low), high))
+            self._read.clear()
             self._values[name] = value
         return self._value(parameter, UNNUMBERED)
 
