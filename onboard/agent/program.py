@@ -19,6 +19,7 @@ from onboard.agent.written_files import WrittenFiles
 from onboard.config.version import version
 from onboard.game.route_file import load_route
 from onboard.runtime.clock import RealClock
+from onboard.runtime.fast_loop import loop_factory, loop_name
 from onboard.runtime.protocols import Link
 from onboard.runtime.resources import ROUTES, shipped_file
 from onboard.runtime.systemd import Notifier
@@ -29,7 +30,8 @@ END_S = 5.0  # from the first signal to the end of the process, at the latest
 
 def fly(config: AgentConfig, timing: Path | None = None) -> int:
     """Fly until SIGTERM or ctrl-C; gives the exit code. Raises ConfigError."""
-    return asyncio.run(_fly(config, timing))
+    with asyncio.Runner(loop_factory=loop_factory()) as runner:
+        return runner.run(_fly(config, timing))
 
 
 async def _fly(config: AgentConfig, timing: Path | None) -> int:
@@ -103,6 +105,7 @@ def _write_timing(path: Path, agent: Agent) -> None:
     t = agent.timing
     report = {
         "id": agent.id,
+        "loop": loop_name(asyncio.get_running_loop()),
         "latency_p50_us": t.percentile_us(0.5),
         "latency_p99_us": t.percentile_us(0.99),
         "control_steps": agent.core.steps,

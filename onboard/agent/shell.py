@@ -52,6 +52,7 @@ from onboard.agent.timing import Timing
 from onboard.config.printable import printable
 from onboard.core.math.constants import NS_PER_S
 from onboard.game.route_file import Route
+from onboard.runtime.fast_loop import grain_s
 from onboard.runtime.protocols import Bus, Clock, Link, Sample, Subscription
 from onboard.runtime.rate_limit import BESIDE, FROM_AUTOPILOT, FROM_OTHERS, RateLimit
 from onboard.wire.mavlink.frames import first_number
@@ -157,6 +158,7 @@ class Agent:
         self._arrived_ns = 0  # when the datagram arrived that is being handled; 0 = none is
         self._timer: asyncio.TimerHandle | None = None
         self._timer_at = inf
+        self._grain = 0.0  # by which the loop's timers may be early [s]
         self._ended: asyncio.Future[None] | None = None
         self._stopping = False
         self._effects: dict[type, Callable[[Any], None]] = {
@@ -186,7 +188,8 @@ class Agent:
 
     async def run(self) -> None:
         """Fly until `stop` (or until cancelled). Raises what the machine raises."""
-        self._ended = asyncio.get_running_loop().create_future()
+        loop = asyncio.get_running_loop()
+        self._ended, self._grain = loop.create_future(), grain_s(loop)
         for index, port in enumerate(self._ports):
             port.link.receive(partial(self._arrived, index))
         self.feed(Started())
@@ -260,8 +263,8 @@ class Agent:
             self._timer = None
         self._timer_at = at
         if at < inf:
-            loop = asyncio.get_running_loop()
-            self._timer = loop.call_later(max(0.0, at - self.now), self._tick)
+            loop, wait = asyncio.get_running_loop(), at - self.now
+            self._timer = loop.call_later(wait + self._grain if wait > 0.0 else 0.0, self._tick)
 
     def _tick(self) -> None:
         self._timer = None
