@@ -58,6 +58,7 @@ class Fleet:
         self.log: deque[LogLine] = deque(maxlen=LOG_LENGTH)
         self._entries: dict[int, VehicleRecord] = {}
         self._tracks: dict[int, TrackRecord] = {}
+        self._now_dropped: Counter[str] = Counter()  # of the message that is being taken in
         self._setup: Setup | None = None
         self._phase: PhaseChange | None = None
         self._outcome: Outcome | None = None
@@ -93,7 +94,7 @@ class Fleet:
         ):
             self.drops["foreign"] += 1
             return None
-        drops: Counter[str] = Counter()
+        drops = self._now_dropped
         heard = HEARD_HERE.heard(key, payload, drops)
         if heard is not None and not plausible(heard.message):
             drops["implausible"] += 1
@@ -105,6 +106,7 @@ class Fleet:
                 entry.drops.update(drops)
                 if drops["schema"]:
                     entry.schema_ns = now_ns
+            drops.clear()
         return heard
 
     def _entry(self, vehicle_id: int, now_ns: int) -> VehicleRecord:

@@ -35,7 +35,7 @@ def _brief(brief: EvaderBrief) -> bool:
 
 
 def _sane(*values: float) -> bool:
-    return all(-FARTHEST < value < FARTHEST for value in values)
+    return min(values) > -FARTHEST and max(values) < FARTHEST
 
 
 _CHECKS: dict[type[Message], Callable[[Any], bool]] = {

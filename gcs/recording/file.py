@@ -18,11 +18,11 @@ from typing import Protocol
 from mcap._chunk_builder import ChunkBuilder
 from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
-from mcap.records import DataEnd, Footer, Message, MessageIndex
+from mcap.records import DataEnd, Footer, MessageIndex, Statistics
 from mcap.writer import MCAP0_MAGIC, CompressionType, Writer
 
 MAGIC: bytes = MCAP0_MAGIC
-CHUNK = "_Writer__chunk_builder"  # the library's chunk in progress
+CHUNK, COUNTS = "_Writer__chunk_builder", "_Writer__statistics"  # the library's, of a chunk and of a file
 
 
 def _end() -> bytes:
@@ -221,21 +221,43 @@ class _Index(MessageIndex):
 
 
 class _Chunk(ChunkBuilder):
-    """A chunk in progress to which a message is added in one write: the library's own takes nine."""
+    """A chunk in progress to which a message is added in one write: the library's own way takes nine.
 
-    def add_message(self, message: Message) -> None:
-        """Add a message of whatever channel."""
-        channel, at = message.channel_id, message.log_time
-        self.message_start_time = min(self.message_start_time, at) if self.num_messages else at
-        self.message_end_time = max(self.message_end_time, at)
+    What the library counts of each message is counted when the chunk is complete.
+    """
+
+    def __init__(self, counts: Statistics) -> None:
+        super().__init__()
+        self._counts = counts
+
+    def put(self, channel: int, stamp_ns: int, payload: bytes, sequence: int) -> None:
+        """Add a message."""
+        if self.num_messages:
+            self.message_start_time = min(self.message_start_time, stamp_ns)
+        else:
+            self.message_start_time = stamp_ns
+        self.message_end_time = max(self.message_end_time, stamp_ns)
         index = self.message_indices.get(channel)
         if index is None:
             index = self.message_indices[channel] = _Index(channel_id=channel, records=[])
-        index.records.append((at, self.record_writer.count))
+        index.records.append((stamp_ns, self.record_writer.count))
         self.num_messages += 1
-        data, size = message.data, _MESSAGE.size - 9 + len(message.data)
-        head = _MESSAGE.pack(Opcode.MESSAGE, size, channel, message.sequence, at, message.publish_time)
-        self.record_writer.write(head + data)
+        size = _MESSAGE.size - 9 + len(payload)
+        head = _MESSAGE.pack(Opcode.MESSAGE, size, channel, sequence, stamp_ns, stamp_ns)
+        self.record_writer.write(head + payload)
+
+    def reset(self) -> None:
+        """Count the complete chunk, and begin another."""
+        counts = self._counts
+        if self.num_messages:
+            first = counts.message_count == 0
+            begun = self.message_start_time
+            counts.message_start_time = begun if first else min(counts.message_start_time, begun)
+            counts.message_end_time = max(counts.message_end_time, self.message_end_time)
+            counts.message_count += self.num_messages
+            for channel, index in self.message_indices.items():
+                counts.channel_message_counts[channel] += len(index.records)
+        super().reset()  # type: ignore[no-untyped-call]
 
 
 class McapWriter:
@@ -244,7 +266,8 @@ class McapWriter:
     def __init__(self, file: WholeFile, library: str, chunk_bytes: int) -> None:
         self._writer = Writer(file, chunk_size=chunk_bytes, compression=CompressionType.ZSTD)  # type: ignore[arg-type]
         assert hasattr(self._writer, CHUNK), "the mcap library has changed: see _Chunk"
-        setattr(self._writer, CHUNK, _Chunk())
+        self._chunk, self._chunk_bytes = _Chunk(getattr(self._writer, COUNTS)), chunk_bytes
+        setattr(self._writer, CHUNK, self._chunk)
         self._writer.start(profile="", library=library)
 
     def metadata(self, name: str, values: dict[str, str]) -> None:
@@ -261,7 +284,9 @@ class McapWriter:
 
     def message(self, channel: int, stamp_ns: int, payload: bytes, sequence: int = 0) -> None:
         """Add a message to the chunk in progress."""
-        self._writer.add_message(channel, stamp_ns, payload, stamp_ns, sequence)
+        self._chunk.put(channel, stamp_ns, payload, sequence)
+        if self._chunk.record_writer.count > self._chunk_bytes:
+            self.flush()
 
     def flush(self) -> None:
         """End the chunk in progress."""

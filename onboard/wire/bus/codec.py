@@ -9,7 +9,7 @@ import msgspec
 
 from onboard.config.undecodable import UNDECODABLE
 from onboard.wire.bus.messages import SCHEMA, Message
-from onboard.wire.finite import all_finite
+from onboard.wire.finite import finite_check
 
 M = TypeVar("M", bound=Message)
 
@@ -24,6 +24,7 @@ class Codec(Generic[M]):
     def __init__(self, kind: type[M]) -> None:
         self._decoder = msgspec.msgpack.Decoder(tuple[int, kind])  # type: ignore[valid-type]
         self._version = msgspec.msgpack.Decoder(tuple[int, msgspec.Raw])
+        self._finite = finite_check(kind)
         self._encoder = msgspec.msgpack.Encoder()
         self._latest: tuple[bytes, M] | None = None  # the last good payload and what it says
 
@@ -44,7 +45,7 @@ class Codec(Generic[M]):
         if version != SCHEMA:
             drops["schema"] += 1
             return None
-        if not all_finite(msgspec.structs.astuple(message)):
+        if not self._finite(message):
             drops["not_finite"] += 1
             return None
         if type(payload) is bytes:  # which cannot change
