@@ -217,7 +217,7 @@ class _Index(MessageIndex):
         stream.start_record(Opcode.MESSAGE_INDEX)
         flat = [number for record in self.records for number in record]
         stream.write(pack(f"<HI{len(flat)}Q", self.channel_id, 8 * len(flat), *flat))
-        stream.finish_record()
+        stream.finish_record()  # type: ignore[no-untyped-call]
 
 
 class _Chunk(ChunkBuilder):
