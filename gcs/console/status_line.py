@@ -51,12 +51,13 @@ def _game(picture: Picture) -> list[str]:
     return parts
 
 
-def prospects_in_words(found: AssessmentView) -> str:
-    """The widest way out, and the odds, for people."""
-    gap = "encircled" if found.encircled else f"gap {degrees(found.largest_gap):.0f}°"
+def prospects_in_words(found: AssessmentView, *, whole: bool = False) -> str:
+    """The widest way out, and the odds, for people; in `whole` words where there is room."""
+    way_out, chance = ("widest way out", "chance of capture") if whole else ("gap", "capture")
+    gap = "encircled" if found.encircled else f"{way_out} {degrees(found.largest_gap):.0f}°"
     if found.captured is not None:
         p, low, high = (100.0 * share for share in found.captured)
-        gap += f", capture {p:.0f} % ({low:.0f}–{high:.0f})"
+        gap += f", {chance} {p:.0f} % ({low:.0f}–{high:.0f})"
     return f"{gap}{', target denied' if found.target_denied else ''}"
 
 

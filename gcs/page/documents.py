@@ -32,6 +32,15 @@ HELP = {
 }  # fmt: skip
 
 
+LABELS = {
+    "batt": "battery",
+    "age": "age [s]",
+    "hgt": "height [m]",
+    "m/s": "speed [m/s]",
+    "to ev": "distance [m]",
+}
+
+
 def colours() -> Document:
     """The palette: the same as of console and pictures."""
 
@@ -56,7 +65,11 @@ def hello(title: str, *, steers: bool, version: str, map: Document | None = None
         "frame": {"head": HEAD.size, "vehicle": list(VEHICLE), "track": list(TRACK)},
         "roles": [role.value if role else "" for role in ROLES],
         "grades": [GRADE_WORDS[grade] for grade in Grade],
-        "columns": [{"name": c.heading, "sort": c.sort, "help": HELP[c.heading]} for c in COLUMNS],
+        "columns": [
+            {"name": name, "label": LABELS.get(name, name), "sort": c.sort, "help": HELP[name]}
+            for c in COLUMNS
+            for name in (c.heading,)
+        ],
         "orders": [kind.value for kind in CommandKind], "sorts": list(SORTS),
         "help": [list(line) for line in HELP_LINES], "whom": WHOM, "map": map,
     }  # fmt: skip
@@ -102,11 +115,15 @@ def trails(picture: Picture) -> Document:
 def board(picture: Picture, status: str) -> Document:
     """Tables, alerts, log, clock and assessment at one instant."""
     now = current(picture)
-    places, keys = {vehicle.id: vehicle for vehicle in now.vehicles}, sort_values(now)
+    keys = sort_values(now)
+    roles = {vehicle.id: vehicle.role.value if vehicle.role else "" for vehicle in now.vehicles}
     table = [
         {
-            "id": row.id, "grade": int(row.grade), "cells": list(row.cells),
-            "role": role.value if (role := places[row.id].role) else "",
+            "id": row.id, "grade": int(row.grade), "role": roles[row.id],
+            "cells": [
+                roles[row.id] or cell if column.heading == "role" else cell
+                for column, cell in zip(COLUMNS, row.cells, strict=True)
+            ],
             "keys": {name: _number(value) for name, value in keys[row.id].items()},
         }
         for row in rows(now, "id", False)
@@ -210,7 +227,7 @@ def _assessment(picture: Picture) -> Document | None:
     if found is None:
         return None
     return {
-        "words": prospects_in_words(found), "captured": found.captured,
+        "words": prospects_in_words(found, whole=True), "captured": found.captured,
         "encircled": found.encircled, "gaps": [list(gap) for gap in found.gaps],
         "largest_gap_deg": degrees(found.largest_gap), "target_denied": found.target_denied,
         "prospects": [

@@ -113,7 +113,8 @@ def _style() -> str:
         named = {f"--c{c.light[1:]}": c for c in colours} | {f"--{name}": c for name, c in names.items()}
         return "".join(f"{name}: {c.dark if dark else c.light}; " for name, c in named.items())
 
-    sheet = (files("gcs.report") / "page.css").read_text(encoding="utf-8")
+    timeline = (files("gcs.page") / "static" / "timeline.css").read_text(encoding="utf-8")
+    sheet = timeline + (files("gcs.report") / "page.css").read_text(encoding="utf-8")
     screen = f"@media screen and (prefers-color-scheme: dark) {{ :root {{ {variables(True)}}} }}"
     return f":root {{ {variables(False)}}}\n{screen}\n{sheet}"
 

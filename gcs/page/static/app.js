@@ -1,7 +1,9 @@
 // The live page: one WebSocket, the scene, tables, alerts and orders. Texts are set as text, never as markup.
 import { colours } from "colours";
 import { reader } from "frames";
+import { drawLegend } from "legend";
 import { GroundMap } from "map";
+import { moved } from "moves";
 import { Scene } from "scene";
 import { VehicleTable } from "table";
 import { Timeline } from "timeline";
@@ -60,6 +62,7 @@ function theme() {
   page.colours = colours(page.hello.palette, dark.matches);
   scene.setColours(page.colours);
   timeline.setColours(page.colours);
+  drawLegend($("legend"), page.colours);
   if (page.map) page.map.setDark(dark.matches);
 }
 dark.addEventListener("change", theme);
@@ -268,7 +271,10 @@ function showHelp() {
     ["x", "ABORT ALL: everybody holds or returns"], ["h r b l", "hold, resume, return, land those selected; return and land ask"],
     ["y n", "answer"], [":", "type an order"], ["a", "the topmost alert was seen"], ["↑ ↓ j k", "select the vehicle above or below"],
     ["v f c", "plan or 3-D; fit; follow the selected vehicle"], ["t o i m", "trails, shapes, aims, map on and off"],
-    ["space ← → , .", "replay: pause; 10 s; 0.1 s"], ["?", "this help"],
+    ["shift+arrows", "turn the 3-D view, shift the plan"], ["page up, page down", "nearer, farther"],
+    ["space", "replay: pause and play"], ["← → , .", "replay: 10 s, 0.1 s"], ["[ ]", "replay: the mark before, after"],
+    ["+ −", "replay: faster, slower"], ["home end", "replay: to its begin, its end"],
+    ["tab enter", "every button, column and vehicle; with shift or ctrl several vehicles"], ["?", "this help"],
     ...(page.hello ? page.hello.help : []),
   ];
   const list = document.createElement("table");
@@ -302,11 +308,17 @@ function showMap() {
   if (page.map) page.map.show(press($("map")));
 }
 
+function legend(on) {
+  $("legend-on").setAttribute("aria-pressed", on);
+  $("legend").hidden = !on;
+}
+
 for (const button of document.querySelectorAll("[data-view]")) button.addEventListener("click", () => view(button.dataset.view));
 for (const button of document.querySelectorAll("[data-show]")) button.addEventListener("click", () => scene.show(button.dataset.show, press(button)));
 $("fit").addEventListener("click", () => scene.fit());
 $("follow").addEventListener("click", follow);
 $("map").addEventListener("click", () => showMap());
+$("legend-on").addEventListener("click", () => legend($("legend").hidden));
 $("abort").addEventListener("click", () => send({ do: "abort" }));
 $("yes").addEventListener("click", () => { $("question").close(); send({ do: "yes" }); });
 $("no").addEventListener("click", () => { $("question").close(); send({ do: "no" }); });
@@ -322,6 +334,10 @@ document.addEventListener("keydown", (event) => {
     return;
   }
   if (event.ctrlKey || event.metaKey || event.altKey || event.target.matches("input")) return;
+  if (moved(scene, event)) {
+    event.preventDefault();
+    return;
+  }
   const orders = { h: "hold", r: "resume", b: "return", l: "land" };
   if ($("question").open && (key === "y" || key === "n")) {
     $("question").close();
@@ -336,6 +352,7 @@ document.addEventListener("keydown", (event) => {
   else if (key === "f") scene.fit();
   else if (key === "c") follow();
   else if (key === "m") showMap();
+  else if (key === "g") legend($("legend").hidden);
   else if (toggles[key]) scene.show(toggles[key], press(document.querySelector(`[data-show=${toggles[key]}]`)));
   else if (key === "?") showHelp();
   else if (!timeline.key(key)) return;

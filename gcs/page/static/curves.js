@@ -131,7 +131,7 @@ export class Curves {
   }
 
   drawLines(pen, curve, x, height) {
-    let high = Math.max(...curve.levels.map((level) => level.value * 1.1), 1e-6);
+    let high = Math.max(...curve.levels.map((level) => level.value * 1.1), 1);
     for (const line of curve.lines) for (const value of line.y) if (value > high) high = value;
     const y = (value) => (height - 16) * (1 - value / (high * 1.05)) + 2;
     pen.textAlign = "right";
@@ -140,7 +140,8 @@ export class Curves {
       pen.fillStyle = this.colours.faint;
       pen.fillText(String(value), LEFT - 4, y(value));
     }
-    for (const level of curve.levels) {
+    let named = Infinity;
+    for (const level of [...curve.levels].sort((a, b) => a.value - b.value)) {
       pen.setLineDash([4, 3]);
       pen.strokeStyle = this.colours.safety;
       pen.beginPath();
@@ -149,7 +150,9 @@ export class Curves {
       pen.stroke();
       pen.setLineDash([]);
       pen.textAlign = "left";
-      pen.fillText(level.name, LEFT + 3, y(level.value) - 6);
+      const beside = named - y(level.value) < 11 ? 16 : 0; // two names at one height stand beside each other
+      pen.fillText(level.name, LEFT + 3 + beside, y(level.value) - 6);
+      named = beside ? Infinity : y(level.value);
     }
     for (const line of curve.lines) {
       pen.strokeStyle = line.id ? this.colours.vehicle(line.id, line.role === "evader") : this.colours.free;

@@ -7,6 +7,7 @@ import { OrbitControls } from "three";
 import { Fleet } from "fleet";
 import { Ground, round } from "ground";
 import { place } from "frames";
+import { Names } from "names";
 
 const BODY_PX = 22; // length of a vehicle on the screen, where that is more than
 const BODY_M = 2; // its length in the world
@@ -50,6 +51,7 @@ export class Scene {
     this.shown = { labels: true, trails: true, aims: true, shapes: true };
     this.where = new Map();
     this.drawn = 0;
+    this.names = new Names();
     this.dirty = true;
     for (const controls of [this.orbit, this.plan]) {
       controls.addEventListener("change", () => { this.dirty = true; });
@@ -265,15 +267,21 @@ export class Scene {
     pen.fillText(text, x, y);
   }
 
+  name(pen, text, at, colour, how) {
+    const place = this.names.put(pen, text, at, how);
+    if (place) this.text(pen, text, ...place, colour);
+  }
+
   drawNames(pen) {
     const { colours } = this;
+    this.names.clear();
     for (const v of this.frame ? this.frame.vehicles : []) {
       const at = this.onScreen(v.x, v.y, v.z);
       if (!at) continue;
       const evader = this.roles[v.role] === "evader";
       const part = evader ? "evader" : (this.parts && this.parts.get(v.id)) || "";
       const name = part ? `${v.id} ${part}` : String(v.id);
-      this.text(pen, v.fed ? name : `${name} ?`, at[0] + 12, at[1] - 10, v.fed ? colours.ink : colours.faint);
+      this.name(pen, v.fed ? name : `${name} ?`, at, v.fed ? colours.ink : colours.faint, { away: v.id === this.selected ? 19 : 12 });
       if (v.id === this.selected) {
         pen.strokeStyle = colours.ink;
         pen.lineWidth = 2;
@@ -284,11 +292,11 @@ export class Scene {
     }
     if (this.field && this.field.target) {
       const at = this.onScreen(...place(this.field.target));
-      if (at) this.text(pen, "target", at[0] + 12, at[1] + 12, colours.ink);
+      if (at) this.name(pen, "target", at, colours.ink);
     }
     this.ground.expected.forEach(({ after, at: [x, y, z] }) => {
       const at = this.onScreen(x, y, z);
-      if (at) this.text(pen, `+${after} s`, at[0] + 6, at[1] + 14, colours.faint);
+      if (at) this.name(pen, `+${after} s`, at, colours.faint, { away: 6, must: false });
     });
   }
 

@@ -24,13 +24,13 @@ export class VehicleTable {
       cell.className = `column-${column.name.replace(/\W+/g, "-")}`;
       if (column.sort) {
         const button = document.createElement("button");
-        button.textContent = column.name;
+        button.textContent = column.label;
         button.dataset.sort = column.sort;
         button.addEventListener("click", () => this.sortBy(column.sort));
         cell.append(button);
       } else {
         const name = document.createElement("span");
-        name.textContent = column.name;
+        name.textContent = column.label;
         cell.append(name);
       }
       head.append(cell);
@@ -75,8 +75,8 @@ export class VehicleTable {
     for (const button of this.table.querySelectorAll("th button")) {
       const own = button.dataset.sort === this.sort;
       button.parentElement.setAttribute("aria-sort", own ? (this.descending ? "descending" : "ascending") : "none");
-      const name = this.columns.find((column) => column.sort === button.dataset.sort).name;
-      button.textContent = own ? `${name} ${this.descending ? "▾" : "▴"}` : name;
+      const name = this.columns.find((column) => column.sort === button.dataset.sort).label;
+      button.textContent = own ? `${name}\u00a0${this.descending ? "▾" : "▴"}` : name;
     }
     const wanted = this.ordered().map((row) => this.line(row));
     if (wanted.length !== this.body.children.length || wanted.some((line, i) => line !== this.body.children[i])) {

@@ -3,6 +3,7 @@ import { Curves } from "curves";
 
 const KEYS = { " ": "pause", ArrowRight: "on", ArrowLeft: "back", ".": "step", ",": "step_back", "+": "faster", "-": "slower", Home: "start", End: "end" };
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 5, 10, 30];
+const NEXT_MS = 50; // a mark so near is where one is
 const SEEK_EACH_MS = 60; // while the slider is dragged
 
 export function minutes(ms) {
@@ -53,6 +54,7 @@ export class Timeline {
     row.append(this.play, this.back, this.on, this.speed, this.loop, this.place);
     const track = element("div", "", "track");
     track.append(this.lane, this.slider);
+    new ResizeObserver(() => this.settle()).observe(this.lane);
     this.graphs = element("div", "", "graphs");
     this.host.replaceChildren(row, track, this.graphs);
     this.host.hidden = false;
@@ -82,6 +84,31 @@ export class Timeline {
       tick.addEventListener("click", () => this.seek(mark.at_ms));
       return tick;
     }));
+    this.settle();
+  }
+
+  // Names of phases in two rows; one that would run out of the lane stands left of its tick, and one without room
+  // anywhere has its tick alone (its words are the tick's title).
+  settle() {
+    const lane = this.lane.getBoundingClientRect();
+    if (!lane.width) return;
+    const rows = [[], []];
+    const phases = [...this.lane.querySelectorAll(".mark.phase")];
+    for (const tick of phases) tick.classList.remove("second", "left", "bare");
+    for (const tick of phases) {
+      const { left, width } = tick.getBoundingClientRect();
+      const ways = [[left, false], [left - width, true]].filter(([at]) => at >= lane.left - 8 && at + width <= lane.right + 8);
+      const free = ways.flatMap(([at, turned]) => rows.map((row, i) => [at, turned, i]))
+        .find(([at, , i]) => rows[i].every(([from, to]) => at >= to || at + width <= from));
+      if (!free) {
+        tick.classList.add("bare");
+        continue;
+      }
+      const [at, turned, row] = free;
+      rows[row].push([at, at + width]);
+      tick.classList.toggle("left", turned);
+      tick.classList.toggle("second", row === 1);
+    }
   }
 
   show(state) {
@@ -129,8 +156,18 @@ export class Timeline {
   }
 
   key(key) {
-    if (this.host.hidden || !KEYS[key]) return false;
-    this.act(KEYS[key]);
+    if (this.host.hidden) return false;
+    if (key === "[" || key === "]") this.toMark(key === "]" ? 1 : -1);
+    else if (KEYS[key]) this.act(KEYS[key]);
+    else return false;
     return true;
+  }
+
+  // To the next mark or the one before.
+  toMark(way) {
+    if (!this.marks || !this.state) return;
+    const at = this.state.at_ms;
+    const found = this.marks.marks.map((mark) => mark.at_ms).filter((each) => way * (each - at) > NEXT_MS);
+    if (found.length) this.seek(way > 0 ? Math.min(...found) : Math.max(...found));
   }
 }

@@ -51,5 +51,5 @@ def test_the_odds_are_the_consoles_words():
         captured=(0.85, 0.8, 0.89),
     )  # fmt: skip
     told = documents.board(replace(tower.picture, assessment=found), "")
-    assert told["assessment"]["words"] == "gap 34°, capture 85 % (80–89), target denied"
+    assert told["assessment"]["words"] == "widest way out 34°, chance of capture 85 % (80–89), target denied"
     assert told["game"]["plan"] is None
