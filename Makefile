@@ -9,7 +9,7 @@ export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
-.PHONY: help install demo test check check-long check-pythons bench bench-campaign bench-page bench-team bench-matrix figures bench-predictor bench-gym check-aarch64 golden fuzz soak mutants mavproxy clean three lock
+.PHONY: help install demo test check check-long check-pythons bench bench-campaign bench-page page-pictures bench-team bench-matrix figures bench-predictor bench-gym check-aarch64 golden fuzz soak mutants mavproxy clean three lock
 
 help:
 	@echo "make install   the environment only"
@@ -21,6 +21,7 @@ help:
 	@echo "make bench     benchmarks, beside the committed costs; results go to benchmarks/results/"
 	@echo "make bench-campaign  what games of a campaign cost, beside an earlier commit; a quarter of an hour"
 	@echo "make bench-page  the page before a browser, with 200 and 1000 vehicles"
+	@echo "make page-pictures  the pictures of docs/page.md again, from games flown for them; five minutes"
 	@echo "make figures   the committed tables of games, routes and predictors again, in one sweep"
 	@echo "make bench-matrix  every evader against every pursuers' strategy; resumable"
 	@echo "make bench-team   teams of pursuers against the paper's rules, hours; resumable"
@@ -151,6 +152,9 @@ mutants: install $(MUTANTS)/.installed
 
 bench-page: install
 	$(BIN)/python -m tests.benchmarks.page
+
+page-pictures: install
+	$(BIN)/python -m tests.support.page_pictures
 
 mavproxy: .venv-mavproxy/bin/mavproxy.py
 
