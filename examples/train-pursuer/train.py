@@ -13,9 +13,13 @@ import numpy as np
 import torch
 from torch import nn
 
+from onboard.config.bounds import Count, Seed
+from onboard.config.option_value import parsed
+from onboard.config.strict import ConfigError
 from onboard.core.game.referee import GameResult
 from onboard.core.strategy.policy import Squash
 from onboard.game.policy_file import Policy, save
+from onboard.runtime.program import run
 from sim_bridge.gym.batch import BatchedGames
 from sim_bridge.gym.exchange import Rewards
 from sim_bridge.gym.task import Wish, make_task
@@ -135,9 +139,11 @@ def main() -> None:
     """Train and write the policy."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("file", type=Path, help="where to write the policy")
-    parser.add_argument("--rounds", type=int, default=120)
-    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--rounds", type=lambda text: parsed(text, Count, "--rounds"), default=120)
+    parser.add_argument("--seed", type=lambda text: parsed(text, Seed, "--seed"), default=1)
     told = parser.parse_args()
+    if not told.file.parent.is_dir():  # told before the training, not after it
+        raise ConfigError(f"{told.file}: found no folder {told.file.parent}, expected one to write into")
     learner, games = train(told.rounds, told.seed)
     layers = tuple(
         (layer.weight.detach().numpy().astype(float), layer.bias.detach().numpy().astype(float))
@@ -150,4 +156,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    run(main, "train.py")

@@ -100,6 +100,7 @@ def commands(folder: Path) -> list[Command]:
     bus, runs = ("--bus", free_endpoint()), ("--runs", str(folder / "runs"))
     s, agent, frames = str(scenario), str(base), str(folder / "accept.tlog")
     campaign, games = ("sim_bridge.cli", "campaign"), str(folder / "games")
+    bench = ("sim_bridge.cli", "bench", "--evader", "straight", "--pursuers", "paper", "--games", "2")
     lists: list[tuple[tuple[str, ...], str, bool]] = [
         (("sim_bridge.cli",), "", False),
         (("sim_bridge.cli", "list"), "", False),
@@ -118,6 +119,11 @@ def commands(folder: Path) -> list[Command]:
         ((*campaign, "ARGUMENT", "--games", "1", "--out", games), "ARGUMENT", False),
         ((*campaign, "row01", "--sweep", "ARGUMENT", "--out", games), "ARGUMENT", False),
         ((*campaign, "show", "ARGUMENT"), "ARGUMENT", False),
+        ((*campaign, "replay", "ARGUMENT", "0:1"), "ARGUMENT", False),
+        ((*campaign, "fly", "ARGUMENT", "0:1"), "ARGUMENT", False),
+        ((*campaign, s, "--evader", "straight", "--games", "2", "--out", games), s, False),
+        ((*bench, "--scenario", s, "--out", f"{games}-ranked"), s, False),
+        ((*bench, "--scenario", "ARGUMENT"), "ARGUMENT", False),
         (("gcs.cli", *bus), "", False),
         (("gcs.cli", "--plain", *bus, *runs), "", True),
         (("gcs.cli", "--config", "ARGUMENT", "status"), "ARGUMENT", False),
