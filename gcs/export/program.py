@@ -8,12 +8,19 @@ from pathlib import Path
 
 from gcs.export import earth_files, table_files
 from gcs.export.formats import Format
-from gcs.export.foxglove_layout import as_foxglove
 from gcs.export.geojson import as_geojson
-from gcs.export.run_data import load
+from gcs.export.run_data import RunData, load
+from gcs.recording.foxglove_layout import LAYOUT, layout_of_viewer
 from onboard.config.strict import ConfigError
 
 FOLDER = "export"
+
+
+def as_foxglove(data: RunData) -> dict[str, bytes]:
+    """A layout over the recording's vehicles that told their states."""
+    return {LAYOUT: layout_of_viewer(data.states.ids, data.roles)}
+
+
 OTHERS = {"geojson": as_geojson, "foxglove": as_foxglove}
 WRITERS = {**table_files.WRITERS, **earth_files.WRITERS, **OTHERS}
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from gcs.export.tables import Table, table, with_time
 from gcs.picture.station_journal import HEARD_HERE
+from gcs.recording.foxglove_layout import called
 from gcs.recording.reader import Recording
 from gcs.recording.shell import RECORDING
 from gcs.report.data import beside
@@ -103,7 +104,7 @@ class RunData(NamedTuple):
 
     def called(self, id: int) -> str:
         """A vehicle for a person: `evader 1`."""
-        return f"{self.roles[id].value if id in self.roles else 'vehicle'} {id}"
+        return called(id, self.roles)
 
 
 def load(run: str | os.PathLike[str]) -> RunData:

@@ -2,7 +2,8 @@
 
 A plain class: the caller brings messages and the time. One channel per key, payloads byte for byte as
 they came, log time = arrival in station time. Channels for viewers (`/scene`, `/tf`, `/position/<id>`,
-`/location/<id>`, `/log`) are derived beside them. The same input gives the same bytes.
+`/location/<id>`, `/log`) are derived beside them, and a layout that shows these lies in the recording's
+folder. The same input gives the same bytes.
 
 The file is a complete MCAP after every half second: a kill at any moment loses at most what came since.
 (After a power cut, what the operating system had not written yet is gone too.)
@@ -16,6 +17,7 @@ import msgspec
 
 from gcs.picture.station_journal import HEARD_HERE, Remark
 from gcs.recording.file import McapWriter, OpenDisk, OsFile, WholeFile, at_once
+from gcs.recording.foxglove_layout import LayoutFile
 from gcs.recording.schemas import Layout, layout_of
 from gcs.recording.views import Views
 from onboard.config.strict import ConfigError
@@ -66,13 +68,15 @@ class Recorder:
         writer: FileWriter | None = None,
     ) -> None:
         try:
-            self._file = WholeFile(opener(path), at_once if writer is None else writer.submit)
+            run = at_once if writer is None else writer.submit
+            self._file = WholeFile(opener(path), run)
         except OSError as error:
             raise ConfigError(f"{path}: {(error.strerror or str(error)).lower()}") from None
         self.path = path
         self._most_waiting = most_waiting
         self._disk_thread = writer
         self._views = Views() if views else None
+        self._layout = LayoutFile(path.parent, run)
         self._writer = McapWriter(self._file, LIBRARY, CHUNK_BYTES)
         self._writer.metadata(METADATA, {"format": str(FORMAT), "schema": str(SCHEMA), "game": game})
         self._schemas: dict[str, int] = {}
@@ -123,6 +127,8 @@ class Recorder:
                 self._unnamed = {}
             self._writer.flush()
             self._file.settle()
+            if self._views is not None:
+                self._layout.hold(self._views.roles)
 
     def close(self) -> None:
         """Write the index and release the file; idempotent. Without room for the index the file stays

@@ -87,6 +87,7 @@ class Views:
     """Feed it with every message; take what `due` and `said` give."""
 
     def __init__(self) -> None:
+        self.roles: dict[int, Role] = {}  # of the vehicles drawn so far
         self._vehicles: dict[int, _Drawn] = {}
         self._setup: Setup | None = None
         self._frame: Frame | None = None
@@ -173,6 +174,7 @@ class Views:
             state = topics.STATE.decode(drawn.state, self._drops)
             if state is None:
                 continue
+            self.roles[vehicle_id] = state.role
             place, turn = fox.enu(state.position), fox.attitude(state.roll, state.pitch, state.yaw)
             name = f"vehicle-{vehicle_id}"
             transforms.append(fox.FrameTransform(at, fox.WORLD, name, place, turn))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import os
+import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from io import BytesIO
@@ -17,6 +18,7 @@ from playwright.sync_api import Browser, Page, sync_playwright
 from gcs.report import moving
 from gcs.report.program import read_run, write_report
 from onboard.config.strict import ConfigError
+from tests.support.real_time import patience
 from tests.support.run_folders import make_run
 
 BROWSERS = ("/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome")
@@ -113,7 +115,9 @@ def test_the_scene_plays_the_flight_and_marks_the_same_instant_in_the_figures(
         assert abs(cursor - ends[0]) < 0.1 * abs(ends[1] - ends[0])
     drawn = tab.evaluate("playback.scene.drawn")
     tab.locator("#time button", has_text="play").click()
-    tab.wait_for_timeout(700)
+    until = time.monotonic() + patience(10.0)
+    while tab.evaluate("playback.t") <= 1.1 and time.monotonic() < until:
+        tab.wait_for_timeout(50)
     assert tab.evaluate("playback.t") > 1.1
     assert tab.evaluate("playback.scene.drawn") > drawn
     tab.locator("#time button", has_text="pause").click()

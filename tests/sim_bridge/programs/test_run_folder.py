@@ -24,7 +24,8 @@ from tests.support.sim_bridge_process import bridge, short
 
 pytestmark = pytest.mark.game
 SEEDED = (
-    "summary.json", "vehicle-1.tlog", "vehicle-2.tlog", "recording.mcap", "configuration.json", "truth.csv",
+    "summary.json", "vehicle-1.tlog", "vehicle-2.tlog", "recording.mcap", "foxglove-layout.json", "truth.csv",
+    "configuration.json",
 )  # fmt: skip
 
 
@@ -64,8 +65,9 @@ def test_another_seed_gives_another_game(twice: list[tuple[Path, str]], tmp_path
 def test_the_folder_holds_what_was_played_with_what_and_how_it_ended(twice: list[tuple[Path, str]]) -> None:
     (folder, said), _ = twice
     assert sorted(path.name for path in folder.iterdir()) == [
-        "configuration.json", "recording.mcap", "scenario.toml", "summary.json", "timing.json", "truth.csv",
-        "vehicle-1.events", "vehicle-1.tlog", "vehicle-2.events", "vehicle-2.tlog", "versions.json",
+        "configuration.json", "foxglove-layout.json", "recording.mcap", "scenario.toml", "summary.json",
+        "timing.json", "truth.csv", "vehicle-1.events", "vehicle-1.tlog",
+        "vehicle-2.events", "vehicle-2.tlog", "versions.json",
     ]  # fmt: skip
     versions = json.loads((folder / "versions.json").read_bytes())
     assert {"python", "apollonius", "numpy", "pymavlink"} <= set(versions)
