@@ -75,6 +75,7 @@ KERNELS = (
 OUT_OF_LINE = frozenset(
     {"free_ray_limited", "allow", "restart", "listen", "foreseen", "hunted", "two_legs", "chase"}
     | {"assigned", "engaged", "way_out_at", "least_gap"}
+    | {"one_of_many"}
     | {"blow", "fly_ordered", "fly_commanded", "measure", "hear"}
 )
 

@@ -15,13 +15,26 @@ from sim_bridge.campaign.spatial_lanes import InLanes, moved_in_lanes
 from sim_bridge.campaign.spatial_play import approach, moved_one_by_one, play
 from sim_bridge.campaign.team_play import stand_by
 
+FEW = 2  # strategies of a side that are worth a copy for each of its players
+
 
 def among(strategies: tuple[Callable[[Any], Decision], ...]) -> Callable[[Any, int], Decision]:
     """Strategies of one side as one function, of a view and the number of the strategy that decides."""
+    if len(strategies) > FEW:
+        strategies = tuple(map(_apart, strategies))
     decide = _last(strategies[-1])
     for number in range(len(strategies) - 2, -1, -1):
         decide = _either(number, strategies[number], decide)
     return decide
+
+
+def _apart(strategy: Callable[[Any], Decision]) -> Callable[[Any], Decision]:
+    """Out of line: many strategies in a kernel are compiled one by one, and once for all pursuers."""
+
+    def one_of_many(view: Any) -> Decision:
+        return strategy(view)
+
+    return one_of_many
 
 
 def _last(strategy: Callable[[Any], Decision]) -> Callable[[Any, int], Decision]:
