@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import time
 from contextlib import asynccontextmanager
 from pathlib import Path
 
@@ -16,7 +17,9 @@ from gcs.page.server import Address, PageServer, served
 from gcs.picture.alert_rules import Thresholds
 from gcs.replay.source import open_run
 from gcs.report.program import read_run
+from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.clock import RealClock
+from tests.support.chase_messages import chase
 from tests.support.page_stage import chromium, seen
 from tests.support.run_folders import make_run
 
@@ -62,6 +65,27 @@ def test_marks_and_curves_are_the_recordings(run: Path) -> None:
     assert by_name["rule in force"]["rows"]
     length = source.timeline()["length_ms"]
     assert all(0 <= mark["at_ms"] <= length for mark in told["marks"])
+
+
+def test_a_jump_costs_a_small_part_of_playing_up_to_there(tmp_path: Path) -> None:
+    """By a ratio of processor times, which another load on the machine changes little; the page's own figures
+    are in benchmarks/results/page-scrub.md."""
+    source = source_of(make_run(tmp_path / "long", list(chase(90.0))))
+    player = source.player
+    begun = time.process_time()
+    player.seek(player.start_ns)
+    while not player.ended:  # at this pace through all of it, as without an index
+        player.advance(NS_PER_S)
+    through = time.process_time() - begun
+    player.pause()
+    length = source.timeline()["length_ms"]
+    took = []
+    for i in range(1, 21):
+        begun = time.process_time()
+        source.seek_ms(i * 9 % 20 * length // 20)
+        source.picture()
+        took.append(time.process_time() - begun)
+    assert sorted(took)[18] < 0.2 * through  # half of it on average without an index; 4 s of 90 with one
 
 
 async def test_the_slider_moves_the_scene_to_where_the_recording_was(run: Path) -> None:
