@@ -66,6 +66,7 @@ async def test_phases_can_be_read_on_the_timeline_at_every_size(tmp_path: Path) 
         await seen(page, "window.page !== undefined && document.querySelectorAll('.mark.phase').length === 5")
         for size in SIZES:
             await resized(page, size)
+            assert await page.evaluate("page.scene.host.clientHeight >= 0.3 * innerHeight")
             boxes = await page.evaluate(LABELS)
             assert {"ended", "recovery"} <= {box[0] for box in boxes}
             assert len(boxes) >= 4  # three in a hundredth of the lane: one has its tick alone
