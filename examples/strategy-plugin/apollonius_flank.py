@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from onboard.core.game.advance import PursuerStrategy
 from onboard.core.game.views import PursuerView
-from onboard.core.geometry.cones import within
+from onboard.core.geometry.free_ray import within
 from onboard.core.math.vectors import TINY, along, distance, sub, unit
 from onboard.core.strategy.knowledge import Decision, RuleId
 

@@ -19,8 +19,7 @@ from types import FunctionType, ModuleType
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
-from numba.core import types
-from numba.extending import overload, register_jitable
+from numba.extending import register_jitable
 from numpy.typing import NDArray
 
 from onboard.core.game.advance import (
@@ -37,6 +36,7 @@ from onboard.core.math import each as each_module
 from onboard.core.math.each import each
 from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import Vec
+from sim_bridge.campaign.each_compiled import compile_each
 from sim_bridge.campaign.kernel_cache import kernel
 
 KERNELS = (
@@ -44,6 +44,8 @@ KERNELS = (
     "onboard.core.math.angles",
     "onboard.core.geometry.apollonius",
     "onboard.core.geometry.cones",
+    "onboard.core.geometry.edges",
+    "onboard.core.geometry.free_ray",
     "onboard.core.game.views",
     "onboard.core.geometry.lead",
     "onboard.core.math.angles",
@@ -87,7 +89,7 @@ _registered: set[int] = set()
 
 def register(modules: Iterable[str] = KERNELS) -> None:
     """Register every function of the modules with numba; idempotent."""
-    _overload_each()
+    compile_each()
     for name in modules:
         for function in _functions(importlib.import_module(name)):
             _register(function)
@@ -127,31 +129,6 @@ def register_strategies(functions: Iterable[Callable[..., Any]]) -> None:
             _registered.add(id(function))
             _register_parts(function)
             register_jitable(forceinline=True)(function)
-
-
-@cache
-def _overload_each() -> None:
-    def compiled_each(function, items, shared):  # type: ignore[no-untyped-def]
-        calls = "".join(f"function(items[{k}], {k}, shared), " for k in range(_count(items)))
-        return _written_out("function, items, shared", calls)
-
-    def compiled_pair(function, items, others, shared):  # type: ignore[no-untyped-def]
-        calls = "".join(f"function(items[{k}], others[{k}], shared), " for k in range(_count(items)))
-        return _written_out("function, items, others, shared", calls)
-
-    options: Any = {"forceinline": True}
-    overload(each_module.each, jit_options=options)(compiled_each)
-    overload(each_module.each_pair, jit_options=options)(compiled_pair)
-
-
-def _count(items: Any) -> int:
-    return len(items) if isinstance(items, types.BaseTuple) else 0
-
-
-def _written_out(arguments: str, calls: str) -> Any:
-    names: dict[str, Any] = {}
-    exec(f"def written_out({arguments}):\n    return ({calls})", names)
-    return names["written_out"]
 
 
 class Starts(NamedTuple):

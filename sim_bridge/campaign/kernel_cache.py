@@ -41,7 +41,12 @@ ROOM = 500_000_000  # bytes that the files may take together
 PATIENCE = 300.0  # [s] at most to wait for a kernel that another process compiles
 LOOK = 0.05  # [s] between two looks whether it is done
 # How functions are registered and compiled is part of every kernel.
-MAKERS = ("sim_bridge.campaign.compiled", "sim_bridge.campaign.fingerprint", __name__)
+MAKERS = (
+    "sim_bridge.campaign.compiled",
+    "sim_bridge.campaign.each_compiled",
+    "sim_bridge.campaign.fingerprint",
+    __name__,
+)
 
 _dumps: Callable[[Any], bytes] = serialize.dumps
 _rebuilt: Callable[..., Any] = compiler.CompileResult._rebuild

@@ -11,7 +11,8 @@ from math import asin, atan, atan2, cos, pi, sin, sqrt
 from typing import NamedTuple
 
 from onboard.core.game.views import PursuerView, level
-from onboard.core.geometry.cones import blocked_cones, free_ray_limited, within
+from onboard.core.geometry.cones import blocked_cones
+from onboard.core.geometry.free_ray import free_ray_limited, within
 from onboard.core.math.angles import wrap
 from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import NORTH, TINY, Vec, along, clamp, distance, dot, norm, scale, sub, unit

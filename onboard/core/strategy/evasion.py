@@ -9,7 +9,8 @@ from __future__ import annotations
 from math import sqrt
 
 from onboard.core.game.views import EvaderView, heading_at
-from onboard.core.geometry.cones import Ray, free_ray_limited, within
+from onboard.core.geometry.cones import Ray
+from onboard.core.geometry.free_ray import free_ray_limited, within
 from onboard.core.math.vectors import NORTH, TINY, Vec, along, distance, sub, unit
 from onboard.core.strategy.knowledge import Decision, Module, Rule, RuleId, fold, silent
 

@@ -11,7 +11,8 @@ from math import acos, pi, sqrt
 from typing import NamedTuple
 
 from onboard.core.game.views import EvaderView, heading_at
-from onboard.core.geometry.cones import Cone, Ray, Seen, blocked_cone, free_ray_limited, within
+from onboard.core.geometry.cones import Cone, Ray, Seen, blocked_cone
+from onboard.core.geometry.free_ray import free_ray_limited, within
 from onboard.core.math.each import each
 from onboard.core.math.states import Vehicle
 from onboard.core.math.vectors import (

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from onboard.core.game.advance import positions
 from onboard.core.game.views import EvaderView, PursuerView, heading_at, nearest_mate
-from onboard.core.geometry.cones import within
+from onboard.core.geometry.free_ray import within
 from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import NORTH, TINY, Vec, along, clamp, direction, scale, sub, unit
 from onboard.core.strategy.knowledge import Decision, RuleId

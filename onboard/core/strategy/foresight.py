@@ -10,7 +10,8 @@ from math import atan2, cos, pi, sin, sqrt, tan
 from typing import NamedTuple
 
 from onboard.core.game.views import EvaderView, heading_at
-from onboard.core.geometry.cones import blocked_cones, free_ray_limited
+from onboard.core.geometry.cones import blocked_cones
+from onboard.core.geometry.free_ray import free_ray_limited
 from onboard.core.math.angles import wrap
 from onboard.core.math.each import each, each_pair
 from onboard.core.math.states import Vehicle

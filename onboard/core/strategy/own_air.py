@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from onboard.core.game.views import PursuerView
-from onboard.core.geometry.cones import within
+from onboard.core.geometry.free_ray import within
 from onboard.core.math.states import Vehicle
 from onboard.core.math.vectors import TINY, Vec, add, along, dot, norm, scale, sub, unit
 from onboard.core.strategy.knowledge import Decision

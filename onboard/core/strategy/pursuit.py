@@ -9,7 +9,7 @@ from math import atan2, cos, sin, sqrt
 
 from onboard.core.game.views import PursuerView
 from onboard.core.geometry.apollonius import closest_approach, intercept
-from onboard.core.geometry.cones import within
+from onboard.core.geometry.free_ray import within
 from onboard.core.geometry.lead import lead
 from onboard.core.math.angles import wrap
 from onboard.core.math.vectors import TINY, Vec, add, along, cross, distance, dot, scale, sub, unit

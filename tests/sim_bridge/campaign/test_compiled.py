@@ -13,7 +13,8 @@ from onboard.core.game.advance import Conditions, Game, begin, still_view
 from onboard.core.game.referee import GameResult
 from onboard.core.game.rules import Control, Rules, Target
 from onboard.core.game.views import heading_at
-from onboard.core.geometry import cones as cone_room
+from onboard.core.geometry.cones import is_free
+from onboard.core.geometry.edges import free_ray
 from onboard.core.math.states import FREE, Vehicle, VehicleLimits
 from onboard.core.math.vectors import NORTH, ZERO, Vec, angle_between, dot, scale, sub, unit
 from onboard.core.strategy.registry import EVADERS, PURSUERS
@@ -92,9 +93,9 @@ def margin(game: Game, conditions: Conditions) -> float:
     found = [abs(dot(goal, c.axis) - c.cos) for c in view.cones]
     ranked = []
     for index, cone in enumerate(view.cones):
-        alone = cone_room.free_ray(goal, (cone,))
+        alone = free_ray(goal, (cone,))
         others = view.cones[:index] + view.cones[index + 1 :]
-        if cone_room.is_free(alone.direction, others):
+        if is_free(alone.direction, others):
             ranked.append(alone.closeness)
         found += [abs(dot(alone.direction, c.axis) - c.cos) for c in others]
     ranked.sort()

@@ -11,7 +11,8 @@ from math import acos, asin, atan2, ceil, cos, inf, pi, sin, sqrt
 from typing import NamedTuple
 
 from onboard.core.game.views import heading_at
-from onboard.core.geometry.cones import NOTHING, Cone, Seen, blocked_cone, free_ray_limited
+from onboard.core.geometry.cones import NOTHING, Cone, Seen, blocked_cone
+from onboard.core.geometry.free_ray import free_ray_limited
 from onboard.core.math.angles import TURN, wrap
 from onboard.core.math.each import each
 from onboard.core.math.states import Vehicle, VehicleLimits

@@ -10,15 +10,9 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from onboard.core.geometry.assessment import half_angle
-from onboard.core.geometry.cones import (
-    EVERYTHING,
-    blocked_cones,
-    free_ray,
-    free_ray_limited,
-    free_ray_plane,
-    is_free,
-    within,
-)
+from onboard.core.geometry.cones import EVERYTHING, blocked_cones, is_free
+from onboard.core.geometry.edges import free_ray
+from onboard.core.geometry.free_ray import free_ray_limited, free_ray_plane, within
 from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import NORTH, ZERO, Vec, along, angle_between, distance, dot, pitch_of, yaw_of
 from tests.support.random_situations import angle, headings, pursuers

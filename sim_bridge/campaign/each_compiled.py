@@ -1,0 +1,141 @@
+"""The compiled forms of `onboard.core.math.each`: calls one after another of few items, of many a loop.
+
+Written out for many items a strategy would stand in the kernel once for every pursuer, and take minutes to
+compile.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+from numba.core import cgutils, types
+from numba.core.errors import TypingError
+from numba.core.typing import templates
+from numba.core.typing.templates import signature as typed_signature
+
+from onboard.core.math import each as each_module
+
+signature: Any = typed_signature
+kinds: Any = types
+build: Any = cgutils
+library: Any = templates
+
+WRITTEN_OUT = 6  # items up to which the calls are written out: what they have in common is then reckoned once
+
+
+def _call_of(context: Any, function: Any, tuples: tuple[Any, ...], shared: Any) -> Any:
+    """The signature of one call; None where the function does not take these types."""
+    index = [types.intp] if len(tuples) == 1 else []
+    return function.get_call_type(context, (*(one.dtype for one in tuples), *index, shared), {})
+
+
+def _linked(context: Any, function: Any, call: Any) -> Any:
+    """The function as code, of one call's signature."""
+    compiled = context.get_function(function, call)
+    for part in getattr(compiled, "libs", ()):
+        context.active_code_library.add_linking_library(part)
+    return compiled
+
+
+def _results(context: Any, builder: Any, function: Any, call: Any, values: list[Any], count: int) -> Any:
+    """The code that makes all results, a tuple of them; `values` are the tuples and what is shared."""
+    if count > WRITTEN_OUT:
+        return builder.load(_filled(context, builder, function, call, values, count))
+    compiled = _linked(context, function, call)
+    found = []
+    for k in range(count):
+        items = [builder.extract_value(value, k) for value in values[:-1]]
+        index = [context.get_constant(types.intp, k)] if len(items) == 1 else []
+        found.append(compiled(builder, (*items, *index, values[-1])))
+    return context.make_tuple(builder, kinds.UniTuple(call.return_type, count), found)
+
+
+def _filled(context: Any, builder: Any, function: Any, call: Any, values: list[Any], count: int) -> Any:
+    """The code of the loop that makes them; a pointer to the tuple on the stack."""
+    compiled = _linked(context, function, call)
+    places = [build.alloca_once_value(builder, value) for value in values[:-1]]
+    results = build.alloca_once(builder, context.get_value_type(kinds.UniTuple(call.return_type, count)))
+    zero = context.get_constant(types.intp, 0)
+    with build.for_range(builder, context.get_constant(types.intp, count)) as loop:
+        items = [builder.load(builder.gep(place, [zero, loop.index])) for place in places]
+        index = [loop.index] if len(items) == 1 else []
+        result = compiled(builder, (*items, *index, values[-1]))
+        builder.store(result, builder.gep(results, [zero, loop.index]))
+    return results
+
+
+def _each(context, function, items, shared):  # type: ignore[no-untyped-def]
+    """`each`."""
+    if _empty(items):
+        return signature(kinds.Tuple(()), function, items, shared), _nothing
+    call = _call_of(context, function, (items,), shared)
+
+    def code(context, builder, _signature, values):  # type: ignore[no-untyped-def]
+        return _results(context, builder, function, call, list(values[1:]), items.count)
+
+    return signature(kinds.UniTuple(call.return_type, items.count), function, items, shared), code
+
+
+def _each_pair(context, function, items, others, shared):  # type: ignore[no-untyped-def]
+    """`each_pair`."""
+    if _empty(items):
+        return signature(kinds.Tuple(()), function, items, others, shared), _nothing
+    call = _call_of(context, function, (items, others), shared)
+
+    def code(context, builder, _signature, values):  # type: ignore[no-untyped-def]
+        return _results(context, builder, function, call, list(values[1:]), items.count)
+
+    return signature(kinds.UniTuple(call.return_type, items.count), function, items, others, shared), code
+
+
+def _table(context, function, items, shared):  # type: ignore[no-untyped-def]
+    """`table`: a pointer to the first result."""
+    if _empty(items):
+        raise TypingError("table: found no items, expected one or more")
+    call = _call_of(context, function, (items,), shared)
+
+    def code(context, builder, _signature, values):  # type: ignore[no-untyped-def]
+        results = _filled(context, builder, function, call, list(values[1:]), items.count)
+        zero = context.get_constant(types.intp, 0)
+        return builder.gep(results, [zero, zero])
+
+    return signature(kinds.CPointer(call.return_type), function, items, shared), code
+
+
+def _few_or_many(context, few, many, items, shared):  # type: ignore[no-untyped-def]
+    """`few_or_many`: a call of one of them."""
+    function = few if len(items) < each_module.MANY else many
+    call = function.get_call_type(context, (items, shared), {})
+
+    def code(context, builder, _signature, values):  # type: ignore[no-untyped-def]
+        return _linked(context, function, call)(builder, tuple(values[2:]))
+
+    return signature(call.return_type, few, many, items, shared), code
+
+
+def _empty(items: Any) -> bool:
+    return len(items) == 0
+
+
+def _nothing(context: Any, builder: Any, call: Any, _values: Any) -> Any:
+    return context.make_tuple(builder, call.return_type, ())
+
+
+@cache
+def compile_each() -> None:
+    """Give numba the compiled forms of its functions; idempotent.
+
+    They become code where they are called, not functions that are called: else the array of `table` would
+    end before it is used.
+    """
+    forms = (
+        (each_module.each, _each),
+        (each_module.each_pair, _each_pair),
+        (each_module.table, _table),
+        (each_module.few_or_many, _few_or_many),
+    )
+    for function, made in forms:
+        template = library.make_intrinsic_template(function, made, function.__name__)
+        library.infer(template)
+        library.infer_global(function, types.Function(template))
