@@ -47,7 +47,8 @@ def missed_capture(run: Run) -> Drawing | None:
     wide = max(float(np.ptp(ways.pursuers[:, at, axis])) for axis in range(2))
     wide = 0.6 * wide + float(ways.speeds.max()) * max(0.0, late) + 2.0 * ways.R
     middle = ways.pursuers[:, at].mean(axis=0)
-    above.set(xlim=(middle[1] - wide, middle[1] + wide), ylim=(middle[0] - wide, middle[0] + wide))
+    above.set_xlim(middle[1] - wide, middle[1] + wide, auto=True)  # one gives way to the aspect
+    above.set_ylim(middle[0] - wide, middle[0] + wide, auto=True)
     above.set_aspect("equal", adjustable="datalim")
     series = tuple(curve(below, run, id, (found.instants, found.spare[:, k])) for k, id in enumerate(ids))
     for line in below.lines:

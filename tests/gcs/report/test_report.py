@@ -417,7 +417,9 @@ def test_a_fence_far_away_does_not_flatten_the_heights(values: Run) -> None:
     assert "ceiling, 1500 m, is far outside" in drawn.note
 
 
-def test_a_report_says_why_the_evader_was_not_captured(tmp_path: Path) -> None:
+def test_a_report_says_why_the_evader_was_not_captured(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
     """A chase that is told to have ended without capture: when the last chance was, or that none was."""
     run = read_run(make_run(tmp_path / "run"))
     assert run.outcome is not None
@@ -427,3 +429,4 @@ def test_a_report_says_why_the_evader_was_not_captured(tmp_path: Path) -> None:
     assert drawing is not None
     assert "could have met the evader on the way it flew" in drawing.note
     assert "<svg" in svg(drawing)
+    assert not caplog.messages, "the library complained of what it was asked"
