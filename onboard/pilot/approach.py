@@ -8,7 +8,7 @@ with its nose that way. Both fly at the height of the place.
 
 from __future__ import annotations
 
-from math import atan2, cos, isnan, sin
+from math import atan2, cos, exp, isnan, sin
 from typing import NamedTuple
 
 from onboard.core.math.angles import wrap
@@ -28,7 +28,7 @@ CALLS = 4.0  # GAIN of an error that there is this many times its reciprocal tim
 AVERAGED = 60.0  # [s] over which the wind is averaged: what the air does until t₀ is not what it does now;
 FIRST = 20.0  # [s] that count for the first word on it
 DRIFT = 3.0  # [s] in which it is learned how gusts carry the plane along
-LASTS = 15.0  # [s] that it goes on doing so
+LASTS = 12.0  # [s] in which that dies away: some 500 m of air at this speed
 AUTHORITY = 0.12  # of the speed that making up for it may take and give, and for an error along the path
 MOST_ACROSS = 0.5  # of the speed
 LEAD = 0.9  # [s] by which a plane's turn lags behind its course command,
@@ -41,14 +41,15 @@ LOOK_EVERY = 2.0  # [s] a plane looks whether it has lost its path
 ASTRAY = 0.3  # [s] of flight from it: then it looks for another one,
 ASTRAY_FAR = 0.01  # [s] more for every second left
 PUT_OFF = 0.1  # [s] more time than before: t₀ was put off
-LOST = 2.0  # [s] of flight from it, and what it can make up for on the way: then it says that it will be late
+SHARE = 0.3  # of what it can make up for: so much lost, and it looks for another one, too
+LOST = 2.0  # [s] of flight that it will miss its place by: then it says that it will be late
 TURNS = 0.05  # [rad] of a turn between two looks that tells how tightly a plane turns
 FELL_SHORT = 0.7  # of the turn that was told, for that
 WIDENS = 1.5  # times at most in one look
 WIDEST = 2.5  # times the radius that may be counted on, in all
 SLACK = 1.5  # [s] more than the shortest way that a plane asks for
 WIDER = 1.25  # times the radius that may be counted on: what lags in a turn is made up for within it
-RESERVE = 0.65  # of its range of airspeeds that a plane keeps for making up for lost time: who is early
+RESERVE = 0.5  # of its range of airspeeds that a plane keeps for making up for lost time: who is early
 # can also turn away and back
 PACES = (1.0, 1.02, 0.98, 1.04, 0.96, 0.93, 0.9, 0.86)  # of that at which a plane looks for a path that fits
 LONGEST = 600.0  # [s] that no way takes: who needs more cannot get there against the wind
@@ -84,7 +85,8 @@ class Approach:
         self._radius = max(1.0, WIDER * e.turn_radius)  # [m] of the paths; grows where it is not kept
         self._course = self._told = 0.0  # [rad] through the air at the last look, flown and told
         self._short = False  # its turn fell short of what was told
-        self._astray = 0.0  # from where the path says that it is now [m]
+        self._behind = 0.0  # where the path says that it is now [m], and
+        self._beside = 0.0  # to one side [m]
         self._wind: Vec | None = None  # in the mean [m/s]
         self._heard = 0.0  # [s] of wind in that
         self._flown = place.speed  # [m/s] that its airspeed should be by what was commanded
@@ -110,6 +112,11 @@ class Approach:
         if self.place.envelope.hovers:
             braking = self.place.envelope.deceleration
             return 0.0 if way <= THERE else way / speed + speed / braking + SETTLES
+        time = self._soonest(own)
+        return time + self._longer(own, time)
+
+    def _soonest(self, own: Own) -> float:
+        """Time that the plane's shortest way takes, and some to spare [s]."""
         closing = self._reserved / (self._reserved + norm(own.wind))
         time = 0.0
         while time < LONGEST:  # the place moves in the air while the plane is on its way
@@ -119,7 +126,7 @@ class Approach:
             if late <= 0.0:
                 break
             time += max(closing * late, 0.1)  # from below: the place may come towards the plane
-        return time + self._longer(own, time)
+        return time
 
     def misses(self, own: Own, left: float) -> float:
         """Time by which the vehicle would be late [s] with `left` seconds to t₀; 0 where a way fits."""
@@ -182,23 +189,18 @@ class Approach:
         return own
 
     def _to_go(self, left: float, pace: float) -> float:
-        """Length of the path that is flown in the time that is left [m]: at its pace, then gathering speed.
-
-        What carries the plane along then as now, nobody makes up for at the game's airspeed.
-        """
-        if self.place.slowest >= self.place.speed:  # it makes up for nothing at all
-            return pace * left + self._drift * min(left, LASTS)
-        final = self.place.speed + self._drift
-        gains = final - pace
+        """Length of the path that is flown in the time that is left [m]: at its pace, then gathering speed,
+        and carried along by the gust of now while it lasts."""
+        carried = self._drift * LASTS * (1.0 - exp(-max(0.0, left) / LASTS))
+        gains = self.place.speed - pace
         if left <= GATHER:
-            return final * left - gains * left * left / (2.0 * GATHER)
-        return pace * left + 0.5 * gains * GATHER
+            return self.place.speed * left - gains * left * left / (2.0 * GATHER) + carried
+        return pace * left + 0.5 * gains * GATHER + carried
 
     def _speed_at(self, left: float) -> float:
         """Airspeed that flies along the path in time [m/s], the game's at t₀."""
         share = clamp(1.0 - left / GATHER, 0.0, 1.0)
-        pace = self._pace - self._drift
-        return pace + share * (self.place.speed - pace)
+        return self._pace + share * (self.place.speed - self._pace)
 
     def _led(self, own: Own, left: float, down: float) -> Vec:
         """Velocity along the path and back to it."""
@@ -210,10 +212,10 @@ class Approach:
         _, goal = self._poses(own, left)
         # Where the path says that the plane is, from where it is: both are carried by the same air.
         x, y = goal.x - (end.x - here.x), goal.y - (end.y - here.y)
-        self._astray = (x * x + y * y) ** 0.5
         c, s = cos(here.heading), sin(here.heading)
+        self._behind, self._beside = x * c + y * s, y * c - x * s
         gain = clamp(CALLS / max(left, 1.0), GAIN_FAR, GAIN)
-        along, across = gain * (x * c + y * s), gain * (y * c - x * s)
+        along, across = gain * self._behind, gain * self._beside
         most = AUTHORITY * speed
         e = self.place.envelope
         pace = self._speed_at(left - SPEED_LEAD) + clamp(along, -most, most)
@@ -239,12 +241,11 @@ class Approach:
         """Make the path, and make it again where the plane has lost it, or t₀ was put off."""
         path, speed = self._path, self.place.speed
         put_off = left > self._left + PUT_OFF
-        allowed = (ASTRAY + ASTRAY_FAR * left) * speed
         self._left = left
         if path is not None and not put_off:
             if self._looked_at - left < LOOK_EVERY:
                 return
-            lost = self._astray > allowed
+            lost = self._lost(left)
             if lost:
                 self._widen(own)
             self._looked_at, (self._course, self._told) = left, self._headings(own)
@@ -259,10 +260,23 @@ class Approach:
             self._path, self._pace, self._late = found.path, pace, 0.0
         elif first:  # there is none: on the shortest until there is more time
             self._path, self._pace = found.path, self._reserved
-            self._late = self._longer(own, left + SLACK) + SLACK
+            self._late = self._too_early(own, left)
         else:  # who has one keeps it, and asks for more time where it is far from it
-            late = self._astray > (LOST + AUTHORITY * left) * speed
-            self._late = self._longer(own, left) if late else 0.0
+            late = self._missing(left) > LOST * speed
+            self._late = self._too_early(own, left) if late else 0.0
+
+    def _lost(self, left: float) -> bool:
+        """Whether another path is better: this one takes too much of what can be made up for in time."""
+        allowed = (ASTRAY + ASTRAY_FAR * left) * self.place.speed
+        return abs(self._beside) > allowed or self._missing(left, SHARE) > 0.0
+
+    def _missing(self, left: float, share: float = 1.0) -> float:
+        """By how much the plane will miss its place [m] with a share of the airspeeds that it may fly."""
+        e, time = self.place.envelope, max(0.0, left - GATHER)
+        slowest = min(self.place.slowest, self.place.speed)
+        more = share * (max(self.place.speed, e.speed_max) - self._pace) * time
+        less = share * (self._pace - slowest) * time
+        return max(self._behind - more, -self._behind - less, 0.0)
 
     def _found(self, own: Own, left: float, last: float) -> tuple[Arrival, float]:
         """A path, and the airspeed [m/s] at which it takes the time that is left."""
@@ -279,10 +293,16 @@ class Approach:
         pace = (short.length - gathered) / max(left - 0.5 * GATHER, GATHER)
         return Arrival(slowest <= pace <= self.place.speed, short), pace
 
+    def _too_early(self, own: Own, left: float) -> float:
+        """By how much t₀ is too early for the way there is, and to hear of another t₀ meanwhile [s]."""
+        time = max(left, self._soonest(own)) + SLACK
+        return time - left + self._longer(own, time)
+
     def _longer(self, own: Own, left: float) -> float:
         """Time by which t₀ is too early for any path [s]."""
         for more in range(0, LATEST, LATER):
-            if self._found(own, left + more, self._last())[0].exact:
+            poses, length = self._poses(own, left + more), self._to_go(left + more, self._reserved)
+            if arrive(*poses, self._radius, length, self._last()).exact:
                 return float(more)
         return float(LATEST)
 

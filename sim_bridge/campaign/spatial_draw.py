@@ -6,7 +6,7 @@ and the tracks' noise are those of `fly` with the seed of `drawn_scenario`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from enum import IntEnum
 from functools import cache
 from math import radians
@@ -16,11 +16,11 @@ import msgspec
 
 from onboard.config.strict import ConfigError, FieldError
 from onboard.core.game.advance import EvaderStrategy, PursuerStrategy
-from onboard.core.math.vectors import sub, yaw_of
+from onboard.core.math.vectors import Vec, sub, yaw_of
 from onboard.core.safety.policy import Fence
 from onboard.core.strategy.registry import EVADERS, pursuer_named
 from onboard.game.plugins import evader_strategy, pursuer_strategy
-from onboard.game.scenario import AirframeKind, Kind, Scenario, load
+from onboard.game.scenario import AirframeKind, Kind, Scenario, VehicleSpec, load
 from onboard.game.staging import places_of, start_headings
 from onboard.pilot.kalman import Learning
 from onboard.pilot.track_filter import FilterSettings
@@ -32,8 +32,8 @@ from sim_bridge.campaign.kernel_cache import kernel
 from sim_bridge.campaign.lanes import twins
 from sim_bridge.campaign.machine import approach_in_lanes, machine
 from sim_bridge.campaign.plane_in_wind import Flown, climate_of, drawn_wind, launched, wind_at
-from sim_bridge.campaign.spatial_game import Chosen, Fleet, Pace, Start
-from sim_bridge.campaign.spatial_lanes import InLanes, in_lanes_of, players_of, tracks_of
+from sim_bridge.campaign.spatial_game import Chosen, Fleet, Pace, Start, load_aboard
+from sim_bridge.campaign.spatial_lanes import InLanes, in_lanes_of, players_of, tracks_of, winds_of
 from sim_bridge.campaign.spatial_play import OneByOne, approach, moved_one_by_one, one_by_one
 from sim_bridge.campaign.team_play import Planning
 from sim_bridge.campaign.tracks import Eye, Tracks, no_tracks
@@ -48,10 +48,10 @@ from sim_bridge.plane_game.setup import (
 )
 from sim_bridge.vehicle.flight import KERNELS as FLIGHT
 from sim_bridge.vehicle.flight.aircraft import named, within
-from sim_bridge.vehicle.flight.plane import Command, PlaneState, Steer, start_state, trimmed
+from sim_bridge.vehicle.flight.plane import Command, Steer, start_state, trimmed
 from sim_bridge.vehicle.wind import KERNELS as WIND
 from sim_bridge.vehicle.wind.dryden import gust_noise
-from sim_bridge.vehicle.wind.estimate import begun, drawn_errors
+from sim_bridge.vehicle.wind.estimate import Estimate, begun, drawn_errors
 
 KERNELS = (
     *CORE,
@@ -190,15 +190,19 @@ def draw(scenario: Scenario, seed: int, t0: float = T0, compiled: bool = True) -
         players.append(launched(plane, gust_noise(keys[index], 0)))
         level.append(Command(Steer.COURSE, yaw, 0.0, spec.speed))
     tracks = no_tracks(len(players), start.eye)
+    winds = [
+        begun(wind_at(climate, place), errors) for place, errors in zip(places, start.errors, strict=True)
+    ]
+    crew = crew_of(players, start, specs, winds)
     if compiled:
-        lanes = in_lanes_of(start, players, level, [], tracks)
+        lanes = in_lanes_of(start, players, level, crew, tracks)
         compiled_kernel(approach_in_lanes)(start, lanes)
-        flown, tracks = players_of(lanes), tracks_of(lanes)
+        flown, tracks, winds = players_of(lanes), tracks_of(lanes), winds_of(lanes)
     else:
-        sky = one_by_one(players, level, [], tracks)
+        sky = one_by_one(players, level, crew, tracks)
         approach(start, moved_one_by_one(), sky)
-        flown = sky.players
-    crew = [aboard_of(flown[i].plane, start, specs[i].speed, i) for i in range(len(players))]
+        flown, winds = sky.players, [load_aboard(sky.crew, i, 0).wind for i in range(len(players))]
+    crew = crew_of(flown, start, specs, winds)
     steps = int(conditions.rules.horizon / (control * dt)) + 8
     return Draw(start, flown, crew, tracks, steps, sides_of(scenario))
 
@@ -295,13 +299,18 @@ def eye_of(scenario: Scenario, dt: float) -> Eye:
     )
 
 
-def aboard_of(plane: PlaneState, start: Start, speed: float, index: int) -> Aboard:
-    """An agent and its autopilot at t₀, the last order given a control step before the first of the game."""
-    wind = wind_at(start.climate, plane.position)
+def crew_of(
+    flown: list[Flown], start: Start, specs: Sequence[VehicleSpec], winds: list[Estimate]
+) -> list[Aboard]:
+    """Agents and autopilots at t₀, the last order given a control step before the first of the game."""
     pace, dt = start.pace, start.fleet.evader.dt
     last = (pace.t0 - (pace.t0 - pace.decides) % pace.control) * dt
-    estimate = begun(wind, start.errors[index])
-    return boarded(sub(plane.velocity, wind), last, -plane.position.z, speed, estimate)
+    crew = []
+    for (plane, _gusts), spec, estimate in zip(flown, specs, winds, strict=True):
+        air = sub(plane.velocity, wind_at(start.climate, plane.position))
+        level = Vec(air.x, air.y, 0.0)  # as ordered: gusts alone make it sink or rise
+        crew.append(boarded(level, last, -plane.position.z, spec.speed, estimate))
+    return crew
 
 
 @cache

@@ -36,6 +36,7 @@ from sim_bridge.campaign.flight_lanes import (
     hear,
     load_flown,
     load_reach,
+    load_wind,
     measure,
     store_autopilot,
     store_command,
@@ -54,6 +55,7 @@ from sim_bridge.campaign.spatial_game import ABOARD_ROW, Start, load_aboard, sto
 from sim_bridge.campaign.spatial_play import Motion
 from sim_bridge.campaign.tracks import Tracks
 from sim_bridge.vehicle.flight.plane import Command
+from sim_bridge.vehicle.wind.estimate import Estimate
 
 COURSE = FLOWN.leaves.index("v.plane.course") * LANES  # where it lies in a block
 
@@ -242,6 +244,12 @@ def players_of(sky: InLanes) -> list[Flown]:
     """The aircraft of all players."""
     count = sky.seen.filters.shape[0]
     return [load_flown(sky.air, i // LANES, i % LANES) for i in range(count)]
+
+
+def winds_of(sky: InLanes) -> list[Estimate]:
+    """What the autopilots of all players know of the wind."""
+    count = sky.seen.filters.shape[0]
+    return [load_wind(sky.air, i // LANES, i % LANES + AT_WIND) for i in range(count)]
 
 
 def tracks_of(sky: InLanes) -> Tracks:

@@ -73,14 +73,16 @@ class OneByOne(NamedTuple):
 def approach(start: Start, motion: Motion, sky: Any) -> None:
     """Fly on the start's heading until t₀ and be at the start's place then.
 
-    What gusts make of an aircraft in that time is so what they make of it in flight before t₀, and the tracks
-    are not new.
+    What gusts make of an aircraft in that time is so what they make of it in flight before t₀, and neither
+    tracks nor estimates of the wind are new.
     """
     here = np.zeros((len(start.game.pursuers) + 1, KNOWS))
     motion.note(sky, here)
     places = here.copy()
     for sample in range(start.pace.t0):
         motion.watch(sky, start, sample, here)
+        if sample % WIND_EVERY == 0:
+            motion.estimate(sky, start, here)
         motion.carry(sky, start, sample, here)
     motion.put(sky, here, places)
 
