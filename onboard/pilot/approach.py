@@ -299,10 +299,11 @@ class Approach:
         return time - left + self._longer(own, time)
 
     def _longer(self, own: Own, left: float) -> float:
-        """Time by which t₀ is too early for any path [s]."""
+        """Time by which t₀ is too early for any path at a pace that can still be made faster [s]."""
+        fast = 0.5 * (self._reserved + self.place.speed)
         for more in range(0, LATEST, LATER):
-            poses, length = self._poses(own, left + more), self._to_go(left + more, self._reserved)
-            if arrive(*poses, self._radius, length, self._last()).exact:
+            found, pace = self._found(own, left + more, self._last())
+            if found.exact and pace <= fast:
                 return float(more)
         return float(LATEST)
 
