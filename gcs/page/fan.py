@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from gcs.picture.current import current
+from gcs.picture.current import current_tracks
 from gcs.picture.values import Picture
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec
@@ -71,7 +71,7 @@ class Fans:
         """Follow the tracks that are fed: those of evaders, all where the setup is not known."""
         setup = picture.game.setup
         evaders = None if setup is None else {m.id for m in setup.roster if m.role is Role.EVADER}
-        wanted = [t.track for t in current(picture).tracks if evaders is None or t.id in evaders][:FANS_MOST]
+        wanted = [t.track for t in current_tracks(picture) if evaders is None or t.id in evaders][:FANS_MOST]
         self._fans = {track.id: self._fans.get(track.id) or Fan() for track in wanted}
         for track in wanted:
             self._fans[track.id].take(track)

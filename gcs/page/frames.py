@@ -11,7 +11,7 @@ import struct
 from math import inf, nan, sqrt
 
 from gcs.console.vehicle_table import Grade, grades
-from gcs.picture.current import current
+from gcs.picture.current import moving
 from gcs.picture.values import Picture, TrackView, VehicleView
 from onboard.wire.bus.messages import Role
 
@@ -34,9 +34,8 @@ assert len(TRACK) == WIDTH
 def frame(picture: Picture, number: int = 0) -> bytes:
     """The frame of a picture. A vehicle that was never located is left out."""
     graded = grades(picture)
-    fed = {vehicle.id for vehicle in current(picture).vehicles if vehicle.state is not None}
     vehicles = [
-        _ROW.pack(*_vehicle(vehicle, graded[vehicle.id], vehicle.id in fed))
+        _ROW.pack(*_vehicle(vehicle, graded[vehicle.id], moving(vehicle)))
         for vehicle in picture.vehicles
         if vehicle.state is not None
     ]

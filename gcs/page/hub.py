@@ -23,7 +23,8 @@ from gcs.picture.values import Picture
 from onboard.wire.bus.messages import CommandKind
 
 TICK_HZ = 10.0
-BOARD_EACH = 4  # ticks
+BOARD_EACH = 4  # ticks, or a few less where these are longer
+AT_ONCE = 250  # vehicles that are told ten times a second; a larger fleet is told less often, so that there is time for it
 BROWSERS_MOST = 16
 SAID_MOST = 32  # answers that wait for one browser
 NOT_ALLOWED = "this page only shows: it was started without --control, or opened without its token"
@@ -84,6 +85,7 @@ class Hub:
         self._version = version
         self._timeline = timeline
         self._number = 0
+        self._pace = 1  # how many times longer a tick is: one for each `AT_ONCE` vehicles begun
         self._field: str = ""
         self._fans = Fans()
 
@@ -113,7 +115,7 @@ class Hub:
         loop = asyncio.get_running_loop()
         due = loop.time()
         while True:
-            due = max(due + 1.0 / TICK_HZ, loop.time())
+            due = max(due + self._pace / TICK_HZ, loop.time())
             await asyncio.sleep(due - loop.time())
             if self.browsers:
                 self.tick()
@@ -122,14 +124,15 @@ class Hub:
         """Let the newest picture wait for every browser."""
         picture = self.source.picture()
         self._number += 1
+        self._pace = max(1, -(-len(picture.vehicles) // AT_ONCE))
         moved = frame(picture, self._number)
         self._fans.take(picture)
         fans = _json(self._fans.document())
-        slow = self._number % BOARD_EACH == 0
+        slow = self._number % max(2, BOARD_EACH // self._pace) == 0
         field = _json(documents.field(picture)) if slow else self._field
         for browser in self.browsers:
-            browser.put("frame", moved)
             browser.put("fans", fans)
+            browser.put("frame", moved)
             if browser.questions.lapsed(picture.now_ns):
                 browser.say("not done", "answered")
             if field != self._field:

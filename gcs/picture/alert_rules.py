@@ -75,9 +75,13 @@ def rules(picture: Picture, in_force: InForce, limits: Thresholds, version: str)
     yield from _game(picture, limits)
     yield from _commands(picture, limits)
     yield from _separation(picture, in_force, limits)
+    playing = picture.game.phase in ACTIVE
+    roster = picture.game.setup.roster if picture.game.setup and playing else ()
+    members, tracked = {member.id for member in roster}, {member.id for member in roster if member.tracked}
     for vehicle in picture.vehicles:
         if vehicle.presence is Presence.EXPECTED:
-            yield from _expected(picture, vehicle)
+            if playing and vehicle.id not in tracked:
+                yield _missing(vehicle)
         elif vehicle.presence is Presence.LOST:
             yield _lost(vehicle)
         else:
@@ -85,7 +89,9 @@ def rules(picture: Picture, in_force: InForce, limits: Thresholds, version: str)
             yield from _autopilot(vehicle, in_force, limits)
             yield from _supervisor(vehicle)
             yield from _fence(picture, vehicle, in_force, limits)
-            yield from _identity(picture, vehicle, version)
+            yield from _identity(vehicle, version)
+            if members and vehicle.id not in members:
+                yield _stranger(vehicle)
             yield from troubles(vehicle)
 
 
@@ -149,14 +155,18 @@ def _commands(picture: Picture, limits: Thresholds) -> Iterator[Finding]:
             )  # fmt: skip
 
 
-def _expected(picture: Picture, vehicle: VehicleView) -> Iterator[Finding]:
-    setup = picture.game.setup
-    tracked = setup is not None and any(m.tracked for m in setup.roster if m.id == vehicle.id)
-    if picture.game.phase in ACTIVE and not tracked:
-        yield Finding(
-            "missing", vehicle.id, WARNING, f"vehicle {vehicle.id} is in the game and was never heard",
-            "start its agent, or check that it joined this bus and this game", 3.0,
-        )  # fmt: skip
+def _missing(vehicle: VehicleView) -> Finding:
+    return Finding(
+        "missing", vehicle.id, WARNING, f"vehicle {vehicle.id} is in the game and was never heard",
+        "start its agent, or check that it joined this bus and this game", 3.0,
+    )  # fmt: skip
+
+
+def _stranger(vehicle: VehicleView) -> Finding:
+    return Finding(
+        "stranger", vehicle.id, WARNING, f"vehicle {vehicle.id} is here and not in this game",
+        "keep it away, or start the game with it in the scenario", 2.0,
+    )  # fmt: skip
 
 
 def _lost(vehicle: VehicleView) -> Finding:
@@ -256,7 +266,7 @@ def _supervisor(vehicle: VehicleView) -> Iterator[Finding]:
         )  # fmt: skip
 
 
-def _identity(picture: Picture, vehicle: VehicleView, version: str) -> Iterator[Finding]:
+def _identity(vehicle: VehicleView, version: str) -> Iterator[Finding]:
     name = f"vehicle {vehicle.id}"
     if vehicle.double_id:
         yield Finding(
@@ -273,12 +283,6 @@ def _identity(picture: Picture, vehicle: VehicleView, version: str) -> Iterator[
         yield Finding(
             "version", vehicle.id, WARNING, f"{name} runs version {health.version}, this station {version}",
             "install the same version everywhere before the game", 1.0,
-        )  # fmt: skip
-    roster = picture.game.setup.roster if picture.game.setup and picture.game.phase in ACTIVE else ()
-    if roster and vehicle.id not in {member.id for member in roster}:
-        yield Finding(
-            "stranger", vehicle.id, WARNING, f"{name} is here and not in this game",
-            "keep it away, or start the game with it in the scenario", 2.0,
         )  # fmt: skip
 
 

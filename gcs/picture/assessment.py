@@ -32,7 +32,8 @@ def assess(
     if setup is None or known is None:
         return None
     evader, pursuers = known
-    if not setup.rules.planar and len(pursuers) > MOST_IN_SPACE:
+    many = len(pursuers) > MOST_IN_SPACE
+    if not setup.rules.planar and many:
         place = evader.position
         pursuers = sorted(pursuers, key=lambda p: distance(p[1].position, place))[:MOST_IN_SPACE]
     target = ZERO if game.target is None else Vec(*game.target)
@@ -49,13 +50,13 @@ def assess(
             ProspectView(id=i, intercepts=p.intercepts, time_s=p.time, denies_target=p.denies_target)
             for (i, _), p in zip(pursuers, found.prospects, strict=True)
         ),
-        captured=_chance(engagement_in(game, vehicles, tracks)),
+        captured=None if many else _chance(engagement_in(game, vehicles, tracks)),
     )
 
 
 def _chance(situation: Situation | None) -> tuple[float, float, float] | None:
     """The chance of capture against the evader of the paper; None where the table does not reach."""
-    if situation is None or len(situation.team) > MOST_IN_SPACE:
+    if situation is None:
         return None
     found = chances(situation, DEFAULT)
     return None if found is None else (found.captured.p, found.captured.low, found.captured.high)

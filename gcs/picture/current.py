@@ -10,7 +10,7 @@ from math import inf
 
 from msgspec.structs import replace
 
-from gcs.picture.values import Picture, VehicleView
+from gcs.picture.values import Picture, TrackView, VehicleView
 from onboard.wire.bus.messages import Health
 
 MOTION_OLD_S = 2.0  # states (20 Hz), tracks and decisions (10 Hz) older than this are no longer current
@@ -20,21 +20,29 @@ HEALTH_OLD_S = 3.0  # heartbeats of agents (2 Hz) and of autopilots (1 Hz)
 def current(picture: Picture) -> Picture:
     """The picture without what is too old to be true now."""
     return replace(
-        picture,
-        vehicles=tuple(map(_vehicle, picture.vehicles)),
-        tracks=tuple(track for track in picture.tracks if track.age_s <= MOTION_OLD_S),
-    )
+        picture, vehicles=tuple(map(_vehicle, picture.vehicles)), tracks=current_tracks(picture)
+    )  # fmt: skip
+
+
+def current_tracks(picture: Picture) -> tuple[TrackView, ...]:
+    """The tracks that are still fed."""
+    return tuple(track for track in picture.tracks if track.age_s <= MOTION_OLD_S)
+
+
+def moving(vehicle: VehicleView) -> bool:
+    """Whether a vehicle's state is still fed."""
+    return vehicle.state is not None and vehicle.state_age_s <= MOTION_OLD_S
 
 
 def _vehicle(vehicle: VehicleView) -> VehicleView:
     """A vehicle with the messages that are still fed."""
     health = vehicle.health if vehicle.health_age_s <= HEALTH_OLD_S else None
-    moving = vehicle.state_age_s <= MOTION_OLD_S
+    moves = moving(vehicle)
     decided = vehicle.decision_age_s <= MOTION_OLD_S
     return replace(
         vehicle,
-        state=vehicle.state if moving else None,
-        state_age_s=vehicle.state_age_s if moving else inf,
+        state=vehicle.state if moves else None,
+        state_age_s=vehicle.state_age_s if moves else inf,
         decision=vehicle.decision if decided else None,
         decision_age_s=vehicle.decision_age_s if decided else inf,
         health=None if health is None else _health(health, vehicle.health_age_s),

@@ -42,7 +42,8 @@ from onboard.wire.bus.topics import Delivery, Heard, Party, Topic
 
 LOG_LENGTH = 500
 TRACK_KEPT_NS = 30 * NS_PER_S
-MOST_VEHICLES = 250  # nothing on the bus can make the picture grow without end
+MOST_VEHICLES = topics.IDS_MOST  # nothing on the bus can make the picture grow without end
+JUDGED_AT_ONCE = 250  # vehicles, ten times a second
 NO_PAYLOAD = (Delivery.REQUEST, Delivery.TOKEN)  # nobody publishes messages on such topics
 OWN_WORD = (Party.OWN_AGENT,)  # writers of what a vehicle's agent says of its vehicle
 
@@ -249,6 +250,11 @@ class Fleet:
             self._say(now_ns, 0, remark.severity, remark.kind, remark.text)
 
     # ---- values out
+
+    @property
+    def grid_steps(self) -> int:
+        """Steps of the grid of time from one judgement to the next: one for each 250 vehicles begun."""
+        return max(1, -(-len(self._entries) // JUDGED_AT_ONCE))
 
     def bad_age_s(self, now_ns: int) -> float:
         """Since the last message that was foreign or bad [s]."""

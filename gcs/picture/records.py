@@ -89,6 +89,8 @@ class Growth:
 
     def view(self, now_ns: int) -> tuple[tuple[str, int], ...]:
         """Name and number of those that grew in the last `GROWING_NS`."""
+        if not self._grew_ns:
+            return ()
         grew = sorted(name for name, at in self._grew_ns.items() if now_ns - at < GROWING_NS)
         return tuple((name, self._last.get(name, 0)) for name in grew)
 
@@ -145,7 +147,7 @@ class VehicleRecord:
             health_age_s=age_s(self.health_ns, now_ns),
             state_rate_hz=self.rate.value(now_ns),
             double_id=self.double_ns is not None and now_ns - self.double_ns < DOUBLE_NS,
-            dropped=tuple(sorted(self.drops.items())),
+            dropped=tuple(sorted(self.drops.items())) if self.drops else (),
             schema_age_s=age_s(self.schema_ns, now_ns),
             missed_events=self.missed_events,
             growing=self.growth.view(now_ns),

@@ -1,6 +1,7 @@
 """The whole picture from one stream: fleet, alerts and commands, evaluated on a fixed grid of time.
 
-Alerts are judged at every multiple of 0.1 s of the station's time, and a judgement at T sees exactly the
+Alerts are judged at every multiple of 0.1 s of the station's time (of 0.2 s with more than 250 vehicles, of 0.3 s
+with more than 500, and so on: judging shall not take all the time there is), and a judgement at T sees exactly the
 messages that came before T, no matter when anybody asks: so a replay of the recorded stream
 (key, payload, now_ns) gives the live run's picture, alert for alert.
 """
@@ -57,7 +58,7 @@ class PictureReducer:
             self._next_ns = -(-start_ns // GRID_NS) * GRID_NS
         while self._next_ns <= now_ns:
             self._judge(self._next_ns)
-            self._next_ns += GRID_NS
+            self._next_ns += GRID_NS * self.fleet.grid_steps
 
     def picture(self, now_ns: int) -> Picture:
         """The picture now."""

@@ -9,9 +9,9 @@ from collections import Counter, OrderedDict
 from collections.abc import Hashable
 from typing import Any, NamedTuple
 
-from onboard.wire.bus.topics import ID, TOPICS, Delivery, Topic
+from onboard.wire.bus.topics import ID, PLACES_KEPT, TOPICS, Delivery, Topic
 
-BUCKETS_MAX = 1024
+BUCKETS_MAX = 1024  # of a link
 PAYLOAD_MAX = 65_536  # [bytes] of a message on the bus: none of the table comes near it
 
 
@@ -42,10 +42,11 @@ class _Bucket:
 
 
 class RateLimit:
-    """One bucket for each sender and kind."""
+    """One bucket for each sender and kind, `most` of them."""
 
-    def __init__(self) -> None:
+    def __init__(self, most: int = BUCKETS_MAX) -> None:
         self.limited: Counter[str] = Counter()  # by kind
+        self._most = most
         self._buckets: OrderedDict[Hashable, _Bucket] = OrderedDict()
 
     def admits(self, sender: Hashable, kind: str, rate: Rate, now: float) -> bool:
@@ -53,7 +54,7 @@ class RateLimit:
         key = (sender, kind)
         bucket = self._buckets.get(key)
         if bucket is None:
-            if len(self._buckets) >= BUCKETS_MAX:
+            if len(self._buckets) >= self._most:
                 key = ("", "")  # the rest share one
             bucket = self._buckets.setdefault(key, _Bucket(rate.burst, now))
         per_s, burst = rate
@@ -73,7 +74,7 @@ class BusLimit:
     """The bounds of the bus: for each key, which names the sender and the kind."""
 
     def __init__(self) -> None:
-        self._limit = RateLimit()
+        self._limit = RateLimit(PLACES_KEPT)  # room for every key of the largest game
         self._bounds: dict[Topic[Any], tuple[str, Rate]] = {}
 
     def admits(self, key: str, size: int, now: float) -> bool:

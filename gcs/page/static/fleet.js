@@ -1,11 +1,11 @@
-// Vehicles, trails and tracks: instanced meshes and one buffer of lines, whatever their number.
+// Vehicles and tracks: instanced meshes, whatever their number; their trails.
 import {
-  BufferAttribute, BufferGeometry, Color, ConeGeometry, DynamicDrawUsage, Group, InstancedMesh, LineBasicMaterial,
+  BufferAttribute, BufferGeometry, ConeGeometry, DynamicDrawUsage, Group, InstancedMesh, LineBasicMaterial,
   LineSegments, MeshBasicMaterial, MeshLambertMaterial, Object3D, SphereGeometry, BoxGeometry, CylinderGeometry,
 } from "three";
+import { tint } from "paint";
+import { Trails } from "trails";
 
-const TRAIL = 240; // pieces of way that are kept of each
-const PIECE_M = 0.5; // a shorter piece is not drawn anew
 const SIGMAS = 2; // of the ellipsoids of tracks
 
 // A body that points north (−z) and is one metre long.
@@ -26,9 +26,10 @@ export class Fleet {
     this.group = new Group();
     this.meshes = {};
     this.capacity = 0;
-    this.trails = new Map(); // id → {slot, head, last}
-    this.free = 0;
+    this.trails = new Trails();
+    this.group.add(this.trails.lines);
     this.vehicles = [];
+    this.evaders = new Set(); // their ids
     this.tracks = [];
     this.one = new Object3D();
     this.one.rotation.order = "YXZ";
@@ -55,16 +56,6 @@ export class Fleet {
     this.meshes.track.frustumCulled = false;
     this.meshes.track.count = 0;
     this.group.add(this.meshes.track);
-    if (this.lines) {
-      this.group.remove(this.lines);
-      this.lines.geometry.dispose();
-    }
-    const geometry = new BufferGeometry();
-    geometry.setAttribute("position", new BufferAttribute(new Float32Array(capacity * TRAIL * 6), 3).setUsage(DynamicDrawUsage));
-    geometry.setAttribute("color", new BufferAttribute(new Float32Array(capacity * TRAIL * 6), 3).setUsage(DynamicDrawUsage));
-    this.lines = new LineSegments(geometry, new LineBasicMaterial({ vertexColors: true, transparent: true, opacity: 0.75 }));
-    this.lines.frustumCulled = false;
-    this.group.add(this.lines);
     if (this.drops) {
       this.group.remove(this.drops);
       this.drops.geometry.dispose();
@@ -74,10 +65,6 @@ export class Fleet {
     this.drops = new LineSegments(feet, new LineBasicMaterial({ transparent: true, opacity: 0.45 }));
     this.drops.frustumCulled = false;
     this.group.add(this.drops);
-    const ways = this.ways();
-    this.trails.clear();
-    this.free = 0;
-    for (const [key, points] of ways) this.way(key, points);
   }
 
   // From each vehicle straight down to the ground, so that heights can be read.
@@ -89,67 +76,16 @@ export class Fleet {
     position.needsUpdate = true;
   }
 
-  // All ways as lists of places, for a larger buffer or another theme.
-  ways() {
-    return [...this.trails].map(([key, trail]) => [key, trail.points]);
-  }
-
   setColours(colours) {
     this.colours = colours;
-    const ways = this.ways();
-    this.trails.clear();
-    this.free = 0;
-    this.lines.geometry.attributes.position.array.fill(0);
-    this.lines.geometry.attributes.position.needsUpdate = true;
-    for (const [key, points] of ways) this.way(key, points);
+    this.trails.setColour((key) => tint(this.colourOf(key)));
     if (this.vehicles.length) this.show(this.vehicles, this.tracks, this.scale, this.roles);
-  }
-
-  // Replace one way: key is `v2` or `t1`, points are [x, y, z].
-  way(key, points) {
-    this.trails.delete(key);
-    for (const point of points) this.extend(key, point);
-  }
-
-  forgetWays() {
-    this.trails.clear();
-    this.free = 0;
-    this.lines.geometry.attributes.position.array.fill(0);
-    this.lines.geometry.attributes.position.needsUpdate = true;
-  }
-
-  extend(key, point) {
-    let trail = this.trails.get(key);
-    if (!trail) {
-      if (this.free >= this.capacity) return;
-      trail = { slot: this.free, head: 0, points: [] };
-      this.free += 1;
-      this.trails.set(key, trail);
-    }
-    const last = trail.points[trail.points.length - 1];
-    if (last) {
-      const moved = Math.hypot(point[0] - last[0], point[1] - last[1], point[2] - last[2]);
-      if (moved < PIECE_M) return;
-      const at = (trail.slot * TRAIL + (trail.head % TRAIL)) * 6;
-      const { position, color } = this.lines.geometry.attributes;
-      position.array.set([...last, ...point], at);
-      const shade = new Color(this.colours ? this.colourOf(key) : "#888888");
-      color.array.set([shade.r, shade.g, shade.b, shade.r, shade.g, shade.b], at);
-      position.addUpdateRange(at, 6);
-      color.addUpdateRange(at, 6);
-      position.needsUpdate = true;
-      color.needsUpdate = true;
-      trail.head += 1;
-    }
-    trail.points.push(point);
-    if (trail.points.length > TRAIL) trail.points.shift();
   }
 
   colourOf(key) {
     const id = Number(key.slice(1));
     if (key[0] === "t") return this.colours.faint;
-    const vehicle = this.vehicles.find((v) => v.id === id);
-    return this.colours.vehicle(id, (vehicle && this.roles && this.roles[vehicle.role] === "evader") || id === 1);
+    return this.colours.vehicle(id, this.evaders.has(id) || id === 1);
   }
 
   // Show these; `scale(x, y, z)` is the size of a body there [m].
@@ -158,7 +94,10 @@ export class Fleet {
     const need = Math.max(vehicles.length + tracks.length, tracks.length);
     if (need > this.capacity) this.grow(Math.max(need, 2 * this.capacity));
     const counts = { evader: 0, pursuer: 0, tracker: 0 };
-    const shade = new Color();
+    const evaders = new Set(vehicles.filter((v) => roles[v.role] === "evader").map((v) => v.id));
+    const known = evaders.size === this.evaders.size && [...evaders].every((id) => this.evaders.has(id));
+    this.evaders = evaders;
+    if (!known) this.trails.setColour(this.trails.colour);
     for (const v of vehicles) {
       const kind = counts[roles[v.role]] === undefined ? "pursuer" : roles[v.role];
       const mesh = this.meshes[kind];
@@ -167,8 +106,7 @@ export class Fleet {
       this.one.scale.setScalar(scale(v.x, v.y, v.z));
       this.one.updateMatrix();
       mesh.setMatrixAt(counts[kind], this.one.matrix);
-      shade.set(v.fed ? this.colours.vehicle(v.id, kind === "evader") : this.colours.faint);
-      mesh.setColorAt(counts[kind], shade);
+      mesh.setColorAt(counts[kind], tint(v.fed ? this.colours.vehicle(v.id, kind === "evader") : this.colours.faint));
       counts[kind] += 1;
     }
     for (const kind of Object.keys(counts)) {
@@ -183,7 +121,7 @@ export class Fleet {
 
   showTracks(tracks, scale) {
     const mesh = this.meshes.track;
-    const shade = new Color(this.colours.evader);
+    const shade = tint(this.colours.evader);
     tracks.forEach((t, i) => {
       const least = 0.25 * scale(t.x, t.y, t.z);
       this.one.position.set(t.x, t.y, t.z);

@@ -1,9 +1,10 @@
 // What stands still: grid, fence, target, and the shapes of the selected vehicle's decision.
 import {
-  BufferGeometry, ConeGeometry, DoubleSide, Float32BufferAttribute, GridHelper, Group, Line, LineBasicMaterial,
-  LineDashedMaterial, LineLoop, LineSegments, Mesh, MeshBasicMaterial, RingGeometry, SphereGeometry, Vector3,
+  BufferAttribute, BufferGeometry, ConeGeometry, DynamicDrawUsage, Float32BufferAttribute, GridHelper, Group, Line,
+  LineBasicMaterial, LineDashedMaterial, LineLoop, LineSegments, Mesh, RingGeometry, SphereGeometry, Vector3,
 } from "three";
 import { place } from "frames";
+import { dashes, paint, plain, tint, veil } from "paint";
 
 function points(list) {
   const geometry = new BufferGeometry();
@@ -11,22 +12,22 @@ function points(list) {
   return geometry;
 }
 
-function circle(radius, [x, y, z], colour, dashed = false) {
+// A line in dashes of `dash` metres.
+function dashed(line, dash) {
+  line.computeLineDistances();
+  const { array } = line.geometry.attributes.lineDistance;
+  for (let i = 0; i < array.length; i += 1) array[i] /= dash;
+  return line;
+}
+
+function circle(radius, [x, y, z], colour, broken = false) {
   const list = [];
   for (let i = 0; i <= 96; i += 1) {
     const a = (i / 96) * 2 * Math.PI;
     list.push([x + radius * Math.sin(a), y, z - radius * Math.cos(a)]);
   }
-  const material = dashed
-    ? new LineDashedMaterial({ color: colour, dashSize: radius / 8, gapSize: radius / 12 })
-    : new LineBasicMaterial({ color: colour });
-  const line = new Line(points(list), material);
-  if (dashed) line.computeLineDistances();
-  return line;
-}
-
-function veil(colour, opacity) {
-  return new MeshBasicMaterial({ color: colour, transparent: true, opacity, side: DoubleSide, depthWrite: false });
+  if (!broken) return new Line(points(list), plain(colour));
+  return dashed(new Line(points(list), dashes(colour)), radius / 8);
 }
 
 function clear(group) {
@@ -34,7 +35,6 @@ function clear(group) {
     group.remove(child);
     child.traverse((each) => {
       if (each.geometry) each.geometry.dispose();
-      if (each.material) each.material.dispose();
     });
   }
 }
@@ -64,7 +64,11 @@ export class Ground {
     this.still = new Group();
     this.near = new Group(); // spheres around the evader
     this.chosen = new Group(); // of the selected vehicle
-    this.aims = new Group();
+    const aiming = new LineDashedMaterial({ vertexColors: true, transparent: true, dashSize: 1, gapSize: 0.6 });
+    this.aims = new LineSegments(new BufferGeometry(), aiming); // in one drawing, whatever their number
+    this.aims.frustumCulled = false;
+    this.aims.visible = false;
+    this.aimsRoom = 0;
     this.gaps = new Group();
     this.fans = new Group();
     this.expected = []; // places at the fans' marks, for labels
@@ -84,8 +88,8 @@ export class Ground {
     const { colours } = this;
     const cell = round(reach / 10);
     const grid = new GridHelper(cell * 40, 40, colours.faint, colours.grid);
-    grid.material.transparent = true;
-    grid.material.opacity = colours.dark ? 0.5 : 0.9;
+    grid.material.dispose();
+    grid.material = paint(`grid ${colours.dark}`, () => new LineBasicMaterial({ vertexColors: true, transparent: true, opacity: colours.dark ? 0.5 : 0.9 }));
     this.still.add(grid);
     if (field.fence) this.drawFence(field.fence);
     if (field.target) this.drawTarget(field);
@@ -105,13 +109,13 @@ export class Ground {
     const { colours } = this;
     const corners = fence.polygon.map(([north, east]) => [east, -north]);
     for (const height of [fence.floor, fence.ceiling]) {
-      this.still.add(new LineLoop(points(corners.map(([x, z]) => [x, height, z])), new LineBasicMaterial({ color: colours.fence })));
+      this.still.add(new LineLoop(points(corners.map(([x, z]) => [x, height, z])), plain(colours.fence)));
     }
     corners.forEach(([x, z], i) => {
       const [u, w] = corners[(i + 1) % corners.length];
       const wall = points([[x, fence.floor, z], [u, fence.floor, w], [u, fence.ceiling, w], [x, fence.floor, z], [u, fence.ceiling, w], [x, fence.ceiling, z]]);
       this.still.add(new Mesh(wall, veil(colours.fence, 0.08)));
-      this.still.add(new Line(points([[x, fence.floor, z], [x, fence.ceiling, z]]), new LineBasicMaterial({ color: colours.fence })));
+      this.still.add(new Line(points([[x, fence.floor, z], [x, fence.ceiling, z]]), plain(colours.fence)));
     });
   }
 
@@ -123,9 +127,9 @@ export class Ground {
     disc.rotation.x = -Math.PI / 2;
     disc.position.set(x, y, z);
     this.still.add(disc);
-    this.still.add(new Line(points([[x, 0, z], [x, y, z]]), new LineBasicMaterial({ color: colours.target })));
+    this.still.add(new Line(points([[x, 0, z], [x, y, z]]), plain(colours.target)));
     for (const [dx, dz] of [[radius, 0], [0, radius]]) {
-      this.still.add(new Line(points([[x - dx, y, z - dz], [x + dx, y, z + dz]]), new LineBasicMaterial({ color: colours.target })));
+      this.still.add(new Line(points([[x - dx, y, z - dz], [x + dx, y, z + dz]]), plain(colours.target)));
     }
   }
 
@@ -136,25 +140,42 @@ export class Ground {
     this.evader = at;
   }
 
+  // All aims in one drawing; that of the selected vehicle is opaque, and its place marked.
   setAims(aims, where, selected) {
-    clear(this.aims);
+    this.aims.visible = aims.length > 0;
+    if (!this.aims.visible) return;
+    this.roomForAims(aims.length + 2);
+    const { position, color, lineDistance } = this.aims.geometry.attributes;
+    let count = 0;
+    const segment = (from, to, shade, alpha, dash) => {
+      position.array.set([...from, ...to], 6 * count);
+      color.array.set([shade.r, shade.g, shade.b, alpha, shade.r, shade.g, shade.b, alpha], 8 * count);
+      lineDistance.array.set([0, Math.hypot(to[0] - from[0], to[1] - from[1], to[2] - from[2]) / dash], 2 * count);
+      count += 1;
+    };
     for (const aim of aims) {
       const from = where.get(aim.id);
       if (!from) continue;
       const to = place(aim.aim);
-      const chosen = aim.id === selected;
-      const material = new LineDashedMaterial({
-        color: this.colours.vehicle(aim.id, aim.evader), transparent: true, opacity: chosen ? 1 : 0.45,
-        dashSize: this.reach / 90, gapSize: this.reach / 150,
-      });
-      const line = new Line(points([from, to]), material);
-      line.computeLineDistances();
-      this.aims.add(line);
-      if (chosen) {
-        const mark = this.reach / 120;
-        this.aims.add(new LineSegments(points([[to[0] - mark, to[1], to[2] - mark], [to[0] + mark, to[1], to[2] + mark], [to[0] - mark, to[1], to[2] + mark], [to[0] + mark, to[1], to[2] - mark]]), new LineBasicMaterial({ color: this.colours.vehicle(aim.id, aim.evader) })));
-      }
+      const shade = tint(this.colours.vehicle(aim.id, aim.evader));
+      segment(from, to, shade, aim.id === selected ? 1 : 0.45, this.reach / 90);
+      if (aim.id !== selected) continue;
+      const mark = this.reach / 120;
+      for (const side of [mark, -mark]) segment([to[0] - mark, to[1], to[2] - side], [to[0] + mark, to[1], to[2] + side], shade, 1, 1e9);
     }
+    this.aims.geometry.setDrawRange(0, 2 * count);
+    for (const each of [position, color, lineDistance]) each.needsUpdate = true;
+  }
+
+  roomForAims(need) {
+    if (need <= this.aimsRoom) return;
+    this.aimsRoom = 2 * need;
+    this.aims.geometry.dispose();
+    const geometry = new BufferGeometry();
+    for (const [name, size] of [["position", 3], ["color", 4], ["lineDistance", 1]]) {
+      geometry.setAttribute(name, new BufferAttribute(new Float32Array(this.aimsRoom * 2 * size), size).setUsage(DynamicDrawUsage));
+    }
+    this.aims.geometry = geometry;
   }
 
   setGaps(assessment) {
@@ -179,7 +200,7 @@ export class Ground {
     const colour = this.colours.evader;
     for (const fan of fans) {
       const way = fan.rows.map(([after, n, e, d, sigma]) => ({ after, sigma, at: place([n, e, d]) }));
-      this.fans.add(new Line(points(way.map((each) => each.at)), new LineBasicMaterial({ color: colour })));
+      this.fans.add(new Line(points(way.map((each) => each.at)), plain(colour)));
       for (const times of [1, 2]) this.fans.add(new Mesh(strip(way, times), veil(colour, 0.16)));
       for (const each of way.filter(({ after }) => marks.includes(after))) {
         this.expected.push(each);
@@ -206,7 +227,7 @@ export class Ground {
         const [x, y, z] = from;
         const edge = (angle) => [x + length * Math.sin(angle), y, z - length * Math.cos(angle)];
         const edges = points([edge(heading - half), from, edge(heading + half)]);
-        this.chosen.add(mesh, new Line(edges, new LineBasicMaterial({ color: colours.cone })));
+        this.chosen.add(mesh, new Line(edges, plain(colours.cone)));
       } else {
         const height = length * Math.cos(open);
         const cone = new ConeGeometry(length * Math.sin(open), height, 40, 1, true);

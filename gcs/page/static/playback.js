@@ -113,7 +113,7 @@ export class Playback {
         roll: 0, pitch: Math.atan2(-d, Math.hypot(n, e) || 1e-9), yaw: Math.atan2(e, n),
       });
     }
-    this.scene.setFrame({ ms: 0, vehicles, tracks: [] }, ROLES);
+    this.scene.setFrame({ ms: 1000 * this.t, vehicles, tracks: [] }, ROLES);
     this.show();
     if (this.told) this.told(this.t);
   }

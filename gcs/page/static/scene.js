@@ -11,14 +11,30 @@ import { Names } from "names";
 
 const BODY_PX = 22; // length of a vehicle on the screen, where that is more than
 const BODY_M = 2; // its length in the world
+const WAIT_MS = 150; // for the next frame
+const NAMES_ALL = 40; // vehicles that are all named; of more those whose names have room
+const OLD_S = 2; // a track that is older leaves no way
 const FLOOR = new Plane(new Vector3(0, 1, 0), 0);
+const seat = new Vector3(); // for sums
+
+// Whether edges are smoothed: where there is a graphics card, or where the address asks for it. Without one that would
+// be half of all the work.
+function smooth() {
+  if (new URLSearchParams(window.location.search).has("smooth")) return true;
+  const probe = document.createElement("canvas").getContext("webgl2");
+  const told = probe && probe.getExtension("WEBGL_debug_renderer_info");
+  const card = told ? String(probe.getParameter(told.UNMASKED_RENDERER_WEBGL)) : "";
+  const end = probe && probe.getExtension("WEBGL_lose_context");
+  if (end) end.loseContext();
+  return !/swiftshader|llvmpipe|softpipe|software|basic render/i.test(card);
+}
 
 export class Scene {
   // `host` is an element that it fills; `on.pick(id)` and `on.pointer(north, east)` are called.
   constructor(host, on = {}) {
     this.host = host;
     this.on = on;
-    this.renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
+    this.renderer = new WebGLRenderer({ antialias: smooth(), preserveDrawingBuffer: true });
     this.renderer.domElement.className = "canvas3";
     this.labels = document.createElement("canvas");
     this.labels.className = "labels";
@@ -53,6 +69,7 @@ export class Scene {
     this.drawn = 0;
     this.names = new Names();
     this.dirty = true;
+    this.later = null; // since when something waits that is drawn with the next frame
     for (const controls of [this.orbit, this.plan]) {
       controls.addEventListener("change", () => { this.dirty = true; });
       controls.addEventListener("start", () => { this.kept = false; });
@@ -93,9 +110,8 @@ export class Scene {
   }
 
   setTrails(trails) {
-    this.fleet.forgetWays();
-    for (const [id, way] of Object.entries(trails.vehicles)) this.fleet.way(`v${id}`, way.map(place));
-    for (const [id, way] of Object.entries(trails.tracks)) this.fleet.way(`t${id}`, way.map(place));
+    const ways = (kind, found) => Object.entries(found).map(([id, way]) => [`${kind}${id}`, way.map(place)]);
+    this.fleet.trails.set([...ways("v", trails.vehicles), ...ways("t", trails.tracks)]);
     this.dirty = true;
   }
 
@@ -104,7 +120,10 @@ export class Scene {
     this.frame = frame;
     this.roles = roles;
     this.where = new Map(frame.vehicles.map((v) => [v.id, [v.x, v.y, v.z]]));
-    for (const v of frame.vehicles) if (v.fed) this.fleet.extend(`v${v.id}`, [v.x, v.y, v.z]);
+    const { trails } = this.fleet;
+    for (const v of frame.vehicles) if (v.fed) trails.extend(`v${v.id}`, this.where.get(v.id));
+    for (const t of frame.tracks) if (t.age < OLD_S) trails.extend(`t${t.id}`, [t.x, t.y, t.z]);
+    trails.end(frame.ms);
     const evader = frame.vehicles.find((v) => roles[v.role] === "evader") || frame.tracks[0];
     this.ground.setEvader(evader ? [evader.x, evader.y, evader.z] : null);
     if (!this.fitted && frame.vehicles.length) this.fit();
@@ -119,19 +138,24 @@ export class Scene {
     this.parts = new Map(((board.game && board.game.plan && board.game.plan.parts) || []).map((part) => [part.id, part.role]));
     this.ground.setAims(this.shown.aims ? board.aims : [], this.where, this.selected);
     this.ground.setGaps(this.shown.shapes ? board.assessment : null);
-    this.dirty = true;
+    this.wait();
+  }
+
+  // Draw what is new with the next frame, soon in any case: drawing is what costs most.
+  wait() {
+    this.later = this.later === null ? performance.now() : this.later;
   }
 
   // Where the evaders' tracks will be.
   setFans(message) {
     this.fans = message;
     this.ground.setFans(this.shown.shapes ? message.fans : [], message.marks);
-    this.dirty = true;
+    this.wait();
   }
 
   setDetail(detail) {
     this.ground.setDecision(this.shown.shapes ? detail.decision : null, this.where.get(detail.id));
-    this.dirty = true;
+    this.wait();
   }
 
   select(id) {
@@ -142,7 +166,7 @@ export class Scene {
 
   show(what, on) {
     this.shown[what] = on;
-    this.fleet.lines.visible = this.shown.trails;
+    this.fleet.trails.lines.visible = this.shown.trails;
     this.ground.chosen.visible = this.shown.shapes;
     if (this.board) this.setBoard(this.board);
     if (this.fans) this.setFans(this.fans);
@@ -162,10 +186,9 @@ export class Scene {
   }
 
   metresPerPixel(x, y, z) {
-    const height = this.host.clientHeight || 1;
-    if (this.view === "plan") return (this.flat.top - this.flat.bottom) / this.flat.zoom / height;
-    const away = this.perspective.position.distanceTo(new Vector3(x, y, z));
-    return (2 * away * Math.tan((this.perspective.fov * Math.PI) / 360)) / height;
+    if (this.view === "plan") return (this.flat.top - this.flat.bottom) / this.flat.zoom / this.height;
+    const away = this.perspective.position.distanceTo(seat.set(x, y, z));
+    return (2 * away * Math.tan((this.perspective.fov * Math.PI) / 360)) / this.height;
   }
 
   // Put everything into view: vehicles, tracks, target; the fence where nobody is there yet.
@@ -185,7 +208,7 @@ export class Scene {
       this.reach = radius;
       if (this.field && this.colours) this.ground.setField(this.field, radius);
     }
-    const aspect = this.host.clientWidth / Math.max(1, this.host.clientHeight);
+    const aspect = this.width / this.height;
     const away = (1.25 * radius) / Math.tan((this.perspective.fov * Math.PI) / 360) / Math.min(1, aspect);
     this.perspective.position.set(this.centre.x - 0.25 * away, this.centre.y + 0.55 * away, this.centre.z + 0.8 * away);
     this.perspective.near = away / 200;
@@ -212,6 +235,7 @@ export class Scene {
   resize() {
     const width = Math.max(1, this.host.clientWidth);
     const height = Math.max(1, this.host.clientHeight);
+    Object.assign(this, { width, height }); // asking the browser each time would make it lay the page out each time
     this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
     this.renderer.setSize(width, height, false);
     const ratio = window.devicePixelRatio || 1;
@@ -230,8 +254,10 @@ export class Scene {
 
   draw() {
     this.controls.update();
+    if (this.later !== null && performance.now() - this.later > WAIT_MS) this.dirty = true;
     if (!this.dirty || !this.colours) return;
     this.dirty = false;
+    this.later = null;
     this.renderer.render(this.world, this.camera);
     this.drawLabels();
     this.drawn += 1;
@@ -241,16 +267,16 @@ export class Scene {
 
   // A place on the screen [px], null behind the camera.
   onScreen(x, y, z) {
-    const at = new Vector3(x, y, z).project(this.camera);
+    const at = seat.set(x, y, z).project(this.camera);
     if (at.z > 1 || at.z < -1) return null;
-    return [((at.x + 1) / 2) * this.host.clientWidth, ((1 - at.y) / 2) * this.host.clientHeight];
+    return [((at.x + 1) / 2) * this.width, ((1 - at.y) / 2) * this.height];
   }
 
   drawLabels() {
     const ratio = window.devicePixelRatio || 1;
     const pen = this.labels.getContext("2d");
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
-    pen.clearRect(0, 0, this.host.clientWidth, this.host.clientHeight);
+    pen.clearRect(0, 0, this.width, this.height);
     pen.font = "600 12px system-ui, sans-serif";
     pen.textBaseline = "middle";
     if (this.shown.labels) this.drawNames(pen);
@@ -275,13 +301,17 @@ export class Scene {
   drawNames(pen) {
     const { colours } = this;
     this.names.clear();
-    for (const v of this.frame ? this.frame.vehicles : []) {
+    const vehicles = this.frame ? this.frame.vehicles : [];
+    const first = (v) => v.id === this.selected || this.roles[v.role] === "evader";
+    const crowd = vehicles.length > NAMES_ALL;
+    for (const v of crowd ? [...vehicles.filter(first), ...vehicles.filter((v) => !first(v))] : vehicles) {
       const at = this.onScreen(v.x, v.y, v.z);
       if (!at) continue;
       const evader = this.roles[v.role] === "evader";
       const part = evader ? "evader" : (this.parts && this.parts.get(v.id)) || "";
       const name = part ? `${v.id} ${part}` : String(v.id);
-      this.name(pen, v.fed ? name : `${name} ?`, at, v.fed ? colours.ink : colours.faint, { away: v.id === this.selected ? 19 : 12 });
+      const how = { away: v.id === this.selected ? 19 : 12, must: !crowd || first(v) };
+      this.name(pen, v.fed ? name : `${name} ?`, at, v.fed ? colours.ink : colours.faint, how);
       if (v.id === this.selected) {
         pen.strokeStyle = colours.ink;
         pen.lineWidth = 2;
@@ -304,7 +334,7 @@ export class Scene {
     const { x, y, z } = this.controls.target;
     const metres = round(110 * this.metresPerPixel(x, y, z));
     const width = metres / this.metresPerPixel(x, y, z);
-    const bottom = this.host.clientHeight - 18;
+    const bottom = this.height - 18;
     pen.strokeStyle = this.colours.ink;
     pen.lineWidth = 2;
     pen.beginPath();
@@ -344,7 +374,7 @@ export class Scene {
   }
 
   drawNorth(pen) {
-    const x = this.host.clientWidth - 34;
+    const x = this.width - 34;
     this.arrow(pen, x, 40, ...this.lies(0, -1), this.colours.faint);
     this.text(pen, "N", x - 4, 70, this.colours.faint);
   }
@@ -352,7 +382,7 @@ export class Scene {
   drawWind(pen, wind) {
     const speed = Math.hypot(wind[0], wind[1]);
     if (speed < 0.05) return;
-    const x = this.host.clientWidth - 34;
+    const x = this.width - 34;
     this.arrow(pen, x, 108, ...this.lies(wind[1] / speed, -wind[0] / speed), this.colours.apollonius);
     this.text(pen, `wind ${speed.toFixed(1)} m/s`, x - 62, 140, this.colours.ink);
   }

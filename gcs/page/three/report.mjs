@@ -3,7 +3,7 @@ import { createHash } from "node:crypto";
 import { readFileSync } from "node:fs";
 import { build } from "esbuild";
 
-const names = ["colours", "curves", "fleet", "frames", "ground", "names", "playback", "scene", "timeline", "three"];
+const names = ["colours", "curves", "fleet", "frames", "ground", "names", "paint", "playback", "scene", "timeline", "trails", "three"];
 const path = (name) => `../static/${name}.js`;
 const hash = createHash("sha256");
 for (const name of names) hash.update(readFileSync(path(name)));

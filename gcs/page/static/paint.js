@@ -1,0 +1,21 @@
+// Materials and colours, shared and kept. A WebGL program that no material uses any more is thrown away and compiled
+// anew for the next one, which stops the drawing for tens of milliseconds: so what comes and goes takes its material here.
+import { Color, DoubleSide, LineBasicMaterial, LineDashedMaterial, MeshBasicMaterial } from "three";
+
+const made = new Map();
+
+export function paint(key, make) {
+  let found = made.get(key);
+  if (!found) made.set(key, (found = make()));
+  return found;
+}
+
+export const tint = (colour) => paint(`tint ${colour}`, () => new Color(colour));
+export const plain = (colour) => paint(`plain ${colour}`, () => new LineBasicMaterial({ color: colour }));
+export const veil = (colour, opacity) => paint(
+  `veil ${colour} ${opacity}`,
+  () => new MeshBasicMaterial({ color: colour, transparent: true, opacity, side: DoubleSide, depthWrite: false }),
+);
+
+// For lines whose `lineDistance` is counted in dashes.
+export const dashes = (colour) => paint(`dashes ${colour}`, () => new LineDashedMaterial({ color: colour, dashSize: 1, gapSize: 0.65 }));
