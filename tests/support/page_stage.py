@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 from playwright.async_api import Browser as Chromium
-from playwright.async_api import Page, async_playwright
+from playwright.async_api import BrowserContext, Page, async_playwright
 
 from gcs.console.source import Key
 from gcs.page.access import Doors
@@ -158,9 +158,11 @@ async def seen(page: Page, expression: str, promised_s: float = 10.0) -> None:
             await asyncio.sleep(0.02)
 
 
-async def opened(browser: Chromium, made: Stage, *, token: bool = True) -> Page:
+async def opened(
+    browser: Chromium, made: Stage, *, token: bool = True, context: BrowserContext | None = None
+) -> Page:
     """The page in a browser of its own, once it draws. Its requests are kept, its errors fail the test."""
-    context = await browser.new_context(viewport={"width": 1280, "height": 800})
+    context = context or await browser.new_context(viewport={"width": 1280, "height": 800})
     page = await context.new_page()
     page.on("request", lambda request: made.requests.append(request.url))
     page.on("pageerror", lambda error: pytest.fail(f"the page's own error: {error}"))

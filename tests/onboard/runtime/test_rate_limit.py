@@ -10,7 +10,18 @@ from hypothesis import strategies as st
 
 from onboard.runtime.inbox import Inbox
 from onboard.runtime.rate_limit import BUCKETS_MAX, PAYLOAD_MAX, BusLimit, Rate, RateLimit
-from onboard.wire.bus.topics import COMMAND, EVENTS, STATE, TOPICS, Delivery
+from onboard.wire.bus.topics import (
+    COMMAND,
+    DECISION,
+    EVENTS,
+    HEALTH,
+    IDS_MOST,
+    PLACES_KEPT,
+    PLAN,
+    STATE,
+    TOPICS,
+    Delivery,
+)
 
 GAME = "range"
 
@@ -55,6 +66,17 @@ def test_what_the_product_itself_sends_is_never_limited(topic: object) -> None:
     assert limit.counters() == {}
 
 
+@pytest.mark.parametrize("vehicles", [250, IDS_MOST])
+def test_everybody_in_the_largest_game_has_a_bound_of_its_own(vehicles: int) -> None:
+    """Five kinds of each vehicle, in the same instant of every second."""
+    limit = BusLimit()
+    for second in range(3):
+        for id in range(1, vehicles + 1):
+            for topic in (STATE, DECISION, HEALTH, PLAN, EVENTS):
+                assert limit.admits(topic.key(GAME, id), 200, float(second))
+    assert limit.counters() == {}
+
+
 def test_a_huge_payload_and_strange_keys_are_bounded() -> None:
     limit = BusLimit()
     assert not limit.admits(STATE.key(GAME, 2), PAYLOAD_MAX + 1, 0.0)
@@ -69,6 +91,10 @@ def test_memory_is_bounded_whoever_comes() -> None:
     for n in range(20_000):
         limit.admits(n, "kind", Rate(1.0, 1.0), 0.0)
     assert len(limit._buckets) <= BUCKETS_MAX + 1
+    bus = BusLimit()
+    for n in range(PLACES_KEPT + 5000):  # in as many games
+        bus.admits(STATE.key(f"game{n}", 2), 200, 0.0)
+    assert len(bus._limit._buckets) <= PLACES_KEPT + 1
 
 
 async def test_the_newest_of_a_flood_is_delivered_in_the_end() -> None:
