@@ -24,7 +24,7 @@ from onboard.wire.bus.messages import CommandKind
 
 TICK_HZ = 10.0
 BOARD_EACH = 4  # ticks, or a few less where these are longer
-AT_ONCE = 250  # vehicles that are told ten times a second; a larger fleet is told less often, so that there is time for it
+AT_ONCE = 250  # vehicles that are told ten times a second; a larger fleet is told less often
 BROWSERS_MOST = 16
 SAID_MOST = 32  # answers that wait for one browser
 NOT_ALLOWED = "this page only shows: it was started without --control, or opened without its token"

@@ -1,9 +1,9 @@
 """The whole picture from one stream: fleet, alerts and commands, evaluated on a fixed grid of time.
 
-Alerts are judged at every multiple of 0.1 s of the station's time (of 0.2 s with more than 250 vehicles, of 0.3 s
-with more than 500, and so on: judging shall not take all the time there is), and a judgement at T sees exactly the
-messages that came before T, no matter when anybody asks: so a replay of the recorded stream
-(key, payload, now_ns) gives the live run's picture, alert for alert.
+Alerts are judged at every multiple of 0.1 s of the station's time (every 0.2 s with more than 250 vehicles,
+every 0.3 s with more than 500, and so on: judging shall not take all the time there is), and a judgement
+at T sees exactly the messages that came before T, no matter when anybody asks: so a replay of the recorded
+stream (key, payload, now_ns) gives the live run's picture, alert for alert.
 """
 
 from __future__ import annotations

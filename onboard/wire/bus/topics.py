@@ -36,7 +36,7 @@ from onboard.wire.bus.team_messages import TeamPlan
 ROOT = "apollonius"
 DEFAULT_GAME = "game"  # the game that all programs join unless told another
 ID = "{id}"  # stands in a key for a vehicle's id
-IDS_MOST = 1000  # vehicles of a game: an agent's id is its MAVLink system id, 1 to 250; several networks have more
+IDS_MOST = 1000  # an agent's id is its MAVLink system id, 1 to 250; several networks on one bus have more
 IDS = {str(id): id for id in range(1, IDS_MOST + 1)}  # as they stand in keys
 PLACES_KEPT = 16 * IDS_MOST  # keys of which a table remembers the topic
 
