@@ -183,6 +183,7 @@ class AgentConfig(StrictConfig, frozen=True):
     mavsdk: str = ""  # the connection that MAVSDK opens for itself, for the adapter `mavsdk`
     dry_run: bool = False  # decide and publish, send no setpoint and no command
     control_rate_hz: ControlRate = 20.0
+    decide_ahead: bool = False  # think before the next position has come
     lookahead_s: Horizon = 1.0  # of rule 6's alternative
     track_ahead_s: Horizon = 6.0  # how far a tracker's pursuit of its pseudo-target looks ahead
     prediction: Predicting = Predicting.NETWORK  # what carries tracks forward

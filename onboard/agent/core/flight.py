@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from math import inf
-from typing import NamedTuple
 
 from onboard.agent.config import AgentConfig
+from onboard.agent.core.ahead import Ahead, OpenStep
 from onboard.agent.core.bus_view import BusView
 from onboard.agent.core.clip_spells import ClipSpells
 from onboard.agent.core.clocks import JumpWatch
@@ -15,6 +15,7 @@ from onboard.agent.core.hands import Hands
 from onboard.agent.core.hold_alert import HoldAlert
 from onboard.agent.core.journal import Journal
 from onboard.agent.core.part import Part, PartState
+from onboard.agent.core.policy_from_config import only_limits
 from onboard.agent.core.takeoff import TakeOff
 from onboard.agent.core.to_place import by_itself, circling, own_state
 from onboard.agent.core.vehicle_link import Control, VehicleLink
@@ -33,7 +34,7 @@ from onboard.core.safety.supervisor import (
     supervise,
 )
 from onboard.core.safety.words import ACTIONS, CAUSES
-from onboard.pilot.pilot import PilotDecision, Question
+from onboard.pilot.pilot import PilotDecision
 from onboard.wire.bus import messages
 from onboard.wire.bus.messages import Severity
 from onboard.wire.mavlink.modes import Kind
@@ -45,21 +46,6 @@ RELEASES = {
     Command.RELEASE_TO_RETURN: ReleaseMode.RETURN,
     Command.RELEASE_TO_LAND: ReleaseMode.LAND,
 }
-
-
-def _only_limits(before: Policy, after: Policy) -> bool:
-    """Whether a policy differs from another in the vehicle's own limits alone."""
-    return before.envelope != after.envelope and before._replace(envelope=after.envelope) == after
-
-
-class OpenStep(NamedTuple):
-    """A control step that waits for its strategy's answer."""
-
-    number: int
-    begun: Instant
-    telemetry: Telemetry
-    wind: Vec  # [m/s; where the air moves to], ZERO for multicopters
-    question: Question | None
 
 
 class Flight:
@@ -80,6 +66,7 @@ class Flight:
         self.failures = 0  # of the strategy
         self.take_off = TakeOff(config.take_off_height)
         self.open: OpenStep | None = None
+        self.ahead = Ahead(config, part)
         self.ending = False  # the process ends: the vehicle is left in the autopilot's mode to hold
         self.vehicle, self.bus, self._orders, self._journal = vehicle, bus, orders, journal
         self._state = SupervisorState()
@@ -106,7 +93,7 @@ class Flight:
         state = self.part.state(now.wall_ns)
         self.hands.follow(state)
         if self.part.policy is not self._policy:
-            if not _only_limits(self._policy, self.part.policy):  # another game: what is latched stays
+            if not only_limits(self._policy, self.part.policy):  # another game: what is latched stays
                 self._state = in_another_game(self._state)
             self._policy = self.part.policy
         heard_at = max(telemetry.heartbeat_at, telemetry.position_at)
@@ -128,7 +115,7 @@ class Flight:
     def answered(self, answer: Answered) -> bool:
         """Complete the control step that asked; False where none waits for this answer."""
         step = self.open
-        if step is None or step.number != answer.number:
+        if self.ahead.answered(answer) or step is None or step.number != answer.number:
             return False
         self.open = None
         error = answer.error or ("no decision" if answer.decision is None else "")
@@ -151,6 +138,13 @@ class Flight:
         own = own_state(now.s, t, hovers=self.vehicle.hovers is not False)
         self._number += 1
         step = OpenStep(self._number, now, t, own.wind, None)
+        foreseen = self.ahead.take(now.s)
+        self.ahead.stepped(now)
+        if foreseen is not None:
+            self.decision = foreseen.decision
+            self._complete(step, foreseen.age, "")
+            self._alive_at = foreseen.made
+            return None
         try:
             asked = self.part.ask(now, own)
         except Exception as trouble:  # an error of thinking must not end the flight: the supervisor acts
@@ -162,6 +156,12 @@ class Flight:
             return None
         self.open = step._replace(question=asked)
         return Think(step.number, self.part.side, self.part.strategy, asked.view)
+
+    def look_ahead(self, now: Instant) -> Think | None:
+        """Ask the strategy for the next step, before its position has come."""
+        self._number += 1
+        t, hovers = self.vehicle.telemetry, self.vehicle.hovers is not False
+        return self.ahead.ask(self._number, now.s, t, hovers=hovers, due=self.playing and self.open is None)
 
     def _complete(self, step: OpenStep, took_s: float, error: str) -> None:
         """Supervise what was decided, and command it. `took_s`: how long the strategy took [s]."""

@@ -145,7 +145,7 @@ class AgentCore:
         """When to call `handle` with a `Tick` at the latest [s, monotonic]; inf = not by itself."""
         if self.ending.begun:
             return self.ending.at
-        at = min(self._step_at, self._chores.at, self._heartbeat.at, self._health.at)
+        at = min(self._step_at, self._chores.at, self._heartbeat.at, self._health.at, self.flight.ahead.at)
         return at if self.flight.open is None else min(at, self._answer_by)
 
     @property
@@ -198,6 +198,10 @@ class AgentCore:
         if asked is not None and now.s >= self._answer_by - EARLY_S:
             self.flight.given_up(now.s)
             self._stepped_on(now, asked.begun)
+        if now.s >= self.flight.ahead.at - EARLY_S:
+            think = self.flight.look_ahead(now)
+            if think is not None:
+                self.out.put(think)
         if now.s >= self._step_at - EARLY_S:
             self._by_timer = True
             self._expect(now.s)
@@ -292,7 +296,7 @@ class AgentCore:
 
     def _answered(self, event: Answered, now: Instant) -> None:
         step = self.flight.open
-        if step is not None and self.flight.answered(event):
+        if self.flight.answered(event) and step is not None:
             self._stepped_on(now, step.begun)
 
     def _stepped_on(self, now: Instant, begun: Instant) -> None:

@@ -194,3 +194,8 @@ def game_setup(
         control=Control(1.0 / config.control_rate_hz, config.lookahead_s),
         target=NO_TARGET if target is None else Target(True, target),
     )
+
+
+def only_limits(before: Policy, after: Policy) -> bool:
+    """Whether a policy differs from another in the vehicle's own limits alone."""
+    return before.envelope != after.envelope and before._replace(envelope=after.envelope) == after
