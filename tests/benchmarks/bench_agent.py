@@ -270,14 +270,12 @@ async def latency(kind: str, folder: Path) -> list[int]:
     port, endpoint = udp_port(), f"tcp/127.0.0.1:{free_port()}"
     key = bytes(range(32))
     if kind.startswith("agent"):
-        command = agent(PURSUER, port, endpoint)
-        if kind == "agent, signed":
-            command += ["--config", str(_signed(folder, key))]
+        command = agent(PURSUER, port, endpoint, "--config", str(_config(kind, folder, key)))
     else:
         command = [sys.executable, "-m", "tests.benchmarks.companions", kind, str(port), str(PURSUER)]
     watch = Stopwatch(port, fresh=kind == "mavsdk")
     bus = await open_zenoh(endpoint, listen=True)
-    stage = Stage(watch, bus, Signing(key, MemoryStore()) if kind == "agent, signed" else None)
+    stage = Stage(watch, bus, Signing(key, MemoryStore()) if "signed" in kind else None)
     world = asyncio.create_task(stage.run())  # cancelled below
     log = folder / f"{kind}.log"
     try:
@@ -300,15 +298,17 @@ async def latency(kind: str, folder: Path) -> list[int]:
         await bus.close()
 
 
-def _signed(folder: Path, key: bytes) -> Path:
+def _config(kind: str, folder: Path, key: bytes) -> Path:
     secret, file = folder / "signing.key", folder / "agent.toml"
     secret.write_bytes(key)
     secret.chmod(0o600)
-    file.write_text(f'[signing]\nkey = "{secret}"\n', encoding="utf-8")
+    text = "decide_ahead = true\n" if "ahead" in kind else ""
+    text += f'[signing]\nkey = "{secret}"\n' if "signed" in kind else ""
+    file.write_text(text, encoding="utf-8")
     return file
 
 
-KINDS = ("echo", "agent", "agent, signed", "mavsdk")
+KINDS = ("echo", "agent", "agent, signed", "agent, ahead", "agent, signed, ahead", "mavsdk")
 
 
 async def latencies() -> dict[str, list[int]]:
