@@ -251,7 +251,8 @@ class Agent:
         self._waiting.append((event, self._instant()))
 
     def _instant(self) -> Instant:
-        return Instant(self.clock.monotonic_ns() / NS_PER_S, self.clock.wall_ns())
+        clock = self.clock
+        return tuple.__new__(Instant, (clock.monotonic_ns() / NS_PER_S, clock.wall_ns()))  # twice as fast
 
     def _arm(self) -> None:
         """Set the one timer."""

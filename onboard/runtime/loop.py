@@ -49,6 +49,30 @@ class _Soon(Handle):
         self._source_traceback = None
 
 
+class _Timed(TimerHandle):
+    """A callback for an instant, likewise."""
+
+    __slots__ = ()
+
+    def __init__(
+        self,
+        when: float,
+        callback: Callable[..., object],
+        args: tuple[Any, ...],
+        loop: asyncio.AbstractEventLoop,
+        context: Context | None,
+    ) -> None:
+        self._context = copy_context() if context is None else context
+        self._loop = loop
+        self._callback = callback
+        self._args = args
+        self._cancelled = False
+        self._repr = None
+        self._source_traceback = None
+        self._when = when
+        self._scheduled = True
+
+
 class VirtualLoop(asyncio.BaseEventLoop):
     """An event loop on a `VirtualClock`. An exception in a callback ends the run: nothing fails unseen."""
 
@@ -99,9 +123,9 @@ class VirtualLoop(asyncio.BaseEventLoop):
     def _set(
         self, when_ns: int, callback: Callable[..., object], args: tuple[Any, ...], context: Context | None
     ) -> TimerHandle:
-        self._check_closed()
-        handle = TimerHandle(when_ns / NS_PER_S, callback, args, self, context)
-        handle._scheduled = True  # type: ignore[attr-defined]
+        if self._closed:
+            self._check_closed()
+        handle = _Timed(when_ns / NS_PER_S, callback, args, self, context)
         self._order += 1
         heappush(self._heap, (when_ns, self._order, handle))
         return handle

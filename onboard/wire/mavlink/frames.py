@@ -198,7 +198,8 @@ class Framer:
                 return None, f"signature_{verdict.value}"
         value = value_of(layout, raw[start:end])
         signed = self._signing is not None
-        return Packet(system, component, sequence, number, layout.name, value, raw, signed), ""
+        said = (system, component, sequence, number, layout.name, value, raw, signed)
+        return tuple.__new__(Packet, said), ""  # twice as fast as `Packet(…)`
 
 
 def first_number(data: bytes) -> int:

@@ -93,7 +93,9 @@ class KinematicMulticopter:
             )
         )
         ax, ay = (velocity.x - still.x) / dt, (velocity.y - still.y) / dt
-        moving = Vec(air.wind.x + air.gust.x, air.wind.y + air.gust.y, air.wind.z + air.gust.z)
+        moving = ZERO
+        if air is not CALM:
+            moving = Vec(air.wind.x + air.gust.x, air.wind.y + air.gust.y, air.wind.z + air.gust.z)
         if moving != ZERO or self._deviation != STILL:
             thrust = Vec(ax + DRAG * velocity.x, ay + DRAG * velocity.y, 0.0)
             self._deviation = deviated(self._deviation, self._loop, moving, thrust, dt)
