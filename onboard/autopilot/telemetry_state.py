@@ -8,7 +8,7 @@ and one odd sample decides nothing: see `plausibility`.
 from __future__ import annotations
 
 from collections import Counter
-from typing import TypeVar, cast
+from typing import TypeVar
 
 from onboard.autopilot.base import Telemetry
 from onboard.autopilot.batteries import Batteries, Gauged
@@ -52,6 +52,7 @@ BLANK: dict[type, Value] = {
     ExtendedState: ExtendedState(0, 0),
     RcChannels: RcChannels(()),
 }
+_WEIGHED = {EkfStatus, GpsFix, Battery, SysStatus}  # of which the last few are judged together
 V = TypeVar("V")
 
 
@@ -106,7 +107,8 @@ class Observer:
                 self.odd[doubt] += 1
                 self._age(now, doubt)
                 return None
-        self._weigh(now, value)
+        if type(value) in _WEIGHED:
+            self._weigh(now, value)
         self._latest[type(value)] = (now, packet.sequence, value)
         return value
 
@@ -221,7 +223,7 @@ class Observer:
 
     def _of(self, kind: type[V]) -> tuple[float, V]:
         at, _, value = self._latest.get(kind) or (NEVER, 0, BLANK[kind])
-        return at, cast(V, value)
+        return at, value  # type: ignore[return-value]  # of the kind that it is kept under
 
     def _count(self, now: float, sequence: int) -> None:
         """Keep the running share of frames that arrived, by the gaps in their numbers."""

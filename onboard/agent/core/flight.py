@@ -154,7 +154,7 @@ class Flight:
             self.decision = asked
             self._complete(step, 0.0, "")
             return None
-        self.open = step._replace(question=asked)
+        self.open = OpenStep(step.number, now, t, own.wind, asked)
         return Think(step.number, self.part.side, self.part.strategy, asked.view)
 
     def look_ahead(self, now: Instant) -> Think | None:

@@ -49,6 +49,7 @@ SECOND_S = 10.0  # without a second autopilot, until one is news again [s]
 SHORT_S = 60.0  # between two words on one cause of slow telemetry [s]
 COMPONENTS_MAX = 8
 RATE_WINDOW_S = 2.0  # over which rates are measured
+_ANSWERED = {Heartbeat, CommandAck, ParamValue, Timesync, MessageInterval, Version, StatusText}
 _SEVERITIES = {"info": Severity.INFO, "warning": Severity.WARNING, "error": Severity.ERROR}
 
 
@@ -208,6 +209,8 @@ class VehicleLink:
         if isinstance(value, GlobalPosition):
             self.position_rate.tick()
             return True
+        if type(value) not in _ANSWERED:
+            return False
         if isinstance(value, Heartbeat):
             self._discover(value)
         elif isinstance(value, CommandAck) and self.adapter is not None:

@@ -19,6 +19,7 @@ from onboard.wire.mavlink.signing import Signing
 __all__ = [
     "HEADER_1",
     "HEADER_2",
+    "KNOWN",
     "SIGNATURE",
     "DialectPacket",
     "DialectSender",
@@ -129,14 +130,15 @@ class Layout:
         return self.unpacker.pack(*values)
 
 
-_LAYOUTS: dict[int, Layout] = {}
+KNOWN: dict[int, Layout] = {}
+"""The layouts that were asked for so far."""
 
 
 def layout_of(number: int) -> Layout | None:
     """Return the layout of a message by its number, None where the dialect has no such message."""
-    found = _LAYOUTS.get(number)
+    found = KNOWN.get(number)
     if found is None and number in dialect.mavlink_map:
-        found = _LAYOUTS[number] = Layout(dialect.mavlink_map[number])
+        found = KNOWN[number] = Layout(dialect.mavlink_map[number])
     return found
 
 

@@ -15,6 +15,7 @@ from onboard.wire.mavlink.commands import Outgoing
 from onboard.wire.mavlink.dialect import (
     HEADER_1,
     HEADER_2,
+    KNOWN,
     SIGNATURE,
     DialectSender,
     checksum,
@@ -159,7 +160,8 @@ class Framer:
         left = (len(data) if end < 0 else end) - at
         if left >= HEADER_2 and data[at] == MAGIC_2:
             flags = data[at + 2]
-            if flags & ~SIGNED or layout_of(data[at + 7] | data[at + 8] << 8 | data[at + 9] << 16) is None:
+            number = data[at + 7] | data[at + 8] << 8 | data[at + 9] << 16
+            if flags & ~SIGNED or (number not in KNOWN and layout_of(number) is None):
                 return 0
             return HEADER_2 + data[at + 1] + 2 + (SIGNATURE if flags else 0)
         if left >= HEADER_1 and data[at] == MAGIC_1 and layout_of(data[at + 5]) is not None:
@@ -184,7 +186,7 @@ class Framer:
         else:
             _, length, sequence, system, component, number = FIELDS_1.unpack_from(raw)
             flags, start = 0, HEADER_1
-        layout = layout_of(number)
+        layout = KNOWN.get(number) or layout_of(number)
         if layout is None:
             return None, "unknown_id"
         end = start + length
