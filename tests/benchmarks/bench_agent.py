@@ -9,6 +9,7 @@ and less than MAVSDK's asyncio path, with signing at most 2.5 times the echo.
 from __future__ import annotations
 
 import asyncio
+import importlib.util
 import json
 import os
 import secrets
@@ -317,7 +318,10 @@ async def latencies() -> dict[str, list[int]]:
     with TemporaryDirectory() as name:
         for _ in range(ROUNDS):
             for kind in KINDS:
-                found[kind] += await latency(kind, Path(name))
+                try:
+                    found[kind] += await latency(kind, Path(name))
+                except TimeoutError:  # on a busy machine it may start too late for the staging: once more
+                    found[kind] += await latency(kind, Path(name))
     return found
 
 
@@ -358,6 +362,8 @@ def report() -> tuple[list[Taken], dict[str, float]]:
         "|---|---|---|---|---|---|---|",
     ]
     medians = {kind: median(values) / 1e3 for kind, values in times.items()}
+    loop = "uvloop" if importlib.util.find_spec("uvloop") else "asyncio's own loop (no extra `fast`)"
+    lines[0] += f" Agents on {loop}."
     promises = {"agent": "2, and less than MAVSDK", "agent, signed": "2.5"}
     for kind, values in times.items():
         parts = quantiles(values, n=100)
