@@ -65,7 +65,8 @@ def main() -> None:
         "What is left are the gusts of the last seconds, which nobody makes up for at the game's airspeed,",
         "and the estimate of the wind (compass 1°, airspeed 1 %, 1σ), by which the nose is not quite where",
         "the course is. Outliers were carried along by gusts of more than 4 m/s for half a minute on the",
-        "last straight line: more than the range of airspeeds (0.84 to 1 of the game's) makes up for.",
+        "last straight line, and turned away too little before it: whoever would miss by more than two",
+        "seconds of flight asks for another t₀ and goes round.",
     ]
     options.out.write_text("\n".join(lines) + "\n", encoding="utf-8")
 

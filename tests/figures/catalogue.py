@@ -51,7 +51,7 @@ FIGURES = (
     ),
     Figure(
         "starts.md",
-        ("-m", "tests.benchmarks.starts", "--seeds", "12"),
+        ("-m", "tests.benchmarks.starts", "--seeds", "40"),
         ("onboard.pilot.approach", "sim_bridge.campaign.aboard", "sim_bridge.vehicle.wind.estimate"),
         ("tests/benchmarks/starts.py", "tests/onboard/pilot/test_approach.py"),
     ),
