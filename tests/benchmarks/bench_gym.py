@@ -109,45 +109,34 @@ def yardsticks() -> list[Contender]:
             Contender("yardstick: the same in Python, turns", plain, 100_000, 1)]  # fmt: skip
 
 
-def contenders() -> list[Contender]:
-    """Everybody who is measured."""
-    all_ = {"learn": "all"}
-    plane = "plane"
-    return [
-        ours("plane, all six act by velocity", scenario=plane, actions="velocity", **all_),
-        ours("plane, all six act by heading", scenario=plane, actions="heading", **all_),
-        ours("plane, five act against the paper's evader", scenario=plane, actions="velocity"),
-        ours("plane, the evader acts against the paper's five", scenario=plane, learn="evader"),
-        ours(
-            "space in wind, all six act by velocity", 30, True, scenario="space", actions="velocity", **all_
-        ),
-        ours(
-            "space in wind, known by tracks, all six act by velocity",
-            20,
-            scenario="space",
-            actions="velocity",
-            **all_,
-        ),
-        ours(
-            "space, known by tracks, five act against the paper's evader",
-            20,
-            scenario="space",
-            actions="velocity",
-        ),
-        ours(
-            "aircraft as flown, in gusts, known by tracks, all six act by velocity",
-            10,
-            many=FLOWN,
-            scenario="spatial/five",
-            motion="aircraft",
-            actions="velocity",
-            **all_,
-        ),
-        pettingzoo(),
-        vmas(),
-        simple_tag(),
-        *yardsticks(),
-    ]
+Maker = Callable[[], Contender]
+
+
+def own() -> dict[str, Maker]:
+    """This project's, by name."""
+
+    def games(name: str, calls: int = 60, **words: Any) -> tuple[str, Maker]:
+        return name, lambda: ours(name, calls, **words)
+
+    plane: Any = {"scenario": "plane", "actions": "velocity"}
+    space: Any = {"scenario": "space", "actions": "velocity"}
+    flown: Any = {"scenario": "spatial/five", "motion": "aircraft", "actions": "velocity", "many": FLOWN}
+    return dict((
+        games("plane, all six act by velocity", **plane, learn="all"),
+        games("plane, all six act by heading", scenario="plane", actions="heading", learn="all"),
+        games("plane, five act against the paper's evader", **plane),
+        games("plane, the evader acts against the paper's five", scenario="plane", learn="evader"),
+        games("space in wind, all six act by velocity", 30, clear=True, **space, learn="all"),
+        games("space in wind, known by tracks, all six act by velocity", 20, **space, learn="all"),
+        games("space, known by tracks, five act against the paper's evader", 20, **space),
+        games("aircraft as flown, gusts, known by tracks, all six act by velocity", 10, **flown, learn="all"),
+    ))  # fmt: skip
+
+
+def contenders(only: str) -> list[Contender]:
+    """Everybody who is measured; `only`: of this project's those whose name has the word, and no others."""
+    chosen = [make() for name, make in own().items() if only in name]
+    return chosen if only else [*chosen, pettingzoo(), vmas(), simple_tag(), *yardsticks()]
 
 
 def measured(everybody: list[Contender], rounds: int) -> dict[str, float]:
@@ -190,8 +179,13 @@ def main() -> None:
     """Measure, print, and write benchmarks/results/gym.md."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--rounds", type=int, default=15)
-    rounds = parser.parse_args().rounds
-    lines = page(measured(contenders(), rounds), rounds)
+    parser.add_argument("--only", default="", help="print this project's whose name has the word; write none")
+    told = parser.parse_args()
+    found = measured(contenders(told.only), told.rounds)
+    if told.only:
+        print("\n".join(f"{name}: {rate:,.0f} steps a CPU-second" for name, rate in found.items()))
+        return
+    lines = page(found, told.rounds)
     print("\n".join(lines))
     write("gym.md", "Steps of learning environments", "make bench-gym", lines)
 
