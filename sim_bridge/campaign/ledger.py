@@ -27,8 +27,8 @@ DECIDES = 8  # numbers of a row of `decided`
 
 def known(states: Array, index: int) -> Vehicle:
     """Player `index` as its agent knows it: place and velocity over ground (its speed is nobody's)."""
-    s = states[index]
-    return Vehicle(Vec(s[0], s[1], s[2]), Vec(s[3], s[4], s[5]), 0.0)
+    i, s = index, states  # no row of its own: compiled code would count who refers to it
+    return Vehicle(Vec(s[i, 0], s[i, 1], s[i, 2]), Vec(s[i, 3], s[i, 4], s[i, 5]), 0.0)
 
 
 def known_wind(states: Array, index: int) -> Vec:
@@ -62,9 +62,9 @@ def note_wind(states: Array, index: int, wind: Estimate) -> None:
 
 def held_by(decided: Array, index: int, since: float, wind: Vec) -> Held:
     """What player `index` decided `since` [s] ago leaves to its next decision."""
-    d = decided[index]
-    aim = Vec(d[4], d[5], d[6])
-    return held_after(int(d[3]), aim, d[7], since, wind)
+    i, d = index, decided
+    aim = Vec(d[i, 4], d[i, 5], d[i, 6])
+    return held_after(int(d[i, 3]), aim, d[i, 7], since, wind)
 
 
 def write_down(decided: Array, index: int, decision: Decision) -> None:

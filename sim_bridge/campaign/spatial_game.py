@@ -165,29 +165,48 @@ def member_of(vehicle: Vehicle, index: int, deciding: Deciding) -> Vehicle:
     return in_air(here, wind_at(deciding.start.climate, here.position), vehicle.speed)
 
 
-def decide_pursuer(vehicle: Vehicle, index: int, team: Deciding) -> Decision:
+class Side(NamedTuple):
+    """The pursuers when they decide, and where their mates know them (for `each`)."""
+
+    team: Deciding
+    members: tuple[Vehicle, ...]  # in the air
+    spotted: Vehicle  # the evader's track, over ground
+
+
+def decide_pursuers(team: Deciding) -> tuple[Decision, ...]:
+    """All pursuers' decisions."""
+    start = team.start
+    pursuers = start.game.pursuers
+    spotted = track_of(team.seen, 0, team.now, start.fleet.evader.dt)
+    return each(decide_pursuer, pursuers, Side(team, each(member_of, pursuers, team), spotted))
+
+
+def decide_pursuer(vehicle: Vehicle, index: int, side: Side) -> Decision:
     """Pursuer `index`'s decision (for `each`)."""
+    team, members = side.team, side.members
     start = team.start
     game = start.game
     rules, control = start.conditions.rules, start.conditions.control
     own = known(team.states, index + 1)
     wind = known_wind(team.states, index + 1)
-    spotted = in_air(track_of(team.seen, 0, team.now, start.fleet.evader.dt), wind, game.evader.speed)
+    spotted = in_air(side.spotted, wind, game.evader.speed)
     sighting = sighted(spotted, heading_at(spotted), control.lookahead)
     mate = Nearest(False, own.position)
-    members = each(member_of, game.pursuers, team)
     if rules.separation > 0.0:
         mate = nearest_mate(own.position, positions(members), index)
     me = in_air(own, wind, vehicle.speed)
     held = held_by(team.decided, index + 1, control.dt, wind)
     part = team.talk.parts[index]
     nose = known_nose(team.states, index + 1, vehicle.speed)
-    side = Team(mate, members, index, told(start.conditions.target, rules), held, part, nose)
-    view = pursuer_view(me, game.pursuer_limits[index], sighting, side, control, rules)
+    mine = Team(mate, members, index, told(start.conditions.target, rules), held, part, nose)
+    view = pursuer_view(me, game.pursuer_limits[index], sighting, mine, control, rules)
     return team.ways.pursuer(view, team.ways.chosen.pursuers[index])
 
 
-def order(start: Start, aboard: Aboard, decision: Decision, states: Array, place: tuple[int, int]) -> Aboard:
+def order(
+    start: Start, mates: tuple[Mate, ...], decision: Decision, states: Array, place: tuple[int, int],
+    aboard: Aboard,
+) -> Aboard:  # fmt: skip
     """What becomes of the decision of a player; `place` is its number and the sample."""
     index, now = place
     own = known(states, index)
@@ -198,9 +217,6 @@ def order(start: Start, aboard: Aboard, decision: Decision, states: Array, place
         known_wind(states, index),
         index + 1,
     )
-    mates = each(mate_of, start.game.pursuers, states)
-    if index == 0:  # nobody is the evader's mate
-        mates = each(nobody, start.game.pursuers, 0.0)
     return ordered(aboard, scale(decision.direction, decision.speed), at, start.policies[index], mates)
 
 
@@ -245,11 +261,13 @@ def decide_all(team: Deciding, crew: Array, step: int) -> None:
         posted(team.talk, planning, ways.planner(situation(team), team.talk.made[0]), step)
     arrived(team.talk, planning, step)
     decision = ways.evader(evader_sees(team), ways.chosen.evader)
-    store_aboard(crew, 0, 0, order(start, load_aboard(crew, 0, 0), decision, states, (0, now)))
+    alone = each(nobody, game.pursuers, 0.0)  # nobody is the evader's mate
+    store_aboard(crew, 0, 0, order(start, alone, decision, states, (0, now), load_aboard(crew, 0, 0)))
     write_down(decided, 0, decision)
-    decisions = each(decide_pursuer, game.pursuers, team)
+    decisions = decide_pursuers(team)
+    mates = each(mate_of, game.pursuers, states)
     for i in range(len(decisions)):
-        aboard = order(start, load_aboard(crew, i + 1, 0), decisions[i], states, (i + 1, now))
+        aboard = order(start, mates, decisions[i], states, (i + 1, now), load_aboard(crew, i + 1, 0))
         store_aboard(crew, i + 1, 0, aboard)
         write_down(decided, i + 1, decisions[i])
 

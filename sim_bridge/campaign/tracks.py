@@ -125,8 +125,8 @@ def watched(tracks: Tracks, eye: Eye, sample: int, states: Array, dt: float) -> 
 
 def track_of(tracks: Tracks, index: int, sample: int, dt: float) -> Vehicle:
     """Where player `index` is taken to be at a sample, and its velocity over ground [m/s]."""
-    f = tracks.filters[index]
-    left = (sample - tracks.stamps[index]) * dt
-    return Vehicle(
-        Vec(f[0] + left * f[1], f[5] + left * f[6], f[10] + left * f[11]), Vec(f[1], f[6], f[11]), 0.0
-    )
+    i, f = index, tracks.filters
+    left = (sample - tracks.stamps[i]) * dt
+    velocity = Vec(f[i, 1], f[i, 6], f[i, 11])
+    place = Vec(f[i, 0] + left * velocity.x, f[i, 5] + left * velocity.y, f[i, 10] + left * velocity.z)
+    return Vehicle(place, velocity, 0.0)

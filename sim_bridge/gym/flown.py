@@ -29,7 +29,7 @@ from sim_bridge.campaign.spatial_game import (
     Start,
     Ways,
     decide_all,
-    decide_pursuer,
+    decide_pursuers,
     evader_sees,
     in_air,
     standing,
@@ -248,6 +248,6 @@ def fly_all(table: Table, skies: Skies, shared: tuple[World, Exchange], run: Run
         glide(here, start, skies, exchange, craft, not run.begins)
         team = team_at(g, start, skies, ways_of(look_of_evader, look, chair, chairs), sky)
         look_of_evader(evader_sees(team), chair)
-        each(decide_pursuer, world.template.pursuers, team)
+        decide_pursuers(team)
         if exchange.verdicts[g] != 0:
             note_end(here, exchange)

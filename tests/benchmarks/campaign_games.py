@@ -65,9 +65,8 @@ def flown(count: int, horizon: float) -> Job:
     return play
 
 
-def simple(planar: bool) -> Job:
-    """Games of simple motion at five pursuers, in the plane or in space."""
-    team = 5
+def simple(planar: bool, team: int) -> Job:
+    """Games of simple motion against so many pursuers, in the plane or in space."""
     run = campaign(EVADERS["paper"].decide, PURSUERS["paper"].decide, team)
     rules = Rules(R=2.0, rho=4.0, horizon=40.0, planar=planar)
     conditions = Conditions(rules, Target(True, ZERO), Control())
@@ -101,7 +100,7 @@ def simple(planar: bool) -> Job:
 
 def main(kind: str, count: int, horizon: float) -> None:
     """Do jobs as they come; `kind` is flown, plane or space."""
-    play = flown(count, horizon) if kind == "flown" else simple(kind == "plane")
+    play = flown(count, horizon) if kind == "flown" else simple(kind == "plane", count)
     play(0, 2)
     print("ready", flush=True)
     for line in sys.stdin:

@@ -19,6 +19,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 import typer
+from scipy.stats import binomtest, chi2_contingency, fisher_exact
 
 from tests.benchmarks import yardstick
 from tests.support import benchmark_record
@@ -27,7 +28,20 @@ from tests.support.paths import ROOT
 BEFORE = "82b7eea"  # kernels cached nowhere, aircraft one by one, reversals in Python
 COMMAND = "make bench-campaign"
 CHILD = "tests/benchmarks/campaign_games.py"
-HORIZON = 400.0  # [s] of the games of five
+HORIZON = 400.0  # [s] of the flown games of five
+SIMPLE = 4000  # games of simple motion a turn
+NOTES = """
+What it says, and what not:
+
+- By a profile (perf, five pursuers) a flown game's time goes: aircraft 15 %, gusts 14 %, views and strategies
+  13 %, Python around the kernel 14 %, scalar sines and arctangents 12 %, counting who refers to an array 11 %,
+  supervisor 10 %, sensor and filters 6 %, free rays 2 %. Decisions are still one vehicle at a time; of eight
+  lanes six are used.
+- Games of simple motion with five pursuers spend most of a step on square roots and divisions of cones, meeting
+  points and the referee; of so few cones the search for the free ray is that of before. From eight on it is
+  another (benchmarks/results/core.md).
+- Aircraft fly at 100 Hz; 40 Hz would be another grid of gusts than that of a flight, and is not offered.
+""".strip().splitlines()
 
 
 class Player:
@@ -103,7 +117,34 @@ def unpacked(commit: str, folder: Path) -> Path:
     return folder
 
 
-def versus(before: Path, kind: str, rounds: int, games: int) -> list[str]:
+KINDS = {"flown": "spatial, aircraft, wind, noise", "plane": "plane", "space": "space, simple motion"}
+
+
+def share(count: float, games: float) -> str:
+    """A share with its 95 % interval (Wilson)."""
+    low, high = binomtest(round(count), round(games)).proportion_ci(method="wilson")
+    return f"{100 * count / games:.1f} ({100 * low:.1f}–{100 * high:.1f})"
+
+
+def alike(one: Sum, other: Sum) -> str:
+    """The p-value of captured, arrived and neither in two samples (χ²; Fisher's for two kinds of end)."""
+    table = np.array([[s.captured, s.arrived, s.games - s.captured - s.arrived] for s in (one, other)])
+    table = table[:, table.any(axis=0)]
+    if table.shape[1] == 1:
+        return "1 (all end alike)"
+    if table.shape[1] == 2:
+        return f"{fisher_exact(table.astype(int)).pvalue:.2f}"
+    return f"{chi2_contingency(table).pvalue:.2f}"
+
+
+class Versus(NamedTuple):
+    """Both versions beside each other."""
+
+    rows: list[str]
+    rate: float  # games a CPU-second, now
+
+
+def versus(before: Path, kind: str, rounds: int, games: int) -> Versus:
     """Rows of a kind of game by both versions."""
     players = [Player(tree, kind, 5, HORIZON) for tree in (before, ROOT)]
     for player in players:
@@ -111,57 +152,77 @@ def versus(before: Path, kind: str, rounds: int, games: int) -> list[str]:
     (old, new), (python, compiled) = beside(players, rounds, games)
     for player in players:
         player.end()
-    what = {"flown": "spatial, aircraft, wind, noise", "plane": "plane", "space": "space, simple motion"}[
-        kind
-    ]
     rows = []
     for name, s in ((BEFORE, old), ("now", new)):
-        share = f"{100 * s.captured / s.games:.1f} / {100 * s.arrived / s.games:.1f} %"
         rows.append(
-            f"| {what} | {name} | {s.games:.0f} | {s.rate:,.1f} | {1.0 / s.step_us:.3f} M |"
-            f" {share} | {old.step_us / s.step_us:.2f} | {new.rate / old.rate if s is new else 1:.2f} |"
-            f" {python:.1f} / {compiled:.0f} |"
+            f"| {KINDS[kind]} | {name} | {s.games:.0f} | {s.rate:,.1f} | {1.0 / s.step_us:.3f} M |"
+            f" {share(s.captured, s.games)} | {share(s.arrived, s.games)} | {alike(old, new)} |"
+            f" {old.step_us / s.step_us:.2f} | {s.rate / old.rate:.2f} | {python:.1f} / {compiled:.0f} |"
         )
         print(rows[-1], flush=True)
-    return rows
+    return Versus(rows, new.rate)
 
 
-def growth(sizes: list[int]) -> list[str]:
-    """Rows of flown games of 60 s by the number of pursuers."""
+def whole(numbers: str) -> list[int]:
+    """The numbers of a list with commas."""
+    return [int(number) for number in numbers.split(",") if number]
+
+
+def growth(kind: str, sizes: list[int], horizon: float) -> list[str]:
+    """Rows of a kind of game by the number of pursuers."""
     rows = []
     for count in sizes:
-        player = Player(ROOT, "flown", count, 60.0)
+        player = Player(ROOT, kind, count, horizon)
         player.ready()
-        (s,), _yards = beside([player], 3, 4)
+        (s,), _yards = beside([player], 3, 4 if kind == "flown" else max(10, 2000 // count))
         player.end()
-        rows.append(f"| {count} | {s.step_us:.1f} | {s.step_us / (count + 1):.2f} |")
+        each = s.step_us / (count + 1)
+        rows.append(f"| {KINDS[kind]} | {count} | {s.rate:,.1f} | {s.step_us:.2f} | {each:.2f} |")
         print(rows[-1], flush=True)
     return rows
+
+
+def paper_plan(games: float) -> str:
+    """What 10⁹ games cost at so many games a CPU-second."""
+    hours = 1e9 / games / 3600.0
+    return f"{hours:,.0f} core-hours: {hours / 1000.0:,.0f} h on 1,000 cores"
 
 
 def main(
     rounds: Annotated[int, typer.Option(help="Turns of each version.")] = 8,
     games: Annotated[int, typer.Option(help="Flown games a turn.")] = 25,
     sizes: Annotated[str, typer.Option(help="Numbers of pursuers for the growth.")] = "2,5,10,20,50",
+    flown: Annotated[str, typer.Option(help="The same of flown games; each is compiled once.")] = "2,5,10",
     kinds: Annotated[str, typer.Option(help="Games to compare.")] = "flown,plane,space",
 ) -> None:
     """Measure and write benchmarks/results/campaign.md."""
+    plan = ""
     lines = [
         f"Both versions play the same seeds in turn, {rounds} turns; rates are medians over the turns,",
         "in CPU time of a core. Yardsticks: millions of rounds a CPU-second of a loop, in Python and numba.",
-        "What flies has changed on purpose in between (estimated wind, teams), so that single games differ.",
+        "What flies has changed on purpose in between (estimated wind, teams), so that single games differ:",
+        "shares in % with their 95 % intervals, p of a test that both end alike.",
         "",
-        "| games | version | played | games a CPU-second | game steps a core-second | captured / arrived |"
+        "| games | version | played | games a CPU-second | game steps a core-second | captured | arrived | p |"
         " a step: times faster | a game: times faster | yardsticks |",
-        "|---|---|---|---|---|---|---|---|---|",
+        "|---|---|---|---|---|---|---|---|---|---|---|",
     ]
     with TemporaryDirectory() as folder:
         before = unpacked(BEFORE, Path(folder))
         for kind in kinds.split(","):
-            lines += versus(before, kind, rounds, games if kind == "flown" else 4000)
-    lines += ["", "How a flown game of 60 s grows:", ""]
-    lines += ["| pursuers | µs a control step | µs a vehicle and control step |", "|---|---|---|"]
-    lines += growth([int(size) for size in sizes.split(",")])
+            found = versus(before, kind, rounds, games if kind == "flown" else SIMPLE)
+            lines += found.rows
+            if kind == "flown":
+                plan = paper_plan(found.rate)
+    lines += ["", "How games grow, by this version (of 60 s with aircraft; in simple motion of 40 s):", ""]
+    lines += [
+        "| games | pursuers | games a CPU-second | µs a step | µs a vehicle and step |",
+        "|---|---|---|---|---|",
+    ]
+    lines += growth("space", whole(sizes), HORIZON) + growth("flown", whole(flown), 60.0)
+    if plan:
+        lines += ["", f"On paper, 10⁹ flown games of five pursuers at this rate: {plan}."]
+    lines += ["", *NOTES]
     benchmark_record.write("campaign.md", "What games of a campaign cost", COMMAND, lines)
 
 
