@@ -34,12 +34,12 @@ NOTES = """
 What it says, and what not:
 
 - By a profile (perf, five pursuers) a flown game's time goes: aircraft 15 %, gusts 14 %, views and strategies
-  13 %, Python around the kernel 14 %, scalar sines and arctangents 12 %, counting who refers to an array 11 %,
-  supervisor 10 %, sensor and filters 6 %, free rays 2 %. Decisions are still one vehicle at a time; of eight
-  lanes six are used.
-- Games of simple motion with five pursuers spend most of a step on square roots and divisions of cones, meeting
-  points and the referee; of so few cones the search for the free ray is that of before. From eight on it is
-  another (benchmarks/results/core.md).
+  13 %, Python around the kernel 14 %, scalar sines and arctangents 12 %, counting who refers to an array
+  11 %, supervisor 10 %, sensor and filters 6 %, free rays 2 %. Decisions are still one vehicle at a time, and
+  of eight lanes six are used.
+- Games of simple motion with five pursuers spend most of a step on square roots and divisions of cones,
+  meeting points and the referee; of so few cones the search for the free ray is that of before. From eight
+  cones on it is another (benchmarks/results/free-rays.md).
 - Aircraft fly at 100 Hz; 40 Hz would be another grid of gusts than that of a flight, and is not offered.
 """.strip().splitlines()
 
@@ -203,8 +203,8 @@ def main(
         "What flies has changed on purpose in between (estimated wind, teams), so that single games differ:",
         "shares in % with their 95 % intervals, p of a test that both end alike.",
         "",
-        "| games | version | played | games a CPU-second | game steps a core-second | captured | arrived | p |"
-        " a step: times faster | a game: times faster | yardsticks |",
+        "| games | version | played | games a CPU-second | game steps a core-second | captured | arrived |"
+        " p | a step: times faster | a game: times faster | yardsticks |",
         "|---|---|---|---|---|---|---|---|---|---|---|",
     ]
     with TemporaryDirectory() as folder:
