@@ -4,7 +4,8 @@ Numba's own cache does not notice a change in a called function. Here a kernel's
 everything that it contains (`fingerprint`), of how it is compiled, of the types it is compiled for, and of
 Python, numba, llvmlite, NumPy and the processor. So a file never goes stale; one that has not been used for
 long goes when room is needed. Files are written whole or not at all, and of two processes that need the same
-kernel at once the second waits for the first.
+kernel at once the second waits for the first. To load one, numba's implementations of functions (and SciPy
+behind some of them) are not imported, unless the kernel calls into one of them.
 
 The folder is `apollonius/kernels` in `XDG_CACHE_HOME` (`~/.cache`), or that of the environment's
 `APOLLONIUS_KERNELS`; `off` there keeps none. Where it cannot be written every start compiles anew.
@@ -30,8 +31,10 @@ from types import FunctionType
 from typing import IO, Any, Literal
 
 import numba
+from llvmlite import binding
 from numba.core import compiler, serialize
 from numba.core.caching import NullCache
+from numba.core.runtime import rtsys
 
 from sim_bridge.campaign.fingerprint import UnknownContentError, fingerprint
 
@@ -75,6 +78,18 @@ def kernel(
     return found
 
 
+def kept(machine: Any, *arguments: Any) -> bool:
+    """Whether a kernel for arguments of these types is in memory or on disk: a call will not compile."""
+    cached = getattr(machine, "_cache", None)
+    if not isinstance(cached, KernelCache):
+        return False
+    kinds = tuple(machine.typeof_pyval(argument) for argument in arguments)
+    if kinds in machine.overloads:
+        return True
+    path = cached._path(kinds, machine.targetctx.codegen())
+    return path is not None and path.exists()
+
+
 def folder() -> Path | None:
     """Where kernels are kept; None: nowhere."""
     told = os.environ.get(FOLDER, "")
@@ -109,7 +124,6 @@ class KernelCache(NullCache):
         path = self._path(sig, target_context.codegen())
         if path is None:
             return None
-        target_context.refresh()
         found = self._read(path, sig, target_context)
         if found is None and self._wait(path):
             found = self._read(path, sig, target_context)
@@ -123,7 +137,7 @@ class KernelCache(NullCache):
             path = self._path(sig, data.library.codegen)
             lasting = not data.lifted and not data.library.has_dynamic_globals
             if path is not None and lasting:
-                _write(path, _dumps((sig, data._reduce())))
+                _write(path, _dumps((sig, _called(data.library), data._reduce())))
                 _make_room(path)
         except OSError as error:
             _tell(f"{folder()}: {(error.strerror or str(error)).lower()}")
@@ -152,10 +166,13 @@ class KernelCache(NullCache):
             data = path.read_bytes()
             if hashlib.sha256(data[32:]).digest() != data[:32]:
                 return None
-            kept, reduced = pickle.loads(memoryview(data)[32:])
-            if kept != sig:  # another type of the same name
+            made_for, called, reduced = pickle.loads(memoryview(data)[32:])
+            if made_for != sig:  # another type of the same name
                 return None
             os.utime(path)
+            rtsys.initialize(target_context)
+            if any(binding.address_of_symbol(name) is None for name in called):
+                target_context.refresh()
             return _rebuilt(target_context, *reduced)
         except (OSError, ImportError, AttributeError, pickle.UnpicklingError):
             return None
@@ -181,6 +198,13 @@ class KernelCache(NullCache):
                 os.unlink(self._lock.name)
             self._lock.close()
             self._lock = None
+
+
+def _called(library: Any) -> tuple[str, ...]:
+    """What compiled code takes from elsewhere, by name: of C, of Python, and of numba's implementations."""
+    module = library._final_module
+    parts = (*module.functions, *module.global_variables)
+    return tuple(part.name for part in parts if part.is_declaration and not part.name.startswith("llvm."))
 
 
 def _locked(file: IO[bytes]) -> bool:

@@ -20,6 +20,7 @@ from sim_bridge.campaign import kernel_cache
 from sim_bridge.campaign.fingerprint import UnknownContentError, fingerprint
 from sim_bridge.campaign.kernel_cache import FOLDER, folder, kernel
 from tests.support.paths import ROOT
+from tests.support.real_time import patience
 
 # `angle_between` calls `norm`: what a kernel contains is more than its own code.
 CHILD = """
@@ -68,6 +69,38 @@ def test_two_processes_at_once_compile_once_and_a_changed_called_function_answer
     vectors.write_text(text.replace(line, line.replace("return", "return 2.0 *")))
     assert said(child(package, cache)) == (atan2(1.6, 0.6), 0)
     assert len(list(cache.glob("*.kernel"))) == 2
+
+
+# One kernel calls C alone, one LAPACK, which numba finds when it imports its linear algebra; one draws.
+THREE = """
+import sys
+import numpy as np
+from math import sin, tanh
+from sim_bridge.campaign.kernel_cache import kernel
+def plain(x): return sin(x) + tanh(x)
+def solved(a, b): return np.linalg.solve(a, b)
+def drawn(rng, n): return rng.standard_normal(n).sum()
+machines = [kernel(plain), kernel(solved), kernel(drawn)]
+a = np.array([[2.0, 1.0], [1.0, 3.0]])
+answers = [machines[0](3.0)]
+light = not {"scipy.linalg", "numba.np.linalg", "numba.np.arrayobj"} & sys.modules.keys()
+answers += [*machines[1](a, np.array([1.0, 2.0])), machines[2](np.random.default_rng(1), 5)]
+print(light, sum(sum(m.stats.cache_hits.values()) for m in machines), *(float(x).hex() for x in answers))
+"""
+
+
+def test_a_kernel_is_loaded_without_numba_s_implementations_unless_it_calls_them(tmp_path: Path) -> None:
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), FOLDER: str(tmp_path)}
+    said = [
+        subprocess.run(
+            [sys.executable, "-c", THREE], env=environment, text=True, capture_output=True, check=True,
+            timeout=patience(120.0), cwd=ROOT,
+        ).stdout.split()
+        for _ in range(2)
+    ]  # fmt: skip
+    assert said[0][:2] == ["False", "0"]
+    assert said[1][:2] == ["True", "3"]
+    assert said[0][2:] == said[1][2:]
 
 
 def rooms(**changes: str) -> FunctionType:
