@@ -53,7 +53,7 @@ class Fan:
         if self._filter.empty:
             return []
         newest = self._filter.newest
-        flat = self._turning.places(np.array(AHEAD_S) + (newest - self._turning.newest))
+        flat = self._turning.places([ahead + (newest - self._turning.newest) for ahead in AHEAD_S])
         found = []
         for after, (north, east) in zip(AHEAD_S, flat.tolist(), strict=True):
             straight = self._filter.estimate(newest + after)

@@ -9,7 +9,8 @@ left out: what a filter of two models would gain by replaying it is little.
 
 from __future__ import annotations
 
-from math import exp, pi
+from collections.abc import Sequence
+from math import cos, exp, isfinite, nan, pi, sin
 from typing import NamedTuple
 
 import numpy as np
@@ -70,16 +71,17 @@ class ManoeuvreFilter:
         self.shares = np.maximum(weight / weight.sum(), 1e-4)
         self.shares /= self.shares.sum()
 
-    def places(self, ahead: Array) -> Array:
+    def places(self, ahead: Sequence[float]) -> Array:
         """Expected places (n, 2) [m; north, east] so many seconds (n,) after the newest sample."""
-        out = np.zeros((len(ahead), 2))
-        for share, x in zip(self.shares.tolist(), self._x.tolist(), strict=True):
-            rate = x[4] if abs(x[4]) > 1e-6 else 1e-6
-            angle = rate * ahead
-            along, across = np.sin(angle) / rate, (1.0 - np.cos(angle)) / rate
-            out[:, 0] += share * (x[0] + along * x[2] - across * x[3])
-            out[:, 1] += share * (x[1] + across * x[2] + along * x[3])
-        return out
+        models = list(zip(self.shares.tolist(), self._x.tolist(), strict=True))
+        out = []
+        for time in ahead:
+            north = east = 0.0
+            for share, x in models:
+                n, e = _carried(x, time)
+                north, east = north + share * n, east + share * e
+            out.append((north, east))
+        return np.array(out)
 
     def _begin(self, t: float, position: Vec, velocity: Vec, variance: Variance, measured: bool) -> None:
         """Begin anew with one sample."""
@@ -142,6 +144,16 @@ def _straight(dt: float) -> Array:
     out[0, 2] = out[1, 3] = dt
     out[4, 4] = 0.0
     return out
+
+
+def _carried(x: list[float], dt: float) -> tuple[float, float]:
+    """Place north and east [m] of a state after `dt` seconds of its turn; NaN where digits ran out."""
+    rate = x[4] if abs(x[4]) > 1e-6 else 1e-6
+    angle = rate * dt
+    if not isfinite(angle):
+        return nan, nan
+    along, across = sin(angle) / rate, (1.0 - cos(angle)) / rate
+    return x[0] + along * x[2] - across * x[3], x[1] + across * x[2] + along * x[3]
 
 
 def turned(x: list[float], dt: float) -> list[float]:

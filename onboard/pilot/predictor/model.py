@@ -48,7 +48,7 @@ class ModelSettings(NamedTuple):
 
 
 class Model(NamedTuple):
-    """What training came to: frozen, used by `forecast`."""
+    """What training came to: frozen, used by `forecast.forecast`."""
 
     points: int  # of a window
     coefficients: Array  # (H, 3, L + 1) of the ridge; zeros on the lower ladder
@@ -71,22 +71,6 @@ class Heard(NamedTuple):
 
     places: Array  # (n, H, 2) expected at the horizons [m]; NaN: it was silent
     measured: Array  # (n, 3) as the sensor says [m]: noisy, but with no lag of a filter
-
-
-class Learnt(NamedTuple):
-    """What a model says of one window by itself."""
-
-    innovation: Array  # (H, 3) [m a step] in the heading frame, where ridge or network speak; else zero
-    cos: Array  # (1,) of the heading
-    sin: Array
-
-
-class Forecast(NamedTuple):
-    """Mean velocities to the horizons."""
-
-    velocities: Array  # (H, 3) [m a step], game frame
-    kinds: tuple[PredictorKind, ...]
-    sigma: Array  # (H,) [m]
 
 
 SQUEEZE = 0.15  # outputs have this standard deviation about 0.5: on the upper branch, as in 3.5.2
@@ -167,63 +151,6 @@ def refresh(positions: Array, velocities: Array, model: Model, settings: ModelSe
     enough = [bool(model.coefficients[i].any()) and counts[i] >= model.points for i in range(len(horizons))]
     fresh = _final(ridge.features(view.moves), wanted, counts, enough, model.penalty, settings)
     return model._replace(coefficients=fresh)
-
-
-def forecast(
-    model: Model,
-    positions: Array,
-    velocity: Array,
-    settings: ModelSettings,
-    trust: Array | None = None,
-    turned: Array | None = None,
-) -> Forecast:
-    """Predict from the last positions (at least model.points, 3) and the velocity now (3,) [m a step].
-
-    `trust` (H,) scales what was learnt: see Trust. `turned` (H, 2) are the places that a manoeuvre filter
-    expects; without them the model speaks alone."""
-    return answer(
-        model, learnt(model, positions, velocity, settings), positions[-1], velocity, settings,
-        (trust, turned),
-    )  # fmt: skip
-
-
-def learnt(model: Model, positions: Array, velocity: Array, settings: ModelSettings) -> Learnt:
-    """What ridge and network say of the last positions and the velocity now (units: `forecast`)."""
-    last = np.array([model.points - 1])
-    recent = positions[-model.points :]
-    newest = np.broadcast_to(velocity, recent.shape)
-    view = windows(recent, newest, last, model.points)
-    innovation = ridge.predict(model.coefficients, ridge.features(view.moves))[0]  # (H, 3)
-    if PredictorKind.NETWORK in model.kinds:
-        inputs = (_inputs(view.moves, model.lags, model.axes) - model.middle) / model.scale
-        inputs = np.clip(inputs, -REACH, REACH)
-        raw = network.output(settings.activation, model.weights, np.hstack([np.ones((1, 1)), inputs]))[0]
-        said = (raw.reshape(len(model.kinds), -1) - 0.5) / SQUEEZE * model.spread
-        by_net = np.array([kind is PredictorKind.NETWORK for kind in model.kinds]) * model.shrink
-        innovation[:, model.axes] += said * by_net[:, None]
-    speaks = np.array([kind in (PredictorKind.RIDGE, PredictorKind.NETWORK) for kind in model.kinds])
-    innovation[~speaks] = 0.0
-    return Learnt(innovation, view.cos, view.sin)
-
-
-def answer(
-    model: Model,
-    said: Learnt,
-    here: Array,
-    velocity: Array,
-    settings: ModelSettings,
-    beside: tuple[Array | None, Array | None] = (None, None),
-) -> Forecast:
-    """The forecast from `here` (3,) [m] of what was learnt; `beside`: `trust` and `turned` of `forecast`."""
-    trust, turned = beside
-    share = model.believed if trust is None else model.believed * trust
-    own = turn((said.innovation * share[:, None])[None], said.cos, -said.sin)[0]
-    if turned is not None and np.isfinite(turned).all():
-        horizons = np.array(settings.horizons)[:, None]
-        other = np.zeros_like(own)
-        other[:, :2] = (turned - here[:2]) / horizons - velocity[:2]
-        own += model.turning[:, None] * (other - own)
-    return Forecast(velocity + own, model.kinds, model.sigma)
 
 
 class _Net(NamedTuple):

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from math import isfinite, isnan
 from typing import NamedTuple
 
-import numpy as np
-
 from onboard.core.math.vectors import Vec, along, norm
-from onboard.pilot.predictor.activation import Array
-from onboard.pilot.predictor.model import Forecast
+from onboard.pilot.predictor.forecast import Forecast
 from onboard.pilot.predictor.prediction import Prediction, PredictorKind
 from onboard.pilot.track_filter import Estimate
+
+Row = tuple[float, ...]
 
 
 class Knot(NamedTuple):
@@ -41,13 +41,16 @@ class Path(NamedTuple):
 def path(start: Estimate, forecast: Forecast, horizons: tuple[int, ...], step: float) -> Path:
     """The path of a forecast from a track's estimate; horizons are counted in steps of `step` [s]."""
     t, position, velocity, sigma, _sigma_velocity = start
-    ahead = np.array((0, *horizons))
-    moves = np.vstack([np.zeros(3), forecast.velocities * ahead[1:, None]])
-    slopes = (_slopes(ahead, moves, np.array(velocity) * step) / step).tolist()
+    means = zip(forecast.velocities.tolist(), horizons, strict=True)
+    moves: list[Row] = [(0.0, 0.0, 0.0), *((x * h, y * h, z * h) for (x, y, z), h in means)]
+    slopes = _slopes((0, *horizons), moves, tuple(v * step for v in velocity))
     kinds = (forecast.kinds[0], *forecast.kinds)
     errors = (0.0, *forecast.sigma.tolist())
-    rows = zip((ahead * step).tolist(), moves.tolist(), slopes, errors, kinds, strict=True)
-    return Path(t, position, sigma, tuple(Knot(at, Vec(*m), Vec(*v), e, k) for at, m, v, e, k in rows))
+    knots = [
+        Knot(h * step, Vec(*move), Vec(*(v / step for v in slope)), error, kind)
+        for h, move, slope, error, kind in zip((0, *horizons), moves, slopes, errors, kinds, strict=True)
+    ]
+    return Path(t, position, sigma, tuple(knots))
 
 
 def sound(line: Path, speed: float) -> bool:
@@ -95,13 +98,15 @@ def _beyond(line: Path, ahead: float, steady_sigma: float) -> Prediction:
     return Prediction(place, end.velocity, sigma, PredictorKind.CONSTANT_VELOCITY, True)
 
 
-def _slopes(ahead: Array, moves: Array, first: Array) -> Array:
+def _slopes(ahead: tuple[int, ...], moves: list[Row], first: Row) -> list[Row]:
     """Velocities (k, 3) at the knots: given at the first, of the parabola through three neighbours between,
     and at the last half as far beyond the last stretch's mean as that is beyond the knot before."""
-    width = np.diff(ahead)[:, None]
-    mean = np.diff(moves, axis=0) / width
-    out = np.empty_like(moves)
-    out[0] = first
-    out[1:-1] = (width[:-1] * mean[1:] + width[1:] * mean[:-1]) / (width[:-1] + width[1:])
-    out[-1] = mean[-1] + 0.5 * (mean[-1] - out[-2])
+    stretches = []
+    for (t, a), (u, b) in pairwise(zip(ahead, moves, strict=True)):
+        width = u - t
+        stretches.append((width, tuple((y - x) / width for x, y in zip(a, b, strict=True))))
+    out = [first]
+    for (w, a), (v, b) in pairwise(stretches):
+        out.append(tuple((w * y + v * x) / (w + v) for x, y in zip(a, b, strict=True)))
+    out.append(tuple(x + 0.5 * (x - y) for x, y in zip(stretches[-1][1], out[-1], strict=True)))
     return out

@@ -13,6 +13,7 @@ from onboard.pilot.kalman import Variance
 from onboard.pilot.predictor import model as flying
 from onboard.pilot.predictor.activation import Array
 from onboard.pilot.predictor.calibration import Calibration
+from onboard.pilot.predictor.forecast import answer, forecast, learnt
 from onboard.pilot.predictor.grid import Grid
 from onboard.pilot.predictor.manoeuvre import ManoeuvreFilter
 from onboard.pilot.predictor.model import Heard, Model, ModelSettings
@@ -94,9 +95,9 @@ class TrackPredictor:
 
     def _expected(self, since: float) -> Array:
         """Places (H, 2) [m] that the manoeuvre filter expects at the horizons after `since` [s]."""
-        ahead = np.array(self.settings.model.horizons) * self.settings.step
-        with np.errstate(over="ignore", invalid="ignore"):
-            return self.manoeuvre.places(ahead + (since - self.manoeuvre.newest))
+        begun = since - self.manoeuvre.newest
+        step = self.settings.step
+        return self.manoeuvre.places([h * step + begun for h in self.settings.model.horizons])
 
     def _heard(self) -> Heard:
         """What the manoeuvre filter expected at the grid's points, NaN where nothing was noted."""
@@ -169,11 +170,11 @@ class TrackPredictor:
         self.calibration.judge(self.grid.last, positions)
         if len(positions) >= self.model.points:
             settings, here, velocity = self.settings.model, positions[-1], velocities[-1]
-            learnt = flying.learnt(self.model, positions, velocity, settings)
-            alone = flying.answer(self.model, learnt, here, velocity, settings)
+            own = learnt(self.model, positions, velocity, settings)
+            alone = answer(self.model, own, here, velocity, settings)
             self.trust.tell(self.grid.last, here, velocity, alone.velocities - velocity)
             beside = (self.trust.shares(), self._turned.get(self.grid.last))
-            said = flying.answer(self.model, learnt, here, velocity, settings, beside)
+            said = answer(self.model, own, here, velocity, settings, beside)
             ends = positions[-1] + said.velocities * np.array(self.settings.model.horizons)[:, None]
             start = self.filter.estimate(self.grid.last * self.settings.step).sigma
             self.calibration.tell(self.grid.last, ends, np.hypot(start, said.sigma))
@@ -193,7 +194,7 @@ class TrackPredictor:
         here = self.filter.estimate(newest)
         with np.errstate(over="ignore", invalid="ignore"):
             velocity = np.array(here.velocity) * step
-            said = flying.forecast(
+            said = forecast(
                 model, places, velocity, self.settings.model, self.trust.shares(), self._expected(newest)
             )
         whole = self.calibration.factors() * np.hypot(here.sigma, said.sigma)

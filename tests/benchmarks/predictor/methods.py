@@ -6,7 +6,8 @@ from typing import Protocol
 
 import numpy as np
 
-from onboard.pilot.predictor.model import Model, ModelSettings, fit, forecast, refresh
+from onboard.pilot.predictor.forecast import forecast
+from onboard.pilot.predictor.model import Model, ModelSettings, fit, refresh
 from onboard.pilot.predictor.paper import PaperNetwork, PaperSettings
 from onboard.pilot.predictor.trust import Trust
 from tests.benchmarks.predictor.families import Array

@@ -7,8 +7,9 @@ import pytest
 
 from onboard.pilot.predictor import ridge
 from onboard.pilot.predictor.activation import Array
+from onboard.pilot.predictor.forecast import forecast
 from onboard.pilot.predictor.heading import windows
-from onboard.pilot.predictor.model import Heard, Model, ModelSettings, fit, forecast, refresh
+from onboard.pilot.predictor.model import Heard, Model, ModelSettings, fit, refresh
 from onboard.pilot.predictor.prediction import PredictorKind
 
 SETTINGS = ModelSettings()
