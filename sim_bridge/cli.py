@@ -50,7 +50,8 @@ def _root(version: VersionOption = False) -> None:
 
 
 @app.command(
-    epilog="Examples: sim-bridge planar | sim-bridge planar my.toml --strategy pure-pursuit --figures out"
+    epilog="Examples: sim-bridge planar | sim-bridge planar --compile"
+    " | sim-bridge planar my.toml --strategy pure-pursuit --figures out"
     " | sim-bridge planar my.toml --json | sim-bridge planar --horizon 200",
 )
 def planar(
@@ -78,13 +79,16 @@ def planar(
         Path | None, typer.Option(help="Folder for pictures of the initial and final stage (PNG and SVG).")
     ] = None,
     animate: Annotated[Path | None, typer.Option(help="GIF or MP4 of the first game.")] = None,
+    compile: Annotated[
+        bool, typer.Option("--compile", help="Compile first, half a minute a strategy; kept for later runs.")
+    ] = False,
 ) -> None:
     """Play the paper's plane game; exit 1 when a verdict differs from the paper's."""
-    from sim_bridge.plane_game import command as room
+    from sim_bridge.programs import planar as room
 
     shelf = SCENARIOS.sought_first("table1")
     files = tuple(shipped_file(one, shelf) for one in scenarios or ())
-    wanted = room.Options(files, tuple(strategy or ()), dt, horizon, json, figures, animate)
+    wanted = room.Options(files, tuple(strategy or ()), dt, horizon, json, figures, animate, compile)
     if not room.planar(wanted):
         raise typer.Exit(1)
 

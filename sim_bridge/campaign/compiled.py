@@ -37,7 +37,7 @@ from onboard.core.math.each import each
 from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import Vec
 from sim_bridge.campaign.each_compiled import compile_each
-from sim_bridge.campaign.kernel_cache import kernel
+from sim_bridge.campaign.kernel_cache import kept, kernel
 
 KERNELS = (
     "onboard.core.math.vectors",
@@ -220,6 +220,16 @@ def _note(game: Game, places: Array) -> None:
         places[k + 1, 2] = place.z
 
 
+def _blank(starts: Starts, keep: int) -> Ends:
+    """Ends to be filled, with room for everybody's places over the first `keep` steps."""
+    games, players = starts.speeds.shape
+    rows = keep + 1 if keep > 0 else 0
+    return Ends(
+        np.zeros(games, np.int64), np.zeros(games), np.zeros(games, np.int64), np.zeros(games),
+        np.zeros(games), np.zeros(games, np.int64), np.full((games, rows, players, 3), np.nan),
+    )  # fmt: skip
+
+
 Campaign = Callable[..., Ends]
 
 
@@ -281,11 +291,7 @@ def campaign(
             if array.shape != (games, *shape):
                 raise ValueError(f"{name}: shape {array.shape}, expected {(games, *shape)}")
         starts = Starts(*(np.ascontiguousarray(array, dtype=np.float64) for array in starts))
-        kept = keep + 1 if keep > 0 else 0
-        ends = Ends(
-            np.zeros(games, np.int64), np.zeros(games), np.zeros(games, np.int64), np.zeros(games),
-            np.zeros(games), np.zeros(games, np.int64), np.full((games, kept, pursuers + 1, 3), np.nan),
-        )  # fmt: skip
+        ends = _blank(starts, keep)
         pair = in_arrays((decide_evader, decide_pursuer)) if compiled else (decide_evader, decide_pursuer)
         run = _player(*pair, pursuers, compiled)
         if workers <= 1 or games < 2 * workers:
@@ -299,3 +305,12 @@ def campaign(
         return ends
 
     return play
+
+
+def needs_no_compiling(
+    decide_evader: EvaderStrategy, decide_pursuer: PursuerStrategy, starts: Starts, conditions: Conditions
+) -> bool:
+    """Whether games of these strategies were compiled before: in this process, or on disk."""
+    pair = in_arrays((decide_evader, decide_pursuer))
+    run = _player(*pair, starts.speeds.shape[1] - 1, True)
+    return kept(run, starts, conditions, _blank(starts, 1), 0, 1)

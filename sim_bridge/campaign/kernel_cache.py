@@ -7,8 +7,7 @@ long goes when room is needed. Files are written whole or not at all, and of two
 kernel at once the second waits for the first. To load one, numba's implementations of functions (and SciPy
 behind some of them) are not imported, unless the kernel calls into one of them.
 
-The folder is `apollonius/kernels` in `XDG_CACHE_HOME` (`~/.cache`), or that of the environment's
-`APOLLONIUS_KERNELS`; `off` there keeps none. Where it cannot be written every start compiles anew.
+Where the folder (`kernel_folder`) cannot be written every start compiles anew.
 """
 
 from __future__ import annotations
@@ -34,12 +33,11 @@ import numba
 from llvmlite import binding
 from numba.core import compiler, serialize
 from numba.core.caching import NullCache
-from numba.core.runtime import rtsys
+from numba.core.runtime.nrt import rtsys
 
 from sim_bridge.campaign.fingerprint import UnknownContentError, fingerprint
+from sim_bridge.campaign.kernel_folder import folder
 
-FOLDER = "APOLLONIUS_KERNELS"
-OFF = "off"
 ROOM = 500_000_000  # bytes that the files may take together
 PATIENCE = 300.0  # [s] at most to wait for a kernel that another process compiles
 LOOK = 0.05  # [s] between two looks whether it is done
@@ -88,19 +86,6 @@ def kept(machine: Any, *arguments: Any) -> bool:
         return True
     path = cached._path(kinds, machine.targetctx.codegen())
     return path is not None and path.exists()
-
-
-def folder() -> Path | None:
-    """Where kernels are kept; None: nowhere."""
-    told = os.environ.get(FOLDER, "")
-    if told == OFF:
-        return None
-    if told:
-        return Path(told)
-    home = os.environ.get("XDG_CACHE_HOME", "")
-    if not os.path.isabs(home):  # as the XDG Base Directory Specification has it
-        home = os.path.expanduser("~/.cache")
-    return Path(home) / "apollonius" / "kernels" if os.path.isabs(home) else None
 
 
 class KernelCache(NullCache):

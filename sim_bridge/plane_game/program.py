@@ -83,13 +83,13 @@ def play(scenario: Scenario, strategy: str, dt: float | None = None, keep: bool 
             frames.append(Frame(game, decide(game, conditions, decide_evader, decide_pursuer)))
         before = game
         game = advance(game, conditions, decide_evader, decide_pursuer)
-    final = _cut(before, game)
+    final = cut(before, game)
     if keep:
         frames.append(Frame(final, decide(final, conditions, decide_evader, decide_pursuer)))
     return Played(scenario, strategy, conditions, tuple(frames), final)
 
 
-def _cut(before: Game, after: Game) -> Game:
+def cut(before: Game, after: Game) -> Game:
     """The game at the instant of its verdict, which may lie within the last step."""
     whole = after.time - before.time
     share = min(1.0, (after.score.time - before.time) / whole) if whole > 0.0 else 1.0

@@ -18,7 +18,8 @@ import pytest
 
 from sim_bridge.campaign import kernel_cache
 from sim_bridge.campaign.fingerprint import UnknownContentError, fingerprint
-from sim_bridge.campaign.kernel_cache import FOLDER, folder, kernel
+from sim_bridge.campaign.kernel_cache import kernel
+from sim_bridge.campaign.kernel_folder import FOLDER, folder
 from tests.support.paths import ROOT
 from tests.support.real_time import patience
 

@@ -15,6 +15,8 @@ import pytest
 from PIL import Image
 
 from onboard.runtime.program import run
+from sim_bridge.campaign import plane_play
+from sim_bridge.campaign.kernel_folder import FOLDER
 from sim_bridge.cli import app
 from sim_bridge.plane_game.program import table1
 from tests.support.paths import ROOT
@@ -62,6 +64,37 @@ def scenario(folder: Path, text: str = ROW, *changes: tuple[str, str]) -> Path:
     path = folder / "game.toml"
     path.write_text(text, encoding="utf-8")
     return path
+
+
+def test_a_compiled_run_prints_what_an_interpreted_one_prints(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The kernel of `paper` is the one that other tests compile; what is not on disk is interpreted."""
+    games = [*table1()[8:], "--json", "--strategy", "paper", "--strategy", "earlier"]
+    played: list[bool] = []
+    whole = plane_play.result
+    monkeypatch.setattr(
+        plane_play, "result", lambda *a: played.append((found := whole(*a)) is not None) or found
+    )
+    kept = Path(os.environ.get(FOLDER, "") or Path.home() / ".cache" / "apollonius" / "kernels")
+    monkeypatch.setenv(FOLDER, str(tmp_path / "none"))
+    interpreted = command(*games)
+    assert not any(played)
+    assert "numba" not in sys.modules or not (tmp_path / "none").exists()  # nothing was compiled
+    monkeypatch.setenv(FOLDER, str(kept))
+    assert command(*games[:2], "--json", "--strategy", "paper", "--compile").code == 0
+    played.clear()
+    compiled = command(*games)
+    assert (compiled.out, compiled.code) == (interpreted.out, interpreted.code)
+    assert [played[0], played[2]] == [True, True]  # by `paper`
+
+
+def test_what_cannot_be_compiled_is_said(tmp_path: Path) -> None:
+    ended = command(table1()[9], "--compile", "--figures", tmp_path)
+    assert ended.code == 2
+    assert ended.err == (
+        "sim-bridge: --compile: found with --figures or --animate, expected without: they interpret\n"
+    )
 
 
 @pytest.mark.parametrize("dt", [pytest.param("0.01", marks=pytest.mark.long), "0.02", "0.05", "0.1"])

@@ -11,7 +11,7 @@ from gcs import programs as station
 from gcs.picture.alert_rules import Thresholds
 from onboard.runtime import progress
 from onboard.wire.bus.messages import Role
-from sim_bridge.plane_game import command
+from sim_bridge.programs import planar as command
 from sim_bridge.programs.fly import Options, fly
 from sim_bridge.studies.predict import predict
 from tests.support.sim_bridge_process import short
