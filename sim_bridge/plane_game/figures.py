@@ -16,7 +16,7 @@ from onboard.core.geometry.assessment import half_angle
 from onboard.core.math.vectors import Vec, norm
 from onboard.core.strategy.evasion import resultant_force, target_direction
 from onboard.game import palette
-from sim_bridge.plane_game.program import Frame, Played
+from sim_bridge.plane_game.program import Played
 
 EVADER, TARGET, CIRCLE, CONE = (
     colour.light for colour in (palette.EVADER, palette.TARGET, palette.APOLLONIUS, palette.CONE)
@@ -55,6 +55,7 @@ def draw_game(played: Played, folder: Path) -> list[Path]:
         path = folder / f"{stem}.{ending}"
         metadata = {"Date": None} if ending == "svg" else None
         whole_or_nothing(path, partial(figure.savefig, dpi=110, metadata=metadata))
+        figure.set_layout_engine("none")  # laid out by the first, which takes as long as drawing does
         written.append(path)
     plt.close(figure)
     return written
@@ -62,8 +63,7 @@ def draw_game(played: Played, folder: Path) -> list[Path]:
 
 def draw_stage(axis: Any, played: Played, index: int) -> None:
     """One instant: paths so far, circles and centres, cones, forces, headings."""
-    frame = played.frames[index]
-    game, target = frame.game, played.conditions.target
+    game, decisions, target = played.frames[index], played.decisions(index), played.conditions.target
     view = still_view(game, played.conditions)
     span = _extent(played)
     _paths(axis, played, index)
@@ -81,9 +81,9 @@ def draw_stage(axis: Any, played: Played, index: int) -> None:
             )
         vehicle, colour = number + 2, _pursuer(number)  # ids as on the bus: the evader is 1
         axis.plot(pursuer.position.y, pursuer.position.x, "o", color=colour, ms=7, label=f"pursuer {vehicle}")
-        start = played.frames[0].game.pursuers[number].position  # where no two are in one place
+        start = played.frames[0].pursuers[number].position  # where no two are in one place
         axis.annotate(str(vehicle), (start.y, start.x), (6, 5), textcoords="offset points", color=colour)
-        _arrow(axis, pursuer.position, frame.decisions.pursuers[number].direction, 0.05 * span, colour, None)
+        _arrow(axis, pursuer.position, decisions.pursuers[number].direction, 0.05 * span, colour, None)
     e = game.evader.position
     for number, cone in enumerate(view.cones):
         half, middle = half_angle(cone), atan2(cone.axis.x, cone.axis.y)
@@ -92,7 +92,7 @@ def draw_stage(axis: Any, played: Played, index: int) -> None:
             if number == 0:
                 axis.plot([], [], color=CONE, lw=8, alpha=0.25, label="headings blocked by a pursuer")
     axis.plot(e.y, e.x, "o", color=EVADER, ms=8, label="evader 1")
-    _arrow(axis, e, frame.decisions.evader.direction, 0.13 * span, EVADER, "chosen heading")
+    _arrow(axis, e, decisions.evader.direction, 0.13 * span, EVADER, "chosen heading")
     force = resultant_force(view)
     if norm(force) > 0.0:
         size = 1.0 / norm(force)
@@ -101,7 +101,7 @@ def draw_stage(axis: Any, played: Played, index: int) -> None:
     if target.exists:
         _arrow(axis, e, target_direction(view), 0.09 * span, TARGET, "direction of the target F_g")
         axis.plot(target.position.y, target.position.x, "*", color=TARGET, ms=14, label="target")
-    rule = frame.decisions.evader.rule.name.lower().replace("_", " ")
+    rule = decisions.evader.rule.name.lower().replace("_", " ")
     words = f"t = {game.time:.2f} s\nevader: {rule}"
     axis.text(
         0.02,
@@ -165,13 +165,13 @@ def whole_or_nothing(path: Path, write: Callable[[Path], None]) -> None:
 
 
 def _paths(axis: Any, played: Played, index: int) -> None:
-    frames: tuple[Frame, ...] = played.frames[: index + 1]
+    frames = played.frames[: index + 1]
     step = max(1, len(frames) // 600)
     kept = [*frames[:-1:step], frames[-1]]
-    line = [f.game.evader.position for f in kept]
+    line = [f.evader.position for f in kept]
     axis.plot([p.y for p in line], [p.x for p in line], "--", color=EVADER, lw=1.4)
     for number in range(len(played.final.pursuers)):
-        line = [f.game.pursuers[number].position for f in kept]
+        line = [f.pursuers[number].position for f in kept]
         axis.plot([p.y for p in line], [p.x for p in line], "-", color=_pursuer(number), lw=1.0)
 
 
@@ -213,7 +213,7 @@ def _arrow(axis: Any, start: Vec, way: Vec, length: float, colour: str, label: s
 
 def _points(played: Played) -> list[Vec]:
     step = max(1, len(played.frames) // 100)
-    points = [v.position for f in played.frames[::step] for v in (f.game.evader, *f.game.pursuers)]
+    points = [v.position for f in played.frames[::step] for v in (f.evader, *f.pursuers)]
     target = played.conditions.target
     return [*points, target.position] if target.exists else points
 

@@ -30,26 +30,25 @@ THIS_PAPER = "paper"
 TABLE1_HORIZONS = (55.7, 120.4)  # [s] within which all 30 verdicts of Table 1 come out, at steps of 0.05 s
 
 
-class Frame(NamedTuple):
-    """One instant of a played game, for pictures."""
-
-    game: Game
-    decisions: Decisions  # those taken at this instant
-
-
 class Played(NamedTuple):
     """A played game."""
 
     scenario: Scenario
     strategy: str
     conditions: Conditions
-    frames: tuple[Frame, ...]  # every step
+    frames: tuple[Game, ...]  # every step, for pictures
     final: Game  # at the instant of the verdict
 
     @property
     def verdict(self) -> GameResult:
         """How it ended."""
         return self.final.score.verdict
+
+    def decisions(self, index: int) -> Decisions:
+        """Those taken at the instant of a frame, reckoned anew: a picture needs two of thousands."""
+        decide_evader: EvaderStrategy = evader_strategy(self.scenario.evader.strategy)
+        decide_pursuer: PursuerStrategy = pursuer_strategy(self.strategy)
+        return decide(self.frames[index], self.conditions, decide_evader, decide_pursuer)
 
 
 class Result(msgspec.Struct, frozen=True):
@@ -80,12 +79,12 @@ def play(scenario: Scenario, strategy: str, dt: float | None = None, keep: bool 
     before = game
     while game.score.verdict == GameResult.RUNNING:
         if keep:
-            frames.append(Frame(game, decide(game, conditions, decide_evader, decide_pursuer)))
+            frames.append(game)
         before = game
         game = advance(game, conditions, decide_evader, decide_pursuer)
     final = cut(before, game)
     if keep:
-        frames.append(Frame(final, decide(final, conditions, decide_evader, decide_pursuer)))
+        frames.append(final)
     return Played(scenario, strategy, conditions, tuple(frames), final)
 
 

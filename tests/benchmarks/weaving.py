@@ -58,15 +58,15 @@ def mean(found: Iterable[Restless]) -> Restless:
 def in_the_plane(scenario: Scenario, dt: float) -> tuple[Restless, Restless, float]:
     """Evader, pursuers, time: the strategies alone, in simple motion with steps of `dt` [s]."""
     played = play(scenario, "paper", dt)
-    frames = played.frames[:-1]
+    taken = [played.decisions(index) for index in range(len(played.frames) - 1)]
     seconds = played.final.time
 
     def of(decisions: list[Decision]) -> Restless:
         courses = np.array([atan2(d.direction.y, d.direction.x) for d in decisions])
         return restless(courses, np.array([d.rule.name for d in decisions]), seconds)
 
-    pursuers = [of([frame.decisions.pursuers[i] for frame in frames]) for i in range(len(scenario.pursuers))]
-    return of([frame.decisions.evader for frame in frames]), mean(pursuers), seconds
+    pursuers = [of([each.pursuers[i] for each in taken]) for i in range(len(scenario.pursuers))]
+    return of([each.evader for each in taken]), mean(pursuers), seconds
 
 
 def flown(scenario: Scenario, *, limits: bool = True) -> tuple[Restless, Restless, float]:
