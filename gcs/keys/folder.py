@@ -35,6 +35,7 @@ from onboard.wire.bus.topics import Party
 
 ZENOH_FILE = "zenoh.json5"
 MAVLINK_FILE = "mavlink.key"
+AUTHORITY_FILE = "authority.pem"
 BROWSER_FILE = "browser.p12"
 ROSTER_FILE = "roster.toml"
 KEY_BYTES = 32
@@ -112,7 +113,7 @@ def show(folder: Path) -> tuple[FieldRoster, list[Issued]]:
 
 
 def _authority(roster: FieldRoster, folder: Path, now: datetime) -> Authority:
-    key, certificate = folder / "authority.key", folder / "authority.pem"
+    key, certificate = folder / "authority.key", folder / AUTHORITY_FILE
     if key.exists() or certificate.exists():
         try:
             found = Authority.load(

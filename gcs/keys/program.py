@@ -29,7 +29,7 @@ def init(roster_file: Path, folder: Path | None) -> int:
     _say(f"{place}: {len(issued)} members of field {roster.game}, new keys for {made or 'nobody'}")
     listener = issued[0].member.name
     _say(f"copy each member's folder to its computer; restart {listener}, which enforces the roster")
-    _say(f"what to write where: gcs keys sheet {place}")
+    _say(f"what to write where, and for browsers on gcs page {keys.BROWSER_FILE}: gcs keys sheet {place}")
     return 0
 
 
@@ -61,8 +61,18 @@ def sheet(folder: Path) -> int:
         else:
             _say(f'# gcs.toml\n[bus]\nzenoh = "{member.name}/{keys.ZENOH_FILE}"')
             _say(f"listen = {'true' if index == 0 else 'false'}")
-        for use in Use:
-            topics = sorted({grant.topic.suffix for grant in grants(member, roster) if grant.use is use})
+        if index == 0:
+            _say("# gcs page for browsers on other computers")
+            _say(f'[page]\ntls_keys = "{member.name}"\nhost = "{roster.host}"')
+            _say("control = false  # true: who may write orders gives them on the page, too")
+        may = {
+            use: sorted({grant.topic.suffix for grant in grants(member, roster) if grant.use is use})
+            for use in Use
+        }
+        if member.vehicle is None and may[Use.READ]:
+            _say(f"# its browser on the page: import {member.name}/{keys.BROWSER_FILE} (no password) as a")
+            _say(f"# certificate of its own, trust {folder / keys.AUTHORITY_FILE} (no secret)")
+        for use, topics in may.items():
             _say(f"# may {use.value}: {', '.join(topics) or 'nothing'}")
     return 0
 

@@ -16,7 +16,7 @@ from gcs.console.vehicle_table import COLUMNS, GRADE_WORDS, Grade, rows, sort_va
 from gcs.page.frames import HEAD, ROLES, TRACK, VEHICLE
 from gcs.picture.current import current
 from gcs.picture.team import band_in_words
-from gcs.picture.values import CommandView, GameView, Picture, VehicleView
+from gcs.picture.values import AssessmentView, CommandView, GameView, Picture, VehicleView
 from onboard.game import palette
 from onboard.wire.bus.messages import CommandKind, Role, SupervisorAction
 from onboard.wire.bus.team_messages import TeamPlan
@@ -227,7 +227,7 @@ def _assessment(picture: Picture) -> Document | None:
     if found is None:
         return None
     return {
-        "words": prospects_in_words(found, whole=True), "captured": found.captured,
+        "words": _go(found), "captured": found.captured,
         "encircled": found.encircled, "gaps": [list(gap) for gap in found.gaps],
         "largest_gap_deg": degrees(found.largest_gap), "target_denied": found.target_denied,
         "prospects": [
@@ -235,6 +235,13 @@ def _assessment(picture: Picture) -> Document | None:
             for p in found.prospects
         ],
     }  # fmt: skip
+
+
+def _go(found: AssessmentView) -> str:
+    """Go or no-go, and the odds; the bound and the band in words where there are no odds."""
+    if not found.word:
+        return prospects_in_words(found, whole=True)
+    return f"{found.word}: {found.why if found.captured is None else prospects_in_words(found, whole=True)}"
 
 
 def _aim(vehicle: VehicleView) -> Document:

@@ -11,7 +11,7 @@ from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import ZERO, Vec, direction, distance, scale, sub
 from onboard.core.strategy.registry import DEFAULT
 from onboard.core.strategy.team.plan_types import Heights, Member, Situation
-from onboard.game.odds import chances, engagement
+from onboard.game.odds import engagement, headline, odds
 from onboard.wire.bus.messages import Member as Declared
 from onboard.wire.bus.messages import Role, Setup
 
@@ -41,6 +41,7 @@ def assess(
     found = assessment.assess(
         evader, mates, setup.rules.rho, game.target is not None, target, setup.rules.planar
     )
+    word, why, captured = _odds(None if many else engagement_in(game, vehicles, tracks))
     return AssessmentView(
         encircled=found.encircled,
         gaps=tuple((gap.start, gap.width) for gap in found.gaps),
@@ -50,16 +51,21 @@ def assess(
             ProspectView(id=i, intercepts=p.intercepts, time_s=p.time, denies_target=p.denies_target)
             for (i, _), p in zip(pursuers, found.prospects, strict=True)
         ),
-        captured=None if many else _chance(engagement_in(game, vehicles, tracks)),
+        captured=captured,
+        word=word,
+        why=why,
     )
 
 
-def _chance(situation: Situation | None) -> tuple[float, float, float] | None:
-    """The chance of capture against the evader of the paper; None where the table does not reach."""
+def _odds(situation: Situation | None) -> tuple[str, str, tuple[float, float, float] | None]:
+    """Go or no-go, why, and the chance of capture against the evader of the paper, None where the table does
+    not reach."""
     if situation is None:
-        return None
-    found = chances(situation, DEFAULT)
-    return None if found is None else (found.captured.p, found.captured.low, found.captured.high)
+        return "", "", None
+    found = odds(situation, changes=False)
+    chance = found.chances.get(DEFAULT)
+    share = None if chance is None else (chance.captured.p, chance.captured.low, chance.captured.high)
+    return *headline(situation, found), share
 
 
 def _players(

@@ -257,6 +257,8 @@ class AssessmentView(Value, frozen=True):
     target_denied: bool
     prospects: tuple[ProspectView, ...]
     captured: tuple[float, float, float] | None = None  # chance, with its 95 % interval
+    word: str = ""  # go, no-go, open, unknown; "" = not judged
+    why: str = ""  # the bound, and the band
 
 
 class Picture(Value, frozen=True):

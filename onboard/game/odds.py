@@ -16,6 +16,7 @@ import msgspec
 
 from onboard.core.game.rules import Rules, Target
 from onboard.core.game.views import level
+from onboard.core.geometry.chauffeur import sure_radius
 from onboard.core.geometry.lead import lead
 from onboard.core.math.angles import wrap
 from onboard.core.math.vectors import ZERO, Vec, along, distance, sub, unit, yaw_of
@@ -191,8 +192,8 @@ def chances(s: Situation, evader: str) -> Chances | None:
     return Chances(estimate(sheet, fits["captured"], x), estimate(sheet, fits["arrived"], x))
 
 
-def odds(s: Situation) -> Odds:
-    """Bound, band, table, and what would change it. There must be a pursuer that is fit."""
+def odds(s: Situation, *, changes: bool = True) -> Odds:
+    """Bound, band, table, and with `changes` what would change it. There must be a pursuer that is fit."""
     way = way_out(s)
     slowest = min(member.vehicle.speed for member in s.team if member.fit)
     pitch = 0.0
@@ -214,11 +215,43 @@ def odds(s: Situation) -> Odds:
             one = chances(s, name)
             if one is not None:
                 found[name] = one
-        for words, other in changed(s):
+        for words, other in changed(s) if changes else ():
             then = chances(other, next(iter(sheet.fits)))
             if then is not None:
                 tried.append(Change(words, then.captured))
     return Odds(need, way.closed, way.gap, found, beyond, tuple(tried))
+
+
+def judgement(found: Odds, count: int) -> str:
+    """Go, no-go or open, against the evader of the paper: by the interval of the chance of capture of `count`
+    pursuers; where the table says nothing by the bound, and by the band."""
+    if not found.chances:
+        too_few = found.needed == 0 or found.needed > count
+        return "go" if found.closed else "no-go" if too_few else "unknown"
+    p = next(iter(found.chances.values())).captured
+    return "go" if p.low >= GO else "no-go" if p.high < GO else "open"
+
+
+def headline(s: Situation, found: Odds) -> tuple[str, str]:
+    """The word (go, no-go, open, unknown), and why: the bound, and the band."""
+    count = sum(member.fit for member in s.team)
+    fast = [member for member in s.team if member.fit and member.vehicle.speed > s.evader.speed]
+    if fast:
+        sure = min(sure_radius(s.evader.speed, one.vehicle.speed, one.limits.turn_rate) for one in fast)
+        safe = "above" if sure < s.rules.R else "not above"
+        bound = (
+            f"bound: R = {s.rules.R:g} m is {safe} the {sure:.1f} m with which one pursuer captures an evader"
+            " that turns at once (the homicidal chauffeur)"
+        )
+        return "go" if sure < s.rules.R else "open", bound
+    if found.needed > count:
+        bound = f"bound: {found.needed} such pursuers at least force a capture, here are {count}"
+    elif found.needed == 0:
+        bound = "bound: no number of level pursuers closes the band"
+    else:
+        bound = f"bound: {count} pursuers suffice, {found.needed} are needed at least"
+    band = "closed" if found.closed else f"open, the widest way out is {degrees(max(0.0, found.gap)):.0f}°"
+    return judgement(found, count), f"{bound}; the band is {band}"
 
 
 def changed(s: Situation) -> list[tuple[str, Situation]]:

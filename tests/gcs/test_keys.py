@@ -10,7 +10,9 @@ from pathlib import Path
 import pytest
 from cryptography import x509
 
+from gcs import settings
 from gcs.keys import program
+from gcs.page.program import guarded
 from onboard.agent.config import AgentConfig
 from onboard.agent.opening import refuse_open_bus, security
 from onboard.config.strict import ConfigError
@@ -44,6 +46,30 @@ def test_one_command_makes_everything_and_nobody_else_may_read_it(
     said = capsys.readouterr().out
     assert 'zenoh = "vehicle-2/zenoh.json5"' in said
     assert "vehicle-3.1" in said
+
+
+def test_the_listeners_lines_are_settings_that_open_the_page_and_stations_learn_of_their_browsers_keys(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    roster, keys = tmp_path / "range.toml", tmp_path / "range-keys"
+    roster.write_text(Field(tmp_path / "keys").text)
+    assert program.init(roster, keys) == 0
+    assert "browser.p12" in capsys.readouterr().out
+    assert program.sheet(keys) == 0
+    listener, *others = capsys.readouterr().out.split("\n\n")[1:]
+    (keys / "gcs.toml").write_text("\n".join(line for line in listener.split("\n") if line[:1] != "#"))
+    monkeypatch.chdir(keys)
+    found = settings.load(Path("gcs.toml"))
+    doors, tls = guarded(found.page)
+    assert found.bus.listen
+    assert tls is not None
+    assert doors.members
+    looking = {name.rpartition(".")[0] for name in doors.members}
+    assert looking == {"ground", "second"}
+    for part in (listener, *others):
+        name = part.partition(":")[0].removeprefix("# ")
+        assert (f"import {name}/browser.p12" in part) == (name in looking), part
+        assert (keys / name / "browser.p12").is_file()
 
 
 def test_a_member_out_of_the_roster_loses_its_keys_and_a_raised_number_makes_new_ones(tmp_path: Path) -> None:

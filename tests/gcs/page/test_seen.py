@@ -8,10 +8,10 @@ from msgspec.structs import replace
 from gcs.page import documents
 from gcs.picture.values import AssessmentView
 from onboard.core.math.constants import NS_PER_S
-from onboard.wire.bus.messages import Phase
+from onboard.wire.bus.messages import EvaderBrief, Phase
 from onboard.wire.bus.team_messages import PartReason, PlannedPart, TeamPlan, TeamRole
 from tests.support.page_stage import chromium, opened, seen, stage
-from tests.support.sample_messages import Tower, phase, setup, state, track
+from tests.support.sample_messages import START_NS, Tower, phase, setup, state, track
 
 
 def plan(stamp_ns: int) -> TeamPlan:
@@ -53,3 +53,26 @@ def test_the_odds_are_the_consoles_words():
     told = documents.board(replace(tower.picture, assessment=found), "")
     assert told["assessment"]["words"] == "widest way out 34°, chance of capture 85 % (80–89), target denied"
     assert told["game"]["plan"] is None
+
+
+def test_go_or_no_go_stands_first_with_the_odds_or_with_bound_and_band():
+    flat = Tower()
+    flat.hear(
+        setup(4, planar=True, R=2.0, rho=4.0), phase(Phase.RUNNING),
+        EvaderBrief((0.0, 900.0, -50.0), START_NS), state(1, position=(0.0, 0.0, -50.0)),
+    )  # fmt: skip
+    for id, place in ((2, (80.0, 0.0, -50.0)), (3, (-50.0, 70.0, -50.0)), (4, (-40.0, -80.0, -50.0))):
+        flat.hear(state(id, position=place))
+    found = documents.board(flat.picture, "")["assessment"]
+    assert flat.picture.assessment.word in {"go", "no-go", "open", "unknown"}
+    assert found["words"].startswith(f"{flat.picture.assessment.word}: ")
+    assert "bound: " in flat.picture.assessment.why
+    told = documents.detail(flat.picture, 1)["lines"]
+    assert [f"{flat.picture.assessment.word}: {flat.picture.assessment.why}", "bold"] in told
+    space = Tower()
+    space.hear(setup(3, pursuer_speed=8.0), phase(Phase.RUNNING), state(1), state(2), state(3))
+    words = documents.board(space.picture, "")["assessment"]["words"]
+    word, _, why = words.partition(": ")
+    assert word == "no-go"
+    assert why.startswith("bound: ")
+    assert "; the band is open, the widest way out is " in why
