@@ -57,8 +57,8 @@ def page(plan: Plan, board: Board) -> list[str]:
         "",
         *scores("pursuers", board.pursuer_scores),
         *scores("evader", board.evader_scores),
-        *matrix("Captured, aircraft in wind (`five`, `six`)", board, aircraft),
-        *matrix("Captured, simple motion (Table 1, `demo`)", board, plane),
+        *(matrix("Captured, aircraft in wind", board, aircraft) if aircraft else []),
+        *(matrix("Captured, simple motion", board, plane) if plane else []),
     ]  # fmt: skip
 
 
@@ -68,14 +68,21 @@ def main() -> None:
     parser.add_argument("--folder", type=Path, default=Path("runs/bench"))
     parser.add_argument("--games", type=int, default=20)
     parser.add_argument("--workers", type=int, default=1)
+    for name in ("scenario", "evader", "pursuers"):
+        parser.add_argument(f"--{name}", action="append", default=[], help="as of `sim-bridge bench`")
     told = parser.parse_args()
     begun = process_time()
-    made = bench(Options(games=told.games, workers=told.workers, out=told.folder), print)
+    chosen = tuple(map(Path, told.scenario)), tuple(told.evader), tuple(told.pursuers)
+    made = bench(Options(*chosen, told.games, None, told.workers, told.folder), print)
     print(f"{process_time() - begun:.0f} CPU-seconds of this process")
     found = results(told.folder / "games")
     lines = page(found.plan, made.board)
     print("\n".join(lines))
-    write("leaderboard.md", "The leaderboard's default set", f"sim-bridge bench --games {told.games}", lines)
+    parts = [
+        f" --{name} {value}" for name in ("scenario", "evader", "pursuers") for value in getattr(told, name)
+    ]
+    command = f"sim-bridge bench --games {told.games}{''.join(parts)}"
+    write("leaderboard.md", "The leaderboard", command, lines)
 
 
 if __name__ == "__main__":
