@@ -10,6 +10,8 @@ from __future__ import annotations
 import argparse
 import asyncio
 import io
+import json
+import re
 import subprocess
 import sys
 import tempfile
@@ -41,7 +43,7 @@ TOKEN = "a-token-for-pictures"
 LARGEST = 200_000  # bytes of a picture
 LAPTOP, WIDE, TABLET = (1280, 800), (1920, 1080), (820, 1180)  # [px]
 START_MS = 60_000  # for a page to be there on a busy machine
-GUARDED = configs() / "scenarios" / "flight" / "goalkeeper.toml"
+FLIGHT = configs() / "scenarios" / "flight"
 ORIGIN = (47.397742, 8.545594)  # of the demo's field [°]: where PX4's simulations are
 ZOOMS = (14, 15, 16, 17)
 
@@ -66,6 +68,7 @@ LIVE = (
 )
 TEAM = (Shot("page-team", since_s=6.0, select=3, keys="v"),)
 ALERTS = (Shot("page-alerts", since_s=20.0),)
+HEIGHTS = (Shot("page-spheres", since_s=9.0, select=1),)
 MAP = (Shot("page-map", keys="v"),)
 REPLAY = (Shot("page-replay", since_s=20.0),)
 LOOKS = [Shot(f"-{w}x{h}-{'dark' if dark else 'light'}", (w, h), dark)
@@ -90,17 +93,23 @@ class Runs(NamedTuple):
     paper: Path
     team: Path
     lossy: Path
+    heights: Path
 
 
 def flown(folder: Path) -> Runs:
     """Fly the games: the demo, a target that is guarded, the same by the paper's rules, the same by a team of
-    which one begins nearer to the target, and a game with loss on every link."""
-    text = GUARDED.read_text(encoding="utf-8")
+    which one begins nearer to the target, a game with loss on every link, and the demo at several heights."""
+    text = (FLIGHT / "goalkeeper.toml").read_text(encoding="utf-8")
     paper, team = folder / "paper.toml", folder / "team.toml"
     paper.write_text(text.replace('"goalkeeper', '"paper'), encoding="utf-8")
     near = text.replace("[20, -85]", "[80, -40]").replace('"goalkeeper', '"team')
     team.write_text(near, encoding="utf-8")
-    scenarios = ("demo", "goalkeeper", str(paper), str(team), "heavy-loss")
+    heights = folder / "heights.toml"
+    up = iter((60, 60, 40, 75, 85, 45, 60))
+    planar = (FLIGHT / "demo.toml").read_text(encoding="utf-8")
+    spatial = re.sub(r"(position|target) = \[(.*)\]", lambda m: f"{m[1]} = [{m[2]}, {next(up)}]", planar)
+    heights.write_text(spatial.replace("five on one", "five on one, in space"), encoding="utf-8")
+    scenarios = ("demo", "goalkeeper", str(paper), str(team), "heavy-loss", str(heights))
     found = []
     for name, scenario in zip(Runs._fields, scenarios, strict=True):
         command = [sys.executable, "-m", "sim_bridge.cli", "fly", "--fast", "--quiet", scenario]
@@ -139,7 +148,8 @@ def terrain(folder: Path) -> TileMap:
         file = folder / str(zoom) / str(x) / f"{y}.png"
         file.parent.mkdir(parents=True, exist_ok=True)
         Image.fromarray(shade.clip(0, 255).astype(np.uint8)).save(file)
-    (folder / "attribution.txt").write_text("hills that nobody has climbed", encoding="utf-8")
+    about = {"attribution": "hills that nobody has climbed"}
+    (folder / "metadata.json").write_text(json.dumps(about), encoding="utf-8")
     return opened_map(folder)
 
 
@@ -236,6 +246,7 @@ async def pictures(runs: Runs, folder: Path) -> None:
             await shown(browser, live, MAP, folder, terrain(Path(tiles)))
         await shown(browser, live, LIVE, folder)
         await shown(browser, source_of(runs.team, AsLive), TEAM, folder)
+        await shown(browser, source_of(runs.heights, AsLive), HEIGHTS, folder)
         await shown(browser, lossy, ALERTS, folder)
         await shown(browser, source_of(runs.demo), REPLAY, folder)
         await both(browser, (runs.guarded, runs.paper), folder, Shot("page-two-runs", WIDE))

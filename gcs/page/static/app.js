@@ -229,8 +229,15 @@ function chosen(ids, first) {
   scene.select(first);
   if (scene.following !== null) scene.following = first;
   send({ do: "select", id: first });
+  drawWhom();
+}
+
+// To whom orders go: always those that `order` takes, after a new connection too.
+function drawWhom() {
   const whom = document.querySelector("#orders .whom");
-  if (whom) whom.textContent = `to ${ids.length > 1 ? `${ids.length} vehicles: ` : "vehicle "}${ids.join(", ")}`;
+  const ids = page.ids || [];
+  const several = ids.length > 1 ? `${ids.length} vehicles: ` : "vehicle ";
+  if (whom) whom.textContent = ids.length ? `to ${several}${ids.join(", ")}` : "to no vehicle";
 }
 
 function order(kind) {
@@ -263,7 +270,8 @@ function drawOrders() {
     }
     if (event.key === "Escape") typed.blur();
   });
-  area.replaceChildren(element("h2", "Orders"), element("span", "to no vehicle", "whom"), ...buttons, abort, typed);
+  area.replaceChildren(element("h2", "Orders"), element("span", "", "whom"), ...buttons, abort, typed);
+  drawWhom();
 }
 
 function showHelp() {

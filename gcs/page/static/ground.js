@@ -246,7 +246,8 @@ export class Ground {
       const centre = place([n, e, d]);
       this.chosen.add(circle(radius, centre, colours.apollonius));
       if (this.field && !this.field.planar) {
-        const sphere = new Mesh(new SphereGeometry(radius, 40, 24), veil(colours.apollonius, 0.1));
+        const opacity = 0.1 / Math.max(1, decision.circles.length); // many lie over each other
+        const sphere = new Mesh(new SphereGeometry(radius, 40, 24), veil(colours.apollonius, opacity));
         sphere.position.set(...centre);
         this.chosen.add(sphere);
       }

@@ -113,6 +113,8 @@ async def test_a_lost_connection_greys_the_page_says_since_when_and_comes_back()
         async with stage(2) as made:
             page = await opened(browser, made)
             port = made.port
+            await page.locator("tr[data-id='2']").click()
+            assert await page.locator("#orders .whom").inner_text() == "to vehicle 2"
             assert not await page.evaluate("document.body.classList.contains('lost')")
         await seen(page, "document.body.classList.contains('lost')")
         silent_ms = await page.evaluate("performance.now() - page.heard")
@@ -122,6 +124,9 @@ async def test_a_lost_connection_greys_the_page_says_since_when_and_comes_back()
         async with stage(2, port=port):
             await seen(page, "!document.body.classList.contains('lost')")
             assert await page.locator("#lost").is_hidden()
+            # An order would go to the vehicle that is still selected, and the page says so.
+            assert await page.evaluate("page.ids.join()") == "2"
+            assert await page.locator("#orders .whom").inner_text() == "to vehicle 2"
 
 
 async def test_no_request_leaves_the_page_and_words_from_the_network_are_no_markup():
