@@ -122,7 +122,10 @@ class Hub:
 
     def tick(self) -> None:
         """Let the newest picture wait for every browser."""
-        picture = self.source.picture()
+        self._show(self.source.picture())
+
+    def _show(self, picture: Picture, *, whole: bool = False) -> None:
+        """Let a picture wait for every browser; its tables too where it is their turn, or `whole`."""
         self._number += 1
         self._pace = max(1, -(-len(picture.vehicles) // AT_ONCE))
         moved = frame(picture, self._number)
@@ -138,7 +141,7 @@ class Hub:
             if field != self._field:
                 browser.put("field", field)
         self._field = field
-        if slow:
+        if slow or whole:
             self._tell(picture)
 
     def _tell(self, picture: Picture) -> None:
@@ -179,11 +182,11 @@ class Hub:
             self._timeline.seek_ms(said.at_ms)
         elif told := self.source.act(said.action):
             browser.say(told)
-        trails = _json(documents.trails(self.source.picture()))
+        picture = self.source.picture()
+        trails = _json(documents.trails(picture))
         for each in self.browsers:
             each.put("trails", trails)
-        self.tick()
-        self._tell(self.source.picture())
+        self._show(picture, whole=True)
 
     def _steer(self, browser: Browser, said: requests.Request) -> None:
         picture = self.source.picture()

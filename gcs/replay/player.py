@@ -6,8 +6,8 @@ what is seen at an instant of the recording.
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Callable, Iterator
-from copy import deepcopy
 
 from gcs.picture.alert_rules import Thresholds
 from gcs.picture.reducer import GRID_NS, PictureReducer
@@ -16,7 +16,7 @@ from gcs.recording.reader import Entry, Recording
 from onboard.core.math.constants import NS_PER_S
 
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0)
-CHECKPOINT_NS = 4 * NS_PER_S  # a jump plays at most so much again
+CHECKPOINT_NS = 2 * NS_PER_S  # a jump plays at most so much again
 CHECKPOINTS = 400  # at most, however long the recording
 
 
@@ -32,9 +32,9 @@ class Player:
         self.speed = 1.0
         self._new = PictureReducer(recording.game, limits, version)
         self._every_ns = max(CHECKPOINT_NS, (recording.end_ns - recording.start_ns) // CHECKPOINTS)
-        self.checkpoints: list[tuple[int, PictureReducer]] = []  # by place, rising
+        self.checkpoints: list[tuple[int, bytes]] = []  # by place, rising: copies, as bytes that unpack fast
         self._remainder = 0.0  # [ns] of recorded time not yet played
-        self._place(recording.start_ns - 1, deepcopy(self._new))
+        self._place(recording.start_ns - 1, pickle.dumps(self._new))
         self._run_to(recording.start_ns)
 
     @property
@@ -83,12 +83,12 @@ class Player:
         """Go to an instant (the nearest there is), from the checkpoint before it."""
         at_ns = max(self.start_ns, min(at_ns, self.end_ns))
         self._remainder = 0.0
-        place_ns, reducer = self.start_ns - 1, self._new
+        place_ns, reducer = self.start_ns - 1, b""
         for checkpoint_ns, saved in self.checkpoints:
             if checkpoint_ns <= at_ns:
                 place_ns, reducer = checkpoint_ns, saved
         if at_ns < self._at_ns or place_ns > self._at_ns:
-            self._place(place_ns, deepcopy(reducer))
+            self._place(place_ns, reducer or pickle.dumps(self._new))
         self._run_to(at_ns)
 
     def index(self, told: Callable[[float, Picture], None] = lambda share, picture: None) -> Picture:
@@ -113,10 +113,10 @@ class Player:
         """The picture at the instant shown: what the live station showed then."""
         return self._reducer.picture(self._at_ns)
 
-    def _place(self, at_ns: int, reducer: PictureReducer) -> None:
-        """Stand at `at_ns`, which `reducer` has seen all of."""
+    def _place(self, at_ns: int, packed: bytes) -> None:
+        """Stand at `at_ns`, which the packed reducer has seen all of."""
         self._at_ns = at_ns
-        self._reducer = reducer
+        self._reducer: PictureReducer = pickle.loads(packed)
         self._ahead: Iterator[Entry] = self.recording.entries(at_ns + 1)
         self._next: Entry | None = next(self._ahead, None)
 
@@ -132,4 +132,4 @@ class Player:
         """Keep a checkpoint before the message of `next_ns` where the last one is long ago."""
         last_ns = self.checkpoints[-1][0] if self.checkpoints else self.start_ns
         if next_ns - last_ns > self._every_ns:
-            self.checkpoints.append((next_ns - 1, deepcopy(self._reducer)))
+            self.checkpoints.append((next_ns - 1, pickle.dumps(self._reducer)))

@@ -111,7 +111,7 @@ def test_a_long_way_back_uses_checkpoints(run: Path) -> None:
     player = Player(open_run(run))
     player.seek(player.end_ns)
     gaps = np.diff([player.start_ns, *(at for at, _ in player.checkpoints), player.end_ns]) / NS_PER_S
-    assert gaps.max() < 4.5  # so much at most is played again
+    assert gaps.max() < 2.5  # so much at most is played again
     player.seek(player.start_ns + 35 * NS_PER_S)
     assert player.picture() == live(player.at_ns)
 
