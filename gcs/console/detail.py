@@ -135,8 +135,7 @@ def _prospect(picture: Picture, vehicle: VehicleView) -> list[Line]:
         free = f"widest gap {degrees(found.largest_gap):.0f}°"
         if found.encircled:
             free = "encircled (no free ray; no proof of capture)"
-        met = (f"{free}; its course is met by {who or 'nobody'}", "")
-        return [(f"{found.word}: {found.why}", "bold"), met] if found.word else [met]
+        return [(f"{free}; its course is met by {who or 'nobody'}", "")]
     for prospect in found.prospects:
         if prospect.id == vehicle.id:
             meets = f"can intercept in {prospect.time_s:.1f} s" if prospect.intercepts else "cannot intercept"

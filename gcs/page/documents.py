@@ -146,6 +146,9 @@ def detail(picture: Picture, selected: int | None) -> Document:
         return found
     found["lines"] = [list(line) for line in detail_lines(picture, selected)]
     vehicle = current(picture).vehicle(selected)
+    judged = picture.assessment
+    if vehicle is not None and vehicle.role is Role.EVADER and judged is not None and judged.word:
+        found["lines"].append([f"{judged.word}: {judged.why}", "bold"])
     decision = vehicle.decision if vehicle else None
     if decision is not None:
         found["decision"] = {
