@@ -73,4 +73,4 @@ def test_the_first_commands_in_an_empty_folder(tmp_path: Path) -> None:
     assert list((tmp_path / "figures").glob("*.png"))
     found = re.search(r"(captured|arrived|escaped|denied).* after [\d.]+ s, smallest distance", told)
     assert found is not None, told
-    assert list((tmp_path / "runs").glob("*/game.mcap")), told
+    assert list((tmp_path / "runs").glob("*/recording.mcap")), told
