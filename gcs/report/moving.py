@@ -80,7 +80,7 @@ def write_gif(page: Path, gif: Path, tell: Tell = lambda share, what: None) -> P
         from PIL import Image
     except ModuleNotFoundError as error:
         raise ConfigError(f"--gif: found no {error.name}, expected: pip install 'apollonius[page]'") from None
-    pictures = asyncio.run(_frames(page.resolve().as_uri(), browser_path(), tell))
+    pictures = asyncio.run(_frames(f"{page.resolve().as_uri()}?smooth", browser_path(), tell))
     shades = [
         Image.open(BytesIO(picture)).convert("P", palette=Image.Palette.ADAPTIVE) for picture in pictures
     ]
