@@ -99,7 +99,7 @@ def test_the_scene_plays_the_flight_and_marks_the_same_instant_in_the_figures(
     tab: Page, report: Path
 ) -> None:
     run = read_run(report.parent)
-    tab.goto(report.as_uri())
+    tab.goto(f"{report.as_uri()}?smooth")
     for since in (2.0, 5.5, 1.0):
         shown = tab.evaluate("t => { playback.move(t); return playback.t; }", since)
         assert shown == pytest.approx(since)
