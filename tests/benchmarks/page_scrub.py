@@ -104,8 +104,9 @@ def page_of(run: Path) -> Iterator[tuple[Page, psutil.Process]]:
 
 def jumps(page: Page, count: int, seed: int) -> tuple[list[float], float]:
     """Time [ms] from the slider's move to the picture drawn, of jumps to places all over; the length [s]."""
-    page.keyboard.press(" ")  # it stands still
-    page.wait_for_timeout(500)
+    page.keyboard.press(" ")
+    while page.evaluate("page.replay.playing"):  # until it stands still
+        page.wait_for_timeout(50)
     length_ms = page.evaluate(ZERO)
     draw = random.Random(seed)
     places = [draw.randrange(0, length_ms // 100) * 100 for _ in range(count)]
@@ -141,6 +142,10 @@ def main() -> int:
         f"The index holds {index.checkpoints} states, {index.megabytes:.0f} MB with all that reading needs;"
         f" it takes {index.seconds:.1f} s of a core once, when the recording is opened. The server has"
         f" {memory:.0f} MB in all.",
+        "",
+        "Browser, its rendering in software, server and whatever else runs share the cores, whose load stands"
+        " above: the last column is what a jump costs whatever the load, the ten frames a second that are"
+        " served meanwhile included.",
     ])  # fmt: skip
     print((p95, took[-1], index))
     return int(p95 > GOAL_MS)
