@@ -1,6 +1,6 @@
 """`--help` of every program and every command answers at once: what it imports is counted, not the clock.
 
-On a machine with nothing else to do: 0.07 CPU-seconds (onboard-agent), 0.12 to 0.23 (gcs, sim-bridge); half
+With a load of 8: 0.07 CPU-seconds (onboard-agent), 0.12 to 0.28 (gcs, sim-bridge: start.md); half
 is what typer itself imports to check options.
 """
 
