@@ -1,7 +1,7 @@
 """The event loop of a program in real time: uvloop's where it is installed, asyncio's own elsewhere.
 
 uvloop comes with the extra `fast`: wheels for x86-64 and aarch64. A datagram then costs about half as much.
-Its timers count whole milliseconds and may fire up to one early: `grain_s`.
+Its timers count whole milliseconds and may fire up to one and a half early: `grain_s`.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from importlib import import_module
 from typing import Any
 
 UVLOOP = "uvloop"
-_GRAIN_S = 1e-3  # of libuv's timers
+_GRAIN_S = 1.5e-3  # of libuv's timers: its clock counts whole milliseconds, and the wait is rounded to one
 
 
 def loop_factory() -> Callable[[], asyncio.AbstractEventLoop] | None:

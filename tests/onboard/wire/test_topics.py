@@ -193,7 +193,7 @@ def test_what_speaks_for_another_vehicle_is_dropped_and_counted() -> None:
     [
         "", "/", "apollonius", "apollonius/g", "apollonius//game/setup", "apollonius/g/game/setup/x",
         "x/g/game/setup",
-        "apollonius/g/vehicles/0/state", "apollonius/g/vehicles/256/state", "apollonius/g/vehicles/07/state",
+        "apollonius/g/vehicles/0/state", "apollonius/g/vehicles/1001/state", "apollonius/g/vehicles/07/state",
         "apollonius/g/vehicles/-1/state", "apollonius/g/vehicles/٣/state", "apollonius/g/vehicles/state",
         "apollonius/g/vehicles/{id}/state", "apollonius/g/vehicles/*/state", "apollonius/g/tracks/1/state",
         f"apollonius/g/vehicles/{'9' * 5000}/state",
