@@ -87,7 +87,7 @@ def build() -> str:
     told = sysconfig.get_config_var("CONFIG_ARGS")
     if not told:
         return "build unknown"
-    return "PGO build" if "--enable-optimizations" in told else "build without PGO"
+    return "PGO build" if "--enable-optimizations" in told else "build that names no PGO"
 
 
 def words() -> str:
