@@ -1,4 +1,5 @@
-"""One BLAS thread, as every program sets it; the same examples every time; time limits that fit the machine.
+"""One BLAS thread, as every program sets it; the same examples every time; time limits that fit the machine;
+programs that are started buffer what they print, as a user's do.
 
 With more threads small matrices take ten times as long. With `HYPOTHESIS_PROFILE=long` (`make check-long`)
 the examples are others with each `--hypothesis-seed`.
@@ -11,6 +12,7 @@ from collections.abc import Generator
 
 for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(name, "1")
+os.environ.pop("PYTHONUNBUFFERED", None)  # few users have it: programs must do without
 
 import pytest  # noqa: E402  (threads are set before NumPy is imported)
 from hypothesis import settings  # noqa: E402

@@ -44,10 +44,11 @@ def run(app: Callable[..., Any], name: str) -> NoReturn:
         if end is None:
             raise  # a fault of the program keeps its traceback
         if end.code in (NOT_WRITTEN, READER_LEFT):
-            _discard_output()
+            _discard(sys.stdout)
         _end(name, end.words, end.code)
     finally:
         early.leave()
+    _settle(sys.stderr)
     sys.exit(code if isinstance(code, int) else 0)
 
 
@@ -126,19 +127,26 @@ def _end(name: str, text: str, code: int) -> NoReturn:
     with contextlib.suppress(OSError):  # standard error may be full, or its reader gone
         if text:
             print(printable(f"{name}: {text}"), file=sys.stderr, flush=True)
-    try:
-        if sys.stdout is not None:
-            sys.stdout.flush()  # what was told before; else the interpreter tries, and says that it cannot
-    except (OSError, ValueError):
-        _discard_output()
+    _settle(sys.stderr)
+    _settle(sys.stdout)
     sys.exit(code)
 
 
-def _discard_output() -> None:
-    """Lead standard output into nothing, so that what is left in its buffer does no harm at the exit."""
-    if sys.stdout is not None:
+def _settle(stream: TextIO | None) -> None:
+    """Write what a stream still holds, or nothing of it: the interpreter would try at the exit, and exit with
+    a code of its own (120) where it cannot."""
+    try:
+        if stream is not None:
+            stream.flush()
+    except (OSError, ValueError):
+        _discard(stream)
+
+
+def _discard(stream: TextIO | None) -> None:
+    """Lead a stream into nothing, so that what is left in its buffer does no harm at the exit."""
+    if stream is not None:
         with contextlib.suppress(OSError, ValueError):  # a test's own stream has no descriptor
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 def _leaves(group: BaseExceptionGroup[BaseException]) -> Iterator[BaseException]:
