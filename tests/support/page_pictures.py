@@ -175,7 +175,8 @@ async def looked(browser: Chromium, url: str, shot: Shot) -> Page:
         color_scheme="dark" if shot.dark else "light",
     )
     page.set_default_timeout(START_MS)
-    await page.goto(f"{url}&smooth")  # for pictures edges are smoothed without a graphics card, too
+    mark = "&" if "?" in url else "?"
+    await page.goto(f"{url}{mark}smooth")  # edges are smoothed without a graphics card, too
     drawn = "(window.page ? page.board !== null && page.frames > 3 : typeof playback !== 'undefined')"
     for part in page.frames[1:] or page.frames:
         await seen(part, drawn, START_MS / 1000)
