@@ -38,9 +38,13 @@ async def client(port: int) -> AsyncIterator[Any]:
 
 
 async def systems(sdk: Any, count: int) -> dict[int, Any]:
-    """All vehicles by their system id, as soon as there are so many."""
+    """All vehicles by their system id, as soon as there are so many whose heartbeat MAVSDK has heard.
+
+    By another message it knows a component 1, but not whose it is, and orders PX4's modes: its main mode 6,
+    OFFBOARD, is ArduCopter's RTL. (4.1.0; `is_connected` comes with the heartbeat.)
+    """
     while True:
-        found = {await s.get_system_id(): s for s in await sdk.get_systems() if await s.has_autopilot()}
+        found = {await s.get_system_id(): s for s in await sdk.get_systems() if await s.is_connected()}
         if len(found) == count:
             return found
         await asyncio.sleep(0.05)
