@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -12,6 +11,7 @@ from gcs.export.geojson import as_geojson
 from gcs.export.run_data import RunData, load
 from gcs.recording.foxglove_layout import LAYOUT, layout_of_viewer
 from onboard.config.strict import ConfigError
+from onboard.runtime.whole_files import write_whole
 
 FOLDER = "export"
 
@@ -43,9 +43,7 @@ def export(
     try:
         to.mkdir(parents=True, exist_ok=True)
         for name, content in files:
-            part = to / f".{name}.part"
-            part.write_bytes(content)
-            os.replace(part, to / name)
+            write_whole(to / name, content)
             written.append(to / name)
     except OSError as error:
         raise ConfigError(f"{error.filename or to}: {(error.strerror or str(error)).lower()}") from None

@@ -16,6 +16,7 @@ from gcs.report.from_tlog import from_tlogs
 from gcs.report.page import page
 from onboard.config.strict import ConfigError
 from onboard.runtime.progress import Tell, silent
+from onboard.runtime.whole_files import write_whole
 
 READ = 0.3  # of the work, about
 PAGE, FIGURES = "report.html", "figures"
@@ -72,7 +73,7 @@ def write_report(
         for name in NAMES:
             (room / f"{name}.png").unlink(missing_ok=True)  # of an earlier report
         drawings = figures(values)
-        html.write_text(page(values, drawings), encoding="utf-8")
+        write_whole(html, page(values, drawings).encode())
         pictures = [room / f"{drawing.name}.png" for drawing in drawings]
         for number, (drawing, picture) in enumerate(zip(drawings, pictures, strict=True)):
             tell(READ + (1.0 - READ) * (1 + number) / (1 + len(pictures)), f"drawing {drawing.name}")

@@ -21,7 +21,8 @@ from onboard.runtime.early import INTERRUPTED
 MISTAKE = 2
 NOT_WRITTEN = 74  # EX_IOERR of sysexits.h
 READER_LEFT = 141  # as a shell reports SIGPIPE
-NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)  # no mistake of whoever named the file
+NO_ROOM = (*FULL, errno.EIO)
 FORBIDDEN = (
     errno.EACCES, errno.EPERM, errno.EROFS, errno.EISDIR, errno.ENOTDIR, errno.ENAMETOOLONG, errno.ELOOP
 )  # fmt: skip
@@ -112,7 +113,9 @@ def _end_of(error: BaseException) -> _End | None:
         order = (INTERRUPTED, MISTAKE, NOT_WRITTEN, READER_LEFT)
         return min(found, key=lambda end: order.index(end.code)) if len(found) == len(ends) else None
     if isinstance(error, ConfigError):
-        return _End(MISTAKE, str(error))
+        cause = error.__context__  # `from None` hides it from tracebacks alone
+        full = isinstance(cause, OSError) and cause.errno in FULL
+        return _End(NOT_WRITTEN if full else MISTAKE, str(error))
     if isinstance(error, KeyboardInterrupt):  # its words say what was left behind
         return _End(INTERRUPTED, ": ".join(("interrupted", *map(str, error.args[:1]))))
     if isinstance(error, BrokenPipeError):

@@ -18,6 +18,7 @@ from onboard.core.math.angles import wrap
 from onboard.game.scenario import Scenario
 from onboard.runtime.progress import Tell, over, part, silent
 from onboard.runtime.run_folder import made
+from onboard.runtime.whole_files import write_whole
 from sim_bridge.campaign.spatial_draw import T0, Draw, compiled_kernel, draw, kernel_of, sky_of
 from sim_bridge.campaign.spatial_game import Evasion, SpatialPlay
 
@@ -212,7 +213,7 @@ def share(count: int, games: int) -> str:
 
 
 def output(folder: Path, name: str, text: str) -> Path:
-    """Write a result. Raises ConfigError where the folder cannot be made."""
+    """Write a result. Raises ConfigError where that cannot be."""
     path = made(folder) / name
-    path.write_text(text + "\n", encoding="utf-8")
+    write_whole(path, f"{text}\n".encode())
     return path

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable
 from functools import partial
 from math import atan2, degrees, pi
 from pathlib import Path
@@ -16,6 +14,7 @@ from onboard.core.geometry.assessment import half_angle
 from onboard.core.math.vectors import Vec, norm
 from onboard.core.strategy.evasion import resultant_force, target_direction
 from onboard.game import palette
+from onboard.runtime.whole_files import whole_or_nothing
 from sim_bridge.plane_game.program import Played
 
 EVADER, TARGET, CIRCLE, CONE = (
@@ -34,8 +33,11 @@ def _pyplot() -> Any:
     return plt
 
 
-def draw_game(played: Played, folder: Path) -> list[Path]:
-    """Initial and final stage side by side, as PNG and SVG. Returns the files written."""
+def draw_game(played: Played, folder: Path, stem: str = "") -> list[Path]:
+    """Initial and final stage side by side, as PNG and SVG named `stem` ("": after scenario and strategy).
+
+    Returns the files written.
+    """
     plt = _pyplot()
     figure, axes = plt.subplots(1, 2, figsize=(14, 7.2), layout="constrained")
     for axis, index, title in ((axes[0], 0, "initial stage"), (axes[1], -1, "final stage")):
@@ -49,7 +51,8 @@ def draw_game(played: Played, folder: Path) -> list[Path]:
     )
     handles, labels = axes[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=5, fontsize=9)
-    stem = f"{played.scenario.name}-{played.strategy}".replace(" ", "-").replace(",", "").replace("/", "-")
+    name = f"{played.scenario.name}-{played.strategy}".replace(" ", "-").replace(",", "").replace("/", "-")
+    stem = stem or name
     written = []
     for ending in ("png", "svg"):
         path = folder / f"{stem}.{ending}"
@@ -150,18 +153,6 @@ def animate(played: Played, path: Path, seconds: float = 10.0, fps: int = 12) ->
     writer = PillowWriter(fps=fps) if path.suffix.lower() == ".gif" else FFMpegWriter(fps=fps)
     whole_or_nothing(path, lambda part: movie.save(part, writer=writer, dpi=80))
     plt.close(figure)
-
-
-def whole_or_nothing(path: Path, write: Callable[[Path], None]) -> None:
-    """Write through a neighbour file: a reader sees the whole or nothing. Raises ConfigError."""
-    part = path.with_name(f".{path.stem}.part{path.suffix}")
-    try:
-        write(part)
-        os.replace(part, path)
-    except OSError as error:
-        raise ConfigError(f"{path}: {(error.strerror or str(error)).lower()}") from None
-    finally:
-        part.unlink(missing_ok=True)
 
 
 def _paths(axis: Any, played: Played, index: int) -> None:

@@ -16,6 +16,7 @@ import msgspec
 from onboard.config.strict import ConfigError
 from onboard.config.undecodable import UNDECODABLE
 from onboard.game.scenario import Scenario
+from onboard.runtime.whole_files import write_whole
 from onboard.runtime.zenoh_config import DEFAULT_ENDPOINT
 from onboard.wire.bus.topics import DEFAULT_GAME
 from sim_bridge.programs import run_folder
@@ -137,7 +138,7 @@ class AgentProcesses:
         }
         path = self._folder / f"agent-{id}.toml"
         text = run_folder.toml_of(settings)
-        run_folder.write_bytes(path, text.encode())
+        write_whole(path, text.encode())
         timing = self._folder / f".timing-{id}.json"
         return [
             sys.executable, "-m", "onboard.cli", "--config", str(path),

@@ -21,6 +21,7 @@ from onboard.runtime.clock import RealClock
 from onboard.runtime.loop import run_virtual, virtual_clock
 from onboard.runtime.progress import Progress, silent
 from onboard.runtime.run_folder import new_run
+from onboard.runtime.whole_files import write_whole
 from sim_bridge.programs import run_folder
 from sim_bridge.world.summary import Summary
 
@@ -54,7 +55,7 @@ def fly(path: Path, options: Options, say: Callable[[str], None] = print) -> Flo
     folder = new_run(options.runs, scenario.name, clock.wall_ns())
     tell = (lambda line: None) if options.quiet else say
     used = run_folder.scenario_used(scenario, options.seed, path.parent)
-    run_folder.write_bytes(folder / "scenario.toml", used)
+    write_whole(folder / "scenario.toml", used)
     run_folder.write(folder / "versions.json", run_folder.versions())
     began = clock.monotonic_ns()
     try:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import platform
 import re
 import shutil
@@ -13,9 +12,9 @@ from typing import Any
 
 import msgspec
 
-from onboard.config.strict import ConfigError
 from onboard.core.strategy.registry import evader_named, pursuer_named
 from onboard.game.scenario import Scenario
+from onboard.runtime.whole_files import write_whole
 
 PACKAGES = ("apollonius", "numpy", "pymavlink", "eclipse-zenoh", "msgspec", "numba", "scipy", "control")
 BARE = re.compile("[A-Za-z0-9_-]+")  # a key that TOML takes without quotes
@@ -32,7 +31,7 @@ def write(path: Path, value: object) -> None:
     """Write JSON, whole or not at all; what is not known is null, never "". Raises ConfigError."""
     answers = _answers(msgspec.to_builtins(value))
     data = msgspec.json.format(msgspec.json.encode(answers), indent=1) + b"\n"
-    write_bytes(path, data)
+    write_whole(path, data)
 
 
 def _answers(value: Any) -> Any:
@@ -42,18 +41,6 @@ def _answers(value: Any) -> Any:
     if isinstance(value, (list, tuple)):
         return [_answers(inner) for inner in value]
     return None if value == "" else value
-
-
-def write_bytes(path: Path, data: bytes) -> None:
-    """Write bytes, whole or not at all. Raises ConfigError."""
-    part = path.with_name(f".{path.name}.part")
-    try:
-        part.write_bytes(data)
-        os.replace(part, path)
-    except OSError as error:
-        raise ConfigError(f"{path}: {(error.strerror or str(error)).lower()}") from None
-    finally:
-        part.unlink(missing_ok=True)
 
 
 def versions() -> dict[str, str]:

@@ -72,7 +72,7 @@ def replay(game: Game, folder: Path) -> tuple[Row, list[Path]]:
         from sim_bridge.plane_game.program import play
 
         pursuing = pursuer_named(scenario.pursuers[0].strategy)
-        return row, draw_game(play(scenario, pursuing), folder)
+        return row, draw_game(play(scenario, pursuing), folder, name)
     return row, draw_stages(scenario, _in_space(scenario, row), folder, name)
 
 

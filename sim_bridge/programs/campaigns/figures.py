@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from onboard.game import palette
-from sim_bridge.plane_game.figures import whole_or_nothing
+from onboard.runtime.whole_files import whole_or_nothing
 from sim_bridge.programs.campaigns.plan import model
 from sim_bridge.programs.campaigns.show import Games, Results
 

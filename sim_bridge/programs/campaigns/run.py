@@ -13,6 +13,7 @@ from onboard.config.strict import ConfigError
 from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.clock import RealClock
 from onboard.runtime.progress import Progress
+from onboard.runtime.whole_files import write_whole
 from sim_bridge.programs.campaigns import pool, shards
 from sim_bridge.programs.campaigns.plan import Plan, Shard
 from sim_bridge.programs.campaigns.until import Until, enough
@@ -87,7 +88,7 @@ class _Work:
         progress.show(0.0, f"{total} games")
         for shard, data in played:
             path = self.folder / shards.file_name(self.plan, shard)
-            shards.write(path, data)
+            write_whole(path, data, durable=True)
             self.whole[shard.number] = path
             games += shard.games
             progress.show(games / total, rate())
@@ -122,7 +123,7 @@ class _Work:
             if shard.seeds.start >= self.stop and shard.number in self.whole:
                 self.whole.pop(shard.number).unlink(missing_ok=True)
         shorter = msgspec.structs.replace(self.plan, games=self.stop - self.plan.first_seed)
-        shards.write(self.folder / shards.MANIFEST, shards.manifest(shorter))
+        write_whole(self.folder / shards.MANIFEST, shards.manifest(shorter), durable=True)
         return shorter
 
 

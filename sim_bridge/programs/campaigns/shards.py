@@ -7,9 +7,6 @@ copying files. Files of other campaigns are left alone and told of.
 
 from __future__ import annotations
 
-import contextlib
-import os
-import socket
 from collections import Counter
 from collections.abc import Iterable
 from pathlib import Path
@@ -20,6 +17,7 @@ import msgspec
 from onboard.config.strict import ConfigError
 from onboard.core.strategy.registry import evader_named, pursuer_named
 from onboard.runtime.run_folder import made
+from onboard.runtime.whole_files import sweep, write_first, write_whole
 from sim_bridge.programs.campaigns.plan import Plan, Shard, checked
 from sim_bridge.programs.campaigns.play import Row
 
@@ -84,25 +82,6 @@ def _words(words: Iterable[str]) -> Any:
     return pa.array(list(words), pa.string()).dictionary_encode()
 
 
-def write(path: Path, data: bytes) -> None:
-    """Put a file there, whole or not at all, and on the disk. Raises OSError where there is no room."""
-    part = path.with_name(f".{path.name}.{socket.gethostname()}.{os.getpid()}.part")
-    try:
-        with part.open("wb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(part, path)
-    finally:
-        part.unlink(missing_ok=True)
-    with contextlib.suppress(OSError):  # not every file system lets a folder be synchronised
-        folder = os.open(path.parent, os.O_RDONLY)
-        try:
-            os.fsync(folder)
-        finally:
-            os.close(folder)
-
-
 class Found(NamedTuple):
     """What lies in a folder, beside its manifest."""
 
@@ -144,26 +123,6 @@ def sound(path: Path, plan: Plan, shard: Shard) -> bool:
     return bool(key == plan.key(shard) and table.num_rows == shard.games)
 
 
-def swept(folder: Path) -> None:
-    """Remove what processes of this host that are no more had begun to write."""
-    host = f".{socket.gethostname()}."
-    for path in folder.glob(".shard-*.part"):
-        before, at, rest = path.name.rpartition(host)
-        number = rest.partition(".")[0]
-        if before and at and number.isdigit() and not _alive(int(number)):
-            path.unlink(missing_ok=True)
-
-
-def _alive(pid: int) -> bool:
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return False
-    except OSError:
-        return True
-    return True
-
-
 def read_plan(folder: Path) -> Plan:
     """The plan of a campaign's folder. Raises ConfigError where there is none."""
     path = folder / MANIFEST
@@ -181,7 +140,7 @@ def settle(folder: Path, plan: Plan) -> Plan:
     Returns the plan that the folder has now. Raises ConfigError for a folder of another campaign.
     """
     made(folder)
-    swept(folder)
+    sweep(folder)
     if (folder / MANIFEST).exists():
         old = read_plan(folder)
         for name in Plan.__struct_fields__:
@@ -198,7 +157,11 @@ def settle(folder: Path, plan: Plan) -> Plan:
                 (folder / name).unlink(missing_ok=True)
     elif any(path.suffix == ".parquet" for path in folder.iterdir()):
         raise ConfigError(f"{folder}: found shards without {MANIFEST}, expected a new folder or a campaign's")
-    write(folder / MANIFEST, manifest(plan))
+    elif write_first(folder / MANIFEST, manifest(plan)):
+        return plan
+    else:  # somebody else began here at the same moment
+        return settle(folder, plan)
+    write_whole(folder / MANIFEST, manifest(plan), durable=True)
     return plan
 
 
@@ -212,10 +175,18 @@ def _differs(name: str, old: Plan, new: Plan) -> str:
         for part in ("sources", "versions", "plugins", "machine"):
             before, now = getattr(old.fingerprint, part), getattr(new.fingerprint, part)
             if before != now:
-                return f"other {part}" if part == "sources" else f"other {part} ({before} not {now})"
+                return f"other {part}" if part == "sources" else f"other {part} ({_told(before, now)})"
     if name in ("first_seed", "shard_games", "flown", "format"):
         return f"{name} {getattr(old, name)}"
     return f"other {name}"
+
+
+def _told(before: Any, now: Any) -> str:
+    """What is other, and no more: of tables the entries that differ."""
+    if not isinstance(before, dict) or not isinstance(now, dict):
+        return f"{before}, here {now}"
+    names = sorted(name for name in before | now if before.get(name) != now.get(name))
+    return ", ".join(f"{name} {before.get(name, 'none')}, here {now.get(name, 'none')}" for name in names)
 
 
 def counts(path: Path) -> Counter[tuple[int, str]]:

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from onboard.config.strict import ConfigError
-from sim_bridge.programs.campaigns import command, shards
+from onboard.runtime.whole_files import sweep, write_whole
+from sim_bridge.programs.campaigns import command
 from sim_bridge.programs.campaigns.run import Ways, run
 from sim_bridge.programs.campaigns.show import results
 from sim_bridge.programs.leaderboard import page
@@ -52,9 +53,10 @@ def bench(options: Options, say: Callable[[str], None]) -> Made:
     ways = command.ways_of(command.Played(options.workers))
     plan = run(options.out / "games", command.plan_of(told, until=False), Ways(ways.workers), say)
     compared = board(results(options.out / "games"))
+    sweep(options.out)
     paths = options.out / "bench.html", options.out / "bench.json"
-    shards.write(paths[0], page.page(plan, compared, commitment).encode())
-    shards.write(paths[1], page.as_json(plan, compared, commitment))
+    write_whole(paths[0], page.page(plan, compared, commitment).encode())
+    write_whole(paths[1], page.as_json(plan, compared, commitment))
     return Made(compared, *paths)
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pyarrow.parquet as pq
 import pytest
+from msgspec.structs import replace
 
 from onboard.config.strict import ConfigError
 from onboard.core.game.referee import GameResult
@@ -124,6 +125,10 @@ def test_more_games_go_on_with_the_folder_and_another_campaign_does_not(
         other = plan_of(reference.options._replace(**change), until=False)  # type: ignore[arg-type]
         with pytest.raises(ConfigError, match=said):
             run(folder, other, Ways(), print)
+    versions = {**reference.plan.fingerprint.versions, "numpy": "9.9"}
+    newer = replace(reference.plan, fingerprint=replace(reference.plan.fingerprint, versions=versions))
+    with pytest.raises(ConfigError, match=r"other versions \(numpy [^,]*, here 9\.9\), expected"):
+        run(folder, newer, Ways(), print)
     (folder / "manifest.json").unlink()
     with pytest.raises(ConfigError, match=r"shards without manifest\.json"):
         run(folder, reference.plan, Ways(), print)
@@ -175,7 +180,9 @@ def test_what_show_and_replay_tell_and_draw(
     kept = again.game_of(reference.folder, "1:7").kept
     assert kept is not None
     assert capsys.readouterr().out.startswith(f"{kept.verdict} ")
-    assert [path.suffix for path in sorted((tmp_path / "game").iterdir())] == [".png", ".svg"]
+    cli.replay(reference.folder, "0:7", tmp_path / "game")  # every game's picture has a name of its own
+    names = [f"duel-{game}{ending}" for game in ("0-7", "1-7") for ending in (".png", ".svg")]
+    assert sorted(path.name for path in (tmp_path / "game").iterdir()) == names
     for wrong in ("2:7", "0:61", "0:0", "7", "x:y", ""):
         with pytest.raises(ConfigError, match=r"CELL:SEED, a cell from 0 to 1 .* a seed from 1 to 60"):
             again.game_of(reference.folder, wrong)
