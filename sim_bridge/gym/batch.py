@@ -19,6 +19,8 @@ from numpy.typing import NDArray
 from onboard.core.game.advance import EvaderStrategy, Game, PursuerStrategy
 from onboard.core.strategy.registry import EVADERS, PURSUERS
 from onboard.game.scenario import Scenario
+from sim_bridge.campaign.flight_lanes import WORD_BLOCK
+from sim_bridge.campaign.lanes import LANES, twins
 from sim_bridge.campaign.spatial_draw import KERNELS, eye_of
 from sim_bridge.campaign.tracks import WIDTH
 from sim_bridge.gym import simple
@@ -64,7 +66,8 @@ class BatchedGames:
         if compiled:
             evader, pursuers = getattr(evader, "kernel", evader), getattr(pursuers, "kernel", pursuers)
         self._world, self._table, self._kernels = self._make(evader, pursuers, compiled)
-        self._edges = np.linspace(0, games, min(workers, games) + 1).astype(int).tolist()
+        self._edges: list[int] = np.linspace(0, games, min(workers, games) + 1).astype(int).tolist()
+        self._parts = [(self._apart(), *part) for part in pairwise(self._edges)]
         self._pool = ThreadPoolExecutor(workers) if workers > 1 else None
         self._begun = False
 
@@ -127,13 +130,19 @@ class BatchedGames:
         return self.arrays
 
     def _run(self, stride: int, begins: bool) -> None:
-        def part(edges: tuple[int, int]) -> None:
-            self._kernels[0](self._table, self._world, self.arrays, Run(*edges, stride, begins))
+        def play(part: tuple[Table, int, int]) -> None:
+            table, first, last = part
+            self._kernels[0](table, self._world, self.arrays, Run(first, last, stride, begins))
 
         if self._pool is None:
-            part((0, self.games))
+            play(self._parts[0])
         else:
-            list(self._pool.map(part, pairwise(self._edges)))
+            list(self._pool.map(play, self._parts))
+
+    def _apart(self) -> Table:
+        """The table with room of its own to draw in: threads share the rest."""
+        states, words, noise = room(len(self.agents))
+        return self._table._replace(states=states, words=words, noise=noise)
 
 
 def world_of(task: Task) -> World:
@@ -183,18 +192,25 @@ def table_of(world: World, games: int) -> Table:
     return Table(
         np.zeros((games, players, 3)), np.zeros((games, players, 3)), np.zeros((games, 3)),
         np.zeros(games, np.int64), np.zeros(games, np.int64), np.zeros((games, 2)), np.zeros((games, 4)),
-        np.zeros((games, players, 2)), np.zeros((tracked, players, 6)),
+        np.zeros((games, players, 2)),
         np.zeros((tracked, players, 2), np.int64),
         np.zeros((tracked, slots, players, 7)),
-        np.zeros((tracked, players, WIDTH)), np.full((tracked, players), -1.0),
+        np.zeros((tracked, players, WIDTH)), np.full((tracked, players), -1.0), *room(players),
     )  # fmt: skip
+
+
+def room(players: int) -> tuple[Any, ...]:
+    """Where a thread draws a game's noise: `states`, `words` and `noise` of a table."""
+    blocks = -(-players // LANES)
+    return np.zeros((players, 6)), np.zeros((blocks, WORD_BLOCK), np.int64), np.zeros((blocks, 6 * LANES))
 
 
 def register_games() -> None:
     """Register what games for learners are compiled of; idempotent."""
-    from sim_bridge.campaign.compiled import register
+    from sim_bridge.campaign.compiled import register, register_strategies
 
     register((*KERNELS, "onboard.core.strategy.features", "onboard.core.strategy.policy", *ROOMS))
+    register_strategies(twins())
 
 
 @cache

@@ -44,9 +44,11 @@ from onboard.core.math.states import Vehicle
 from onboard.core.math.vectors import NORTH, Vec, along, distance, norm, scale
 from onboard.core.strategy.features import Turn, answer, evader_features, pursuer_features
 from onboard.core.strategy.knowledge import Decision, RuleId
+from sim_bridge.campaign.flight_lanes import AT_WORDS, draw_words
+from sim_bridge.campaign.lanes import LANES, lane_normal
 from sim_bridge.campaign.spatial_game import in_air
-from sim_bridge.campaign.tracks import Eye, Tracks, hear, measure, track_of
-from sim_bridge.draws import Key
+from sim_bridge.campaign.tracks import Tracks, hear, track_of
+from sim_bridge.draws import uniform
 from sim_bridge.gym.exchange import Exchange
 from sim_bridge.gym.starts import Here, Table, World, loaded, restart, store, vec_of, wind_of, write
 
@@ -62,30 +64,37 @@ class Heard(NamedTuple):
     wind: Vec
 
 
-def key_at(_vehicle: Vehicle, index: int, here: Here) -> Key:
-    """The key of pursuer `index`'s measurements (for `each`)."""
-    row = here.table.keys[here.game, index + 1]
-    return Key(row[0], row[1])
-
-
-def eye_at(here: Here) -> Eye:
-    """The sensor with the game's random numbers."""
-    eye, row = here.world.eye, here.table.keys[here.game, 0]
-    keys = (Key(row[0], row[1]), *each(key_at, here.world.template.pursuers, here))
-    return Eye(eye.period, eye.delay, eye.sigma, eye.sigma_velocity, eye.dropout, eye.floor, eye.density,
-               eye.learning, keys)  # fmt: skip
-
-
 def tracks_at(here: Here) -> Tracks:
     """The tracks of the game."""
     t, g = here.table, here.game
     return Tracks(t.waiting[g], t.filters[g], t.stamps[g])
 
 
+def sense(here: Here, number: int) -> None:
+    """Measurement `number` of everybody in the game: `tracks.measure`, the noise drawn eight at a time."""
+    t, g, eye = here.table, here.game, here.world.eye
+    words, noise, states = t.words, t.noise, t.states
+    for i in range(states.shape[0]):
+        words[i // LANES, i % LANES] = t.keys[g, i, 0]
+        words[i // LANES, i % LANES + LANES] = t.keys[g, i, 1]
+    for b in range(words.shape[0]):
+        draw_words(words, b, number)
+        for i in range(6 * LANES):
+            noise[b, i] = lane_normal(words[b, i + AT_WORDS + LANES])
+    for i in range(states.shape[0]):
+        b = i // LANES
+        lane = i % LANES
+        row = t.waiting[g, number % t.waiting.shape[1], i]
+        for k in range(3):
+            row[k] = states[i, k] + eye.sigma * noise[b, lane + k * LANES]
+            row[k + 3] = states[i, k + 3] + eye.sigma_velocity * noise[b, lane + (k + 3) * LANES]
+        row[6] = 0.0 if uniform(words[b, lane + AT_WORDS]) < eye.dropout else 1.0
+
+
 def listen(here: Here) -> None:
     """What sensor and filters do before everybody decides. The first measurement is heard at once."""
     t, g, wind = here.table, here.game, wind_of(here)
-    states = t.states[g]
+    states = t.states
     sample = t.steps[g]
     for i in range(states.shape[0]):
         for axis in range(3):
@@ -93,9 +102,9 @@ def listen(here: Here) -> None:
         states[i, 3] = t.velocities[g, i, 0] + wind.x
         states[i, 4] = t.velocities[g, i, 1] + wind.y
         states[i, 5] = t.velocities[g, i, 2] + wind.z
-    eye, tracks, dt = eye_at(here), tracks_at(here), here.world.conditions.control.dt
+    eye, tracks, dt = here.world.eye, tracks_at(here), here.world.conditions.control.dt
     if sample % eye.period == 0:
-        measure(tracks, eye, sample // eye.period, states)
+        sense(here, sample // eye.period)
     if sample == 0:
         hear(tracks, eye, 0, dt)
     heard = sample - eye.delay

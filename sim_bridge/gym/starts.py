@@ -54,11 +54,13 @@ class Table(NamedTuple):
     winds: Array  # (games, 2) north and east [m/s], where the air moves to
     decided: Array  # (games, 4): decided direction and speed of an evader that does not learn
     turns: Array  # (games, players, 2): axes of the observation
-    states: Array  # (games, players, 6) places and velocities over ground, for the sensor
     keys: NDArray[np.int64]  # (games, players, 2) of the sensor's random numbers
     waiting: Array  # (games, slots, players, 7) measurements under way
     filters: Array  # (games, players, WIDTH)
     stamps: Array  # (games, players)
+    states: Array  # (players, 6) of a thread: a game's places and velocities over ground, for the sensor
+    words: NDArray[np.int64]  # (blocks, WORD_BLOCK) of a thread: where a game's noise is drawn
+    noise: Array  # (blocks, 6 · LANES) of a thread: the same
 
 
 class Here(NamedTuple):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -20,6 +20,8 @@ from sim_bridge.campaign.spatial_game import Chosen
 from sim_bridge.plane_game.setup import conditions_of, game_of
 from sim_bridge.programs.campaigns.plan import Cell, Plan, Shard, is_spatial, spread_of
 
+GOLDEN = 0.618033988749895  # its multiples modulo 1 lie apart, however many there are
+
 
 class Row(NamedTuple):
     """How one game ended; a column of a shard each."""
@@ -36,15 +38,29 @@ class Row(NamedTuple):
 
 def rows(plan: Plan, shard: Shard, tell: Tell = silent) -> Iterator[Row]:
     """All games of a shard, cell by cell. Raises ConfigError."""
-    for place, number in enumerate(shard.cells):
-        cell = plan.cell(number)
+    found: dict[int, list[Row]] = {}
+    for place, number in enumerate(turned(shard)):
         tell(place / len(shard.cells), f"cell {number}")
-        if plan.flown:
-            yield from (_flown(cell, seed) for seed in shard.seeds)
-        elif is_spatial(cell.scenario):
-            yield from (spatial_row(cell, seed, spatial_game(plan, cell, seed)) for seed in shard.seeds)
-        else:
-            yield from simple_games(cell, shard.seeds)
+        found[number] = list(_games(plan, plan.cell(number), shard.seeds))
+    for number in shard.cells:
+        yield from found[number]
+
+
+def turned(shard: Shard) -> list[int]:
+    """The cells in the order in which they are played: each shard begins elsewhere, so that workers who begin
+    together do not all wait for the same kernels."""
+    cells = list(shard.cells)
+    first = round(len(cells) * (shard.number * GOLDEN % 1.0)) % len(cells)
+    return cells[first:] + cells[:first]
+
+
+def _games(plan: Plan, cell: Cell, seeds: range) -> Iterable[Row]:
+    """The games of a cell."""
+    if plan.flown:
+        return (_flown(cell, seed) for seed in seeds)
+    if is_spatial(cell.scenario):
+        return (spatial_row(cell, seed, spatial_game(plan, cell, seed)) for seed in seeds)
+    return simple_games(cell, seeds)
 
 
 def drawn(cell: Cell, seed: int) -> Scenario:

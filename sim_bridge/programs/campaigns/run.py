@@ -77,12 +77,13 @@ class _Work:
         clock = RealClock()
         begun, games, total = clock.monotonic_ns(), 0, sum(shard.games for shard in missing)
 
-        def rate() -> str:
+        def rate(done: int) -> str:
             seconds = max((clock.monotonic_ns() - begun) / NS_PER_S, 1e-9)
-            return f"{games} of {total} games, {games / seconds:.0f} a second"
+            return f"{done} of {total} games, {done / seconds:.0f} a second"
 
         def within(share: float, what: str) -> None:
-            progress.show((games + share * missing[0].games) / total, f"{rate()}, {what}")
+            done = games + round(share * missing[0].games)
+            progress.show(done / total, f"{rate(done)}, {what}")
 
         played = self._players(missing, within)
         progress.show(0.0, f"{total} games")
@@ -91,7 +92,7 @@ class _Work:
             write_whole(path, data, durable=True)
             self.whole[shard.number] = path
             games += shard.games
-            progress.show(games / total, rate())
+            progress.show(games / total, rate(games))
             self._judge()
             if self.stop is not None:
                 played.close()  # type: ignore[attr-defined]

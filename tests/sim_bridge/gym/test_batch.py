@@ -6,16 +6,19 @@ from math import cos, pi, radians, sin
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
 from onboard.config.strict import ConfigError
 from onboard.core.game.advance import advance, decide
 from onboard.core.game.referee import GameResult
 from onboard.core.strategy.registry import EVADERS, PURSUERS
 from sim_bridge.campaign.spatial_draw import Spread, drawn_scenario
+from sim_bridge.draws import Purpose, Stream, key_of
 from sim_bridge.gym.batch import BatchedGames, first_seed
 from sim_bridge.gym.exchange import Rewards, exchange
 from sim_bridge.gym.task import Wish, make_task
 from sim_bridge.plane_game.setup import conditions_of, game_of
+from sim_bridge.world.sensor import SENSOR_WORDS
 
 EVADER, PURSUER = EVADERS["paper"].decide, PURSUERS["paper"].decide
 
@@ -204,3 +207,28 @@ def test_compiled_games_are_the_interpreted_ones() -> None:
     np.testing.assert_allclose(one.places, two.places, atol=1e-9)
     np.testing.assert_allclose(one.arrays.pursuers_see, two.arrays.pursuers_see, atol=1e-4)
     assert one.seeds.tolist() == two.seeds.tolist() != (first_seed(2) + np.arange(5)).tolist()
+
+
+@pytest.mark.parametrize("count", [1, 9])
+def test_the_noise_is_that_of_the_bridges_sensor_whoever_shares_the_block(count: int) -> None:
+    """Eight vehicles are drawn at a time: nine pursuers and the evader take two blocks."""
+    space = make_task(Wish(scenario="space")).scenario
+    calm = replace(space.flight, wind=replace(space.flight.wind, speed=0.0))
+    sensor = replace(calm.sensor, dropout=0.25)
+    team = [replace(space.pursuers[k % 5], id=k + 2) for k in range(count)]
+    scenario = replace(space, pursuers=team, flight=replace(calm, sensor=sensor))
+    games = BatchedGames(make_task(Wish(scenario=scenario, learn="all", spread=0.0)), 8, compiled=False)
+    games.reset(seeds=np.arange(8))
+    kept = []
+    for g in range(8):
+        for player, id in enumerate(scenario.ids):
+            stream = Stream(key_of(g + scenario.seed, id, Purpose.SENSOR), SENSOR_WORDS, 1)
+            chance, *noise = stream.at(0)
+            here = np.concatenate([games.places[g, player], games.velocities[g, player]])
+            expected = here + noise * np.repeat([sensor.sigma, sensor.sigma_velocity], 3)
+            waiting = games._table.waiting[g, 0, player]
+            np.testing.assert_allclose(waiting[:6], expected, rtol=0.0, atol=1e-12)
+            kept.append(waiting[6])
+            assert waiting[6] == (chance >= 0.25)
+    assert 0.0 in kept
+    assert 1.0 in kept

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 from collections import Counter
+from itertools import pairwise
 from pathlib import Path
 
 import msgspec
@@ -18,6 +19,7 @@ from onboard.runtime.resources import configs
 from sim_bridge.programs.campaigns import fingerprint as prints
 from sim_bridge.programs.campaigns.command import Options, Played, all_of, plan_of, ways_of
 from sim_bridge.programs.campaigns.plan import Plan, chosen
+from sim_bridge.programs.campaigns.play import turned
 from sim_bridge.programs.campaigns.run import part_of
 from sim_bridge.programs.campaigns.until import Until, enough, parse, wilson
 
@@ -171,3 +173,15 @@ def test_a_wind_that_was_recorded_is_no_campaigns(tmp_path: Path) -> None:
     path.write_text(text + '\n[flight.wind]\nrecorded = "wind.csv"\n', "utf-8")
     with pytest.raises(ConfigError, match="expected a modelled wind"):
         chosen("windy", load(path))
+
+
+@given(st.integers(2, 40), st.integers(1, 60), st.integers(1, 200))
+def test_shards_are_played_from_places_apart(cells: int, games: int, shard_games: int) -> None:
+    """Each of its cells once; two that follow each other begin a quarter of the cells apart, or more."""
+    shards = sized(cells, games, shard_games).shards()
+    for shard in shards:
+        assert sorted(turned(shard)) == list(shard.cells)
+    for one, other in pairwise(shards):
+        if one.cells == other.cells and len(one.cells) > 5:
+            apart = abs(turned(one)[0] - turned(other)[0])
+            assert min(apart, len(one.cells) - apart) >= len(one.cells) // 4
