@@ -19,7 +19,7 @@ help:
 	@echo "make check-long   the long tests, and every property with five times other examples"
 	@echo "make check-pythons   a share of the tests on the later Pythons that this machine has"
 	@echo "make bench     benchmarks, beside the committed costs; results go to benchmarks/results/"
-	@echo "make bench-campaign  what games of a campaign cost, beside an earlier commit; a quarter of an hour"
+	@echo "make bench-campaign  what games of a campaign cost, beside an earlier commit; a quarter of an hour (SHORT=--short: a few games)"
 	@echo "make bench-page  the page before a browser, with 200 and 1000 vehicles"
 	@echo "make page-pictures  the pictures of docs/page.md again, from games flown for them; five minutes"
 	@echo "make figures   the committed tables of games, routes and predictors again, in one sweep"
@@ -72,7 +72,7 @@ check-pythons: install
 	@$(BIN)/python -m tests.install.pythons
 
 bench-campaign: install
-	$(BIN)/python -m tests.benchmarks.campaign_speed
+	$(BIN)/python -m tests.benchmarks.campaign_speed $(SHORT)
 
 # Costs in rounds of a yardstick, beside the committed ones. Fails where a promise is missed or something got slower.
 bench: install

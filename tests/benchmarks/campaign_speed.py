@@ -182,6 +182,12 @@ def growth(kind: str, sizes: list[int], horizon: float) -> list[str]:
     return rows
 
 
+def cpu_of_children() -> float:
+    """CPU time of all processes that have ended so far [s]."""
+    spent = os.times()
+    return spent.children_user + spent.children_system
+
+
 def paper_plan(games: float) -> str:
     """What 10⁹ games cost at so many games a CPU-second."""
     hours = 1e9 / games / 3600.0
@@ -194,12 +200,16 @@ def main(
     sizes: Annotated[str, typer.Option(help="Numbers of pursuers for the growth.")] = "2,5,10,20,50",
     flown: Annotated[str, typer.Option(help="The same of flown games; each is compiled once.")] = "2,5,10",
     kinds: Annotated[str, typer.Option(help="Games to compare.")] = "flown,plane,space",
+    short: Annotated[bool, typer.Option("--short", help="Few games, told and not written.")] = False,
 ) -> None:
     """Measure and write benchmarks/results/campaign.md."""
+    if short:
+        rounds, games, sizes, flown = 2, 4, "2,5", "5"
     plan = ""
     lines = [
-        f"Both versions play the same seeds in turn, {rounds} turns; rates are medians over the turns,",
-        "in CPU time of a core. Yardsticks: millions of rounds a CPU-second of a loop, in Python and numba.",
+        f"Both versions play the same seeds in turn, {rounds} turns; rates are medians over the turns, in CPU"
+        " time of a core.",
+        "Yardsticks: millions of rounds a CPU-second of a loop, in Python and numba.",
         "What flies has changed on purpose in between (estimated wind, teams), so that single games differ:",
         "shares in % with their 95 % intervals, p of a test that both end alike.",
         "",
@@ -223,6 +233,10 @@ def main(
     if plan:
         lines += ["", f"On paper, 10⁹ flown games of five pursuers at this rate: {plan}."]
     lines += ["", *NOTES]
+    lines[0] += f" All of it took {cpu_of_children():.0f} CPU-seconds, compiling included."
+    if short:
+        print("\n".join(lines))
+        return
     benchmark_record.write("campaign.md", "What games of a campaign cost", COMMAND, lines)
 
 
