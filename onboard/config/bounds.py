@@ -48,7 +48,8 @@ HttpPort = Annotated[int, Meta(ge=0, le=65535, description="a port, 0 to 65535")
 WaitTime = Annotated[float, Meta(ge=0.1, le=3600, description="0.1 to 3600 s")]
 
 SystemId = Annotated[int, Meta(ge=1, le=250, description="a MAVLink system id from 1 to 250")]
-Seed = Annotated[int, Meta(ge=0, le=2**63 - 1, description="a whole number from 0 to 2^63 − 1")]
+SEED_MAX = 2**63 - 1
+Seed = Annotated[int, Meta(ge=0, le=SEED_MAX, description="a whole number from 0 to 2^63 − 1")]
 GpsFix = Annotated[int, Meta(ge=0, le=6, description="a MAVLink GPS_FIX_TYPE from 0 to 6")]
 
 NotNegative = Annotated[float, Meta(ge=0, le=1e9, description="zero or more, at most 1e9")]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from enum import Enum
+from math import isfinite
 from pathlib import Path
 from typing import NamedTuple
 
@@ -81,10 +82,16 @@ def make_task(wish: Wish) -> Task:
     axes = Axes[_one("axes", wish.axes, [kind.name.lower() for kind in Axes]).upper()]
     dt = scenario.parameters.dt if motion is Motion.SIMPLE else 1.0 / scenario.flight.control_rate_hz
     form = Form(axes, steering, scenario.planar, scenario.evader.acceleration, dt)
-    spread = _spread(scenario) if wish.spread is None else float(wish.spread)
-    if not 0.0 <= spread < 1e6:
-        raise ConfigError(f"spread: found {wish.spread}, expected 0 to 1e6 m")
-    return Task(scenario, learners, evader, pursuers, motion, form, wish.rewards, spread)
+    spread = _spread(scenario) if wish.spread is None else wish.spread
+    if not isinstance(spread, int | float) or not 0.0 <= spread < 1e6:
+        raise ConfigError(f"spread: found {wish.spread!r}, expected 0 to 1e6 m")
+    if not isinstance(wish.rewards, Rewards) or not all(map(_finite, wish.rewards)):
+        raise ConfigError(f"rewards: found {wish.rewards!r}, expected Rewards of finite numbers")
+    return Task(scenario, learners, evader, pursuers, motion, form, wish.rewards, float(spread))
+
+
+def _finite(value: object) -> bool:
+    return isinstance(value, int | float) and isfinite(value)
 
 
 def _one(key: str, value: str, words: list[str]) -> str:
@@ -94,7 +101,11 @@ def _one(key: str, value: str, words: list[str]) -> str:
 
 
 def _scenario(wish: Scenario | Path | str) -> Scenario:
-    return wish if isinstance(wish, Scenario) else load(shipped_file(Path(wish), SCENARIOS))
+    if isinstance(wish, Scenario):
+        return wish
+    if not isinstance(wish, str | Path) or not str(wish).strip():
+        raise ConfigError(f"scenario: found {wish!r}, expected a scenario, its file, or a shipped one's name")
+    return load(shipped_file(Path(wish), SCENARIOS))
 
 
 def _demand_playable(scenario: Scenario, motion: Motion) -> None:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from onboard.config.bounds import SEED_MAX
 from onboard.config.names import file_name
 from onboard.config.strict import ConfigError
 from onboard.core.strategy.registry import EVADERS, PURSUERS
@@ -70,6 +71,9 @@ def plan_of(options: Options, until: bool) -> Plan:
     games = (options.games or GAMES) if most is None else max(1, most // cells)
     if most is not None and options.games is not None:
         games = min(games, options.games)
+    last = SEED_MAX - games + 1 - max(one.data["seed"] for one in scenarios)
+    if options.seed > last:
+        raise ConfigError(f"--seed: found {options.seed}, expected at most {last} for {games} games")
     plan = Plan(
         format=FORMAT,
         scenarios=scenarios,
@@ -90,7 +94,8 @@ def scenarios_of(paths: tuple[Path, ...]) -> list[Chosen]:
     files = [shipped_file(path, SCENARIOS.sought_first("spatial")) for path in paths]
     stems = [file.stem for file in files]
     labels = [
-        file.stem if stems.count(file.stem) == 1 else f"{file.parent.name}/{file.stem}" for file in files
+        file.stem if stems.count(file.stem) == 1 else f"{file.parent.name or '.'}/{file.stem}"
+        for file in files
     ]
     for label in labels:
         if labels.count(label) > 1:

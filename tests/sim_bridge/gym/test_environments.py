@@ -7,6 +7,7 @@ import subprocess
 import sys
 import warnings
 from pathlib import Path
+from typing import Any
 
 import gymnasium
 import numpy as np
@@ -24,6 +25,7 @@ from onboard.runtime.clock import RealClock
 from onboard.runtime.resources import SCENARIOS, shipped_file
 from onboard.wire.bus.messages import OutcomeResult, Phase
 from sim_bridge.gym import register_envs
+from sim_bridge.gym.exchange import Rewards
 from sim_bridge.gym.parallel import parallel_env
 from sim_bridge.gym.single import GameEnv
 from tests.support.bus_stages import free_port
@@ -122,7 +124,13 @@ def test_gymnasium_makes_them_by_name_whichever_is_imported_first() -> None:
 
 
 def test_wrong_words_and_actions_are_named() -> None:
-    for words, said in (({"scenarios": "plane"}, "scenarios"), ({"render_mode": "ansi"}, "render_mode")):
+    wrong: tuple[tuple[dict[str, Any], str], ...] = (
+        ({"scenarios": "plane"}, "scenarios"), ({"render_mode": "ansi"}, "render_mode"),
+        ({"scenario": ""}, "scenario: found '', expected"), ({"scenario": None}, "scenario: found None"),
+        ({"spread": "wide"}, "spread: found 'wide'"), ({"spread": np.nan}, "spread: found nan"),
+        ({"rewards": None}, "rewards: found None"), ({"rewards": Rewards(time=np.inf)}, "rewards: .*inf"),
+    )  # fmt: skip
+    for words, said in wrong:
         with pytest.raises(ConfigError, match=said):
             GameEnv(compiled=False, **words)
     env = GameEnv(**SMALL)

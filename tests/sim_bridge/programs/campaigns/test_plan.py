@@ -19,9 +19,10 @@ from onboard.runtime.resources import configs
 from sim_bridge.programs.campaigns import fingerprint as prints
 from sim_bridge.programs.campaigns.command import Options, Played, all_of, plan_of, ways_of
 from sim_bridge.programs.campaigns.plan import Plan, chosen
-from sim_bridge.programs.campaigns.play import turned
+from sim_bridge.programs.campaigns.play import drawn, simple_games, turned
 from sim_bridge.programs.campaigns.run import part_of
 from sim_bridge.programs.campaigns.until import Until, enough, parse, wilson
+from tests.support.campaign_runs import duel
 
 PLAN = plan_of(Options((Path("row01"), Path("five")), evaders=("paper", "straight")), until=False)
 
@@ -185,3 +186,24 @@ def test_shards_are_played_from_places_apart(cells: int, games: int, shard_games
         if one.cells == other.cells and len(one.cells) > 5:
             apart = abs(turned(one)[0] - turned(other)[0])
             assert min(apart, len(one.cells) - apart) >= len(one.cells) // 4
+
+
+@pytest.mark.parametrize("below", [0, 1])
+def test_no_game_has_a_seed_beyond_the_last(below: int, tmp_path: Path) -> None:
+    """The scenario's own seed counts too: the world's is their sum, and `fly` writes it into a file."""
+    options = Options((duel(tmp_path),), games=20, seed=2**63 - 1 - 19 - 5 + below)  # the duel's seed is 5
+    if below:
+        with pytest.raises(ConfigError, match=rf"--seed: found {options.seed}, expected at most"):
+            plan_of(options, until=False)
+        return
+    [shard] = plan_of(options, until=False).shards()
+    cell = plan_of(options, until=False).cell(0)
+    assert drawn(cell, shard.seeds[-1]).seed == 2**63 - 1
+    assert simple_games(cell, shard.seeds[-1:])[0].seed == shard.seeds[-1]
+
+
+def test_a_file_given_twice_is_named_as_given(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    duel(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(ConfigError, match=r"SCENARIO: found \./duel twice"):
+        plan_of(Options((Path("duel.toml"), Path("duel.toml"))), until=False)
