@@ -9,66 +9,68 @@ never falls below one: a model that was lucky is not thereby sure.
 
 from __future__ import annotations
 
-from collections import deque
+from math import exp, hypot, isfinite, log
 from typing import NamedTuple
 
-import numpy as np
-
-from onboard.pilot.predictor.activation import Array
+from onboard.pilot.predictor.said import Numbers, Rows, Said
 
 ONE, TWO = 0.32, 0.05  # shares of the facts that may lie outside one and two stated errors
 RATE = 0.08  # of a factor's logarithm a grid point, at the shortest horizons
 LARGEST = 5.0  # no factor is larger
-_BEFORE = -(1 << 62)  # before every grid point
 
 
-class _Said(NamedTuple):
-    point: int  # index of the grid point
-    places: Array  # (H, 3) [m]
-    sigma: Array  # (H,) [m] as trained, without a factor
+class _Words(NamedTuple):
+    places: Rows  # (H, 3) [m]
+    sigma: Numbers  # (H,) [m] as trained, without a factor
+
+
+class Off(NamedTuple):
+    """How far a prediction was off."""
+
+    horizon: int  # its index
+    said: int  # the grid point it was said at
+    times: float  # of the error that training stated
 
 
 class Calibration:
     """Follows the stated errors of one track's predictions at grid points."""
 
     def __init__(self, horizons: tuple[int, ...]) -> None:
-        self._horizons = horizons
-        self._said: deque[_Said] = deque(maxlen=max(horizons) + 1)
-        self._one = np.zeros(len(horizons))  # logarithms of the factors
-        self._two = np.zeros(len(horizons))
-        self._seen = _BEFORE
+        self._said: Said[_Words] = Said(horizons)
+        self._one = [0.0] * len(horizons)  # logarithms of the factors
+        self._two = [0.0] * len(horizons)
 
     def clear(self) -> None:
         """Forget: the grid began anew."""
         self._said.clear()
-        self._one[:] = 0.0
-        self._two[:] = 0.0
-        self._seen = _BEFORE
+        self._one = [0.0] * len(self._one)
+        self._two = [0.0] * len(self._two)
 
-    def factors(self) -> Array:
+    def factors(self) -> list[float]:
         """(H,) by which the errors found in training are multiplied, 1 … LARGEST."""
-        out: Array = np.exp(np.maximum(self._one, self._two))
-        return out
+        return [exp(max(one, two)) for one, two in zip(self._one, self._two, strict=True)]
 
-    def tell(self, index: int, places: Array, sigma: Array) -> None:
+    def tell(self, index: int, places: Rows, sigma: Numbers) -> None:
         """Keep what was said at a grid point: places (H, 3) [m] and their errors (H,) [m] as trained."""
-        self._said.append(_Said(index, places, sigma))
+        self._said.keep(index, _Words(places, sigma))
 
-    def judge(self, newest: int, positions: Array) -> None:
-        """Compare with the grid's positions (n, 3) [m], the last of which has index `newest`."""
-        for index in range(max(self._seen + 1, newest - len(positions) + 1), newest + 1):
-            self._judge(index, positions[len(positions) - 1 - (newest - index)])
-        self._seen = newest
-
-    def _judge(self, index: int, position: Array) -> None:
-        for said in self._said:
-            ahead = index - said.point
-            if ahead in self._horizons:
-                i = self._horizons.index(ahead)
-                if not np.isfinite(said.sigma[i]):
+    def judge(self, newest: int, positions: Rows) -> list[Off]:
+        """Compare with the grid's last places (n, 3 or more) [m], the last of which has index `newest`; gives
+        how far the predictions were off whose truth came."""
+        found = []
+        for index, place, told in self._said.facts(newest, positions):
+            for i, (ahead, said) in enumerate(told):
+                if said is None or not isfinite(said.sigma[i]):
                     continue
-                off = float(np.linalg.norm(position - said.places[i])) / max(float(said.sigma[i]), 1e-6)
-                for factor, outside, size in ((self._one, ONE, 1.0), (self._two, TWO, 2.0)):
-                    missed = off > size * np.exp(factor[i])
-                    factor[i] += RATE * (missed - outside)
-                    factor[i] = min(max(factor[i], 0.0), np.log(LARGEST))
+                x, y, z = (float(place[axis] - said.places[i][axis]) for axis in range(3))
+                off = hypot(x, y, z) / max(float(said.sigma[i]), 1e-6)
+                self._one[i] = _moved(self._one[i], off, ONE, 1.0)
+                self._two[i] = _moved(self._two[i], off, TWO, 2.0)
+                found.append(Off(i, index - ahead, off))
+        return found
+
+
+def _moved(factor: float, off: float, outside: float, size: float) -> float:
+    """The logarithm of a factor after a fact `off` stated errors away."""
+    missed = off > size * exp(factor)
+    return min(max(factor + RATE * (missed - outside), 0.0), log(LARGEST))

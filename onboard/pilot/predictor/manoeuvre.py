@@ -71,7 +71,7 @@ class ManoeuvreFilter:
         self.shares = np.maximum(weight / weight.sum(), 1e-4)
         self.shares /= self.shares.sum()
 
-    def places(self, ahead: Sequence[float]) -> Array:
+    def places(self, ahead: Sequence[float] | Array) -> list[tuple[float, float]]:
         """Expected places (n, 2) [m; north, east] so many seconds (n,) after the newest sample."""
         models = list(zip(self.shares.tolist(), self._x.tolist(), strict=True))
         out = []
@@ -81,7 +81,7 @@ class ManoeuvreFilter:
                 n, e = _carried(x, time)
                 north, east = north + share * n, east + share * e
             out.append((north, east))
-        return np.array(out)
+        return out
 
     def _begin(self, t: float, position: Vec, velocity: Vec, variance: Variance, measured: bool) -> None:
         """Begin anew with one sample."""

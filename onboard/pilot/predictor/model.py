@@ -118,8 +118,10 @@ def fit(
         )
     answer = _answer(act, weights, net, len(horizons)) * settings.networks
     turn_on, came = _turning(heard if settings.manoeuvres else None, positions, view, origins, horizons)
-    held = [Held(wanted[part, i], base[part, i], answer[part, i], turn_on[part, i], came[part, i])
-            for i, part in enumerate(late)]
+    held = [
+        Held(wanted[part, i], base[part, i], answer[part, i], turn_on[part, i], came[part, i])
+        for i, part in enumerate(late)
+    ]
     verdict = verdicts([judge(held[i], int(h), enough[i], settings.margin) for i, h in enumerate(horizons)])
     yield
 
@@ -143,14 +145,21 @@ def refresh(positions: Array, velocities: Array, model: Model, settings: ModelSe
     total = len(positions)
     if total < max(settings.ladder[1], 2 * model.points) or not model.coefficients.any():
         return model
-    origins = np.arange(model.points - 1, total)
-    view = windows(positions, velocities, origins, model.points)
-    horizons = np.array(settings.horizons)
-    wanted, _ = _targets(positions, view, origins, horizons)
-    counts = [max(0, int(total - h - origins[0])) for h in horizons]
-    enough = [bool(model.coefficients[i].any()) and counts[i] >= model.points for i in range(len(horizons))]
-    fresh = _final(ridge.features(view.moves), wanted, counts, enough, model.penalty, settings)
+    _, rows, wanted = lessons(positions, velocities, model.points, settings)
+    counts = [max(0, total - h - model.points + 1) for h in settings.horizons]
+    enough = [bool(model.coefficients[i].any()) and count >= model.points for i, count in enumerate(counts)]
+    fresh = _final(rows, wanted, counts, enough, model.penalty, settings)
     return model._replace(coefficients=fresh)
+
+
+def lessons(
+    positions: Array, velocities: Array, points: int, settings: ModelSettings
+) -> tuple[Windows, Array, Array]:
+    """All windows of a grid, their features (3, k, F) and innovations (k, H, 3), zero where not known yet."""
+    origins = np.arange(points - 1, len(positions))
+    view = windows(positions, velocities, origins, points)
+    wanted, _ = _targets(positions, view, origins, np.array(settings.horizons))
+    return view, ridge.features(view.moves), wanted
 
 
 class _Net(NamedTuple):

@@ -7,7 +7,7 @@ from math import isfinite, isnan
 from typing import NamedTuple
 
 from onboard.core.math.vectors import Vec, along, norm
-from onboard.pilot.predictor.forecast import Forecast
+from onboard.pilot.predictor.forecast import Answer
 from onboard.pilot.predictor.prediction import Prediction, PredictorKind
 from onboard.pilot.track_filter import Estimate
 
@@ -38,14 +38,14 @@ class Path(NamedTuple):
         return self.knots[-1].time
 
 
-def path(start: Estimate, forecast: Forecast, horizons: tuple[int, ...], step: float) -> Path:
-    """The path of a forecast from a track's estimate; horizons are counted in steps of `step` [s]."""
+def path(start: Estimate, said: Answer, horizons: tuple[int, ...], step: float) -> Path:
+    """The path of a forecast, from a track's estimate; horizons are counted in steps of `step` [s]."""
     t, position, velocity, sigma, _sigma_velocity = start
-    means = zip(forecast.velocities.tolist(), horizons, strict=True)
+    means = zip(said.velocities, horizons, strict=True)
     moves: list[Row] = [(0.0, 0.0, 0.0), *((x * h, y * h, z * h) for (x, y, z), h in means)]
     slopes = _slopes((0, *horizons), moves, tuple(v * step for v in velocity))
-    kinds = (forecast.kinds[0], *forecast.kinds)
-    errors = (0.0, *forecast.sigma.tolist())
+    kinds = (said.kinds[0], *said.kinds)
+    errors = (0.0, *said.sigma)
     knots = [
         Knot(h * step, Vec(*move), Vec(*(v / step for v in slope)), error, kind)
         for h, move, slope, error, kind in zip((0, *horizons), moves, slopes, errors, kinds, strict=True)

@@ -19,6 +19,9 @@ class PredictorKind(IntEnum):
     MANOEUVRE = 5  # constant velocity and coordinated turn, weighed by how well each explains the track
 
 
+SPEAKING = (PredictorKind.RIDGE, PredictorKind.NETWORK)  # what was learnt speaks
+
+
 class Prediction(NamedTuple):
     """A predicted state of a target; not `usable` where nothing can be said: do not steer by it."""
 

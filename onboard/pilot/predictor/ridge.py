@@ -28,6 +28,15 @@ def fit(rows: Array, targets: Array, counts: Sequence[int], penalties: Sequence[
 
     Horizon h learns from its first counts[h] rows (the later ones have no known target). A penalty is
     relative to the features' own mean squares, which amounts to features of unit variance."""
+    gram, right = normal(rows, targets, counts)
+    out = np.empty((len(penalties), *right.shape))
+    for i, penalty in enumerate(penalties):
+        out[i] = np.linalg.solve(loaded(gram, penalty), right[..., None])[..., 0]
+    return out
+
+
+def normal(rows: Array, targets: Array, counts: Sequence[int]) -> tuple[Array, Array]:
+    """Normal matrices (H, 3, L + 1, L + 1) and right sides (H, 3, L + 1) of `fit`."""
     size = rows.shape[2]
     gram = np.empty((len(counts), 3, size, size))
     right = np.empty((len(counts), 3, size))
@@ -39,15 +48,17 @@ def fit(rows: Array, targets: Array, counts: Sequence[int], penalties: Sequence[
         done = max(done, count)
         gram[h] = running
         right[h] = (targets[:count, h].T[:, None, :] @ rows[:, :count])[:, 0]
-    each = np.arange(size)
+    return gram, right
+
+
+def loaded(gram: Array, penalty: float | Array) -> Array:
+    """Normal matrices (H, 3, F, F) with a penalty, a number or (H, 1, 1), relative to their own diagonals."""
+    each = np.arange(gram.shape[-1])
     power = gram[..., each, each]
     floor = 1e-9 * power.max(initial=0.0) + 1e-12
     power = np.where(power < floor, np.maximum(floor, 1.0), power)
-    out = np.empty((len(penalties), *right.shape))
-    for i, penalty in enumerate(penalties):
-        loaded = gram.copy()
-        loaded[..., each, each] += penalty * power
-        out[i] = np.linalg.solve(loaded, right[..., None])[..., 0]
+    out = gram.copy()
+    out[..., each, each] += penalty * power
     return out
 
 

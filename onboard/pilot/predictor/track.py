@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Generator
-from math import sqrt
+from itertools import pairwise
+from math import hypot, nan, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -11,16 +12,19 @@ import numpy as np
 from onboard.core.math.vectors import ZERO, Vec, norm
 from onboard.pilot.kalman import Variance
 from onboard.pilot.predictor import model as flying
-from onboard.pilot.predictor.activation import Array
 from onboard.pilot.predictor.calibration import Calibration
-from onboard.pilot.predictor.forecast import answer, forecast, learnt
+from onboard.pilot.predictor.forecast import Plain, answer, learnt, plain
 from onboard.pilot.predictor.grid import Grid
 from onboard.pilot.predictor.manoeuvre import ManoeuvreFilter
 from onboard.pilot.predictor.model import Heard, Model, ModelSettings
+from onboard.pilot.predictor.need import Need
 from onboard.pilot.predictor.path import Path, at, path, sound
 from onboard.pilot.predictor.prediction import REFUSAL, Prediction, PredictorKind
+from onboard.pilot.predictor.running import RunningRidge
 from onboard.pilot.predictor.trust import Trust
 from onboard.pilot.track_filter import Fate, FilterSettings, TrackFilter
+
+Places = list[tuple[float, float]]
 
 FARTHEST = 600.0  # nothing is said about instants farther from the newest sample than this [s]
 
@@ -50,9 +54,12 @@ class TrackPredictor:
         self.model: Model | None = None
         self.trust = Trust(self.settings.model.horizons)
         self.calibration = Calibration(self.settings.model.horizons)
+        self.need = Need(self.settings.model.horizons)
         self.trainings = 0
         self.manoeuvre = ManoeuvreFilter()
-        self._turned: dict[int, Array] = {}  # grid point → places (H, 2) [m] expected by `manoeuvre`
+        self._turned: dict[int, Places] = {}  # grid point → places (H, 2) [m] expected by `manoeuvre`
+        self._plain: Plain | None = None  # the model
+        self._ridge = RunningRidge(self.settings.model)
         self._seed = seed
         self._life = 0  # counts restarts: a training that began before one is thrown away
         self._fitted = -1  # grid points at the last fit of the ridge
@@ -76,7 +83,8 @@ class TrackPredictor:
             self.grid.extend(self.filter)
             self.trust.clear()
             self.calibration.clear()
-            self.model = None
+            self.need.clear()
+            self.model = self._plain = None
             self._life += 1
         else:
             return fate
@@ -93,7 +101,7 @@ class TrackPredictor:
         while len(self._turned) > self.settings.window:
             del self._turned[next(iter(self._turned))]
 
-    def _expected(self, since: float) -> Array:
+    def _expected(self, since: float) -> Places:
         """Places (H, 2) [m] that the manoeuvre filter expects at the horizons after `since` [s]."""
         begun = since - self.manoeuvre.newest
         step = self.settings.step
@@ -101,7 +109,7 @@ class TrackPredictor:
 
     def _heard(self) -> Heard:
         """What the manoeuvre filter expected at the grid's points, NaN where nothing was noted."""
-        silent = np.full((len(self.settings.model.horizons), 2), np.nan)
+        silent = [(nan, nan)] * len(self.settings.model.horizons)
         first = self.grid.last - len(self.grid) + 1
         points = range(first, self.grid.last + 1)
         return Heard(np.array([self._turned.get(point, silent) for point in points]), self.grid.measured())
@@ -133,18 +141,21 @@ class TrackPredictor:
 
     @property
     def trainable(self) -> bool:
-        """Whether there are enough points to train on."""
-        return len(self.grid) >= self.settings.model.ladder[0]
+        """Whether there are enough points to train on, and the model asks for it: see Need."""
+        count = len(self.grid)
+        return count >= self.settings.model.ladder[0] and self.need.asks(count, self.settings.window)
 
     def train(self) -> Generator[None, None, None]:
         """Train on the grid in slices of about 1 ms: each `next` does one; the last puts the model to use."""
         life = self._life
-        count = self.grid.added
+        count, points, newest = self.grid.added, len(self.grid), self.grid.last
         self.trainings += 1
         rng = np.random.default_rng([self._seed, self.trainings])
         trained = yield from flying.fit(*self.grid.arrays(), self.settings.model, rng, self._heard())
         if trained is not None and life == self._life:
-            self.model = trained
+            self.model, self._plain = trained, plain(trained, self.settings.model)
+            self._ridge.clear()
+            self.need.trained(points, newest)
             self._fitted = count
             self._fresh = False
 
@@ -159,25 +170,33 @@ class TrackPredictor:
         return self.model is not None and self.grid.added != self._fitted
 
     def refresh(self) -> None:
-        """Fit the ridge anew to the grid, and judge the last predictions: a slice of less than 1 ms."""
-        if self.model is None:
+        """Keep the ridge up with the grid, and judge the last predictions: far less than 1 ms."""
+        if self.model is None or self._plain is None:
             return
-        positions, velocities = self.grid.arrays()
-        self.model = flying.refresh(positions, velocities, self.model, self.settings.model)
+        self.model = model = self._ridge.follow(self.grid, self.model)
+        self._plain = plain = self._plain._replace(ridge=model.coefficients.tolist())
         self._fitted = self.grid.added
         self._fresh = False
-        self.trust.judge(self.grid.last, positions)
-        self.calibration.judge(self.grid.last, positions)
-        if len(positions) >= self.model.points:
-            settings, here, velocity = self.settings.model, positions[-1], velocities[-1]
-            own = learnt(self.model, positions, velocity, settings)
-            alone = answer(self.model, own, here, velocity, settings)
-            self.trust.tell(self.grid.last, here, velocity, alone.velocities - velocity)
-            beside = (self.trust.shares(), self._turned.get(self.grid.last))
-            said = answer(self.model, own, here, velocity, settings, beside)
-            ends = positions[-1] + said.velocities * np.array(self.settings.model.horizons)[:, None]
-            start = self.filter.estimate(self.grid.last * self.settings.step).sigma
-            self.calibration.tell(self.grid.last, ends, np.hypot(start, said.sigma))
+        newest = self.grid.last
+        rows = self.grid.tail(max(model.points, 1))
+        self.trust.judge(newest, rows)
+        self.need.hear(self.calibration.judge(newest, rows))
+        if len(rows) < model.points:
+            return
+        step, horizons = self.settings.step, self.settings.model.horizons
+        here, velocity = rows[-1][:3], [v * step for v in rows[-1][3:6]]
+        own = learnt(plain, rows, velocity)
+        alone = answer(plain, own, here, velocity, horizons)
+        innovation = [[x - v for x, v in zip(mean, velocity, strict=True)] for mean in alone.velocities]
+        self.trust.tell(newest, here, velocity, innovation)
+        beside = (self.trust.shares(), self._turned.get(newest))
+        said = answer(plain, own, here, velocity, horizons, beside)
+        ends = [
+            [p + h * v for p, v in zip(here, mean, strict=True)]
+            for mean, h in zip(said.velocities, horizons, strict=True)
+        ]
+        start = self.filter.estimate(newest * step).sigma
+        self.calibration.tell(newest, ends, [hypot(start, sigma) for sigma in said.sigma])
 
     def _line(self) -> Path | None:
         """The path from the newest sample on; None where the model cannot speak."""
@@ -187,20 +206,20 @@ class TrackPredictor:
         return self._path
 
     def _forecast(self) -> Path | None:
-        model, step, newest = self.model, self.settings.step, self.filter.newest
+        model, step, newest = self._plain, self.settings.step, self.filter.newest
         places = None if model is None else self.grid.window(self.filter, model.points)
         if model is None or places is None:
             return None
         here = self.filter.estimate(newest)
-        with np.errstate(over="ignore", invalid="ignore"):
-            velocity = np.array(here.velocity) * step
-            said = forecast(
-                model, places, velocity, self.settings.model, self.trust.shares(), self._expected(newest)
-            )
-        whole = self.calibration.factors() * np.hypot(here.sigma, said.sigma)
-        said = said._replace(sigma=np.sqrt(whole * whole - here.sigma * here.sigma))
         horizons = self.settings.model.horizons
+        velocity = [v * step for v in here.velocity]
+        beside = (self.trust.shares(), self._expected(newest))
+        said = answer(model, learnt(model, places, velocity), places[-1], velocity, horizons, beside)
+        own = here.sigma * here.sigma
+        errors = zip(self.calibration.factors(), said.sigma, strict=True)
+        said = said._replace(
+            sigma=[sqrt(max(f * f * (own + sigma * sigma) - own, 0.0)) for f, sigma in errors]
+        )
         line = path(here, said, horizons, step)
-        moves = np.diff(places, axis=0)
-        fastest = float(np.sqrt((moves * moves).sum(axis=1)).max()) / step
-        return line if sound(line, max(fastest, norm(here.velocity))) else None
+        moves = (((a - x) ** 2 + (b - y) ** 2 + (c - z) ** 2) for (a, b, c), (x, y, z) in pairwise(places))
+        return line if sound(line, max(sqrt(max(moves)) / step, norm(here.velocity))) else None

@@ -8,66 +8,55 @@ memory, begun with a prior of full belief) scales what is said next.
 
 from __future__ import annotations
 
-from collections import deque
 from typing import NamedTuple
 
-import numpy as np
-
-from onboard.pilot.predictor.activation import Array
+from onboard.pilot.predictor.said import Numbers, Rows, Said
 
 FADE = 0.97  # memory: about 33 grid points
-_BEFORE = -(1 << 62)  # before every grid point
 PRIOR = 5.0  # predictions' worth of full belief
 
 
-class _Said(NamedTuple):
-    point: int  # index of the grid point
-    position: Array  # (3,) [m]
-    velocity: Array  # (3,) [m a step]
-    innovation: Array  # (H, 3) [m a step]
+class _Words(NamedTuple):
+    position: Numbers  # (3,) [m]
+    velocity: Numbers  # (3,) [m a step]
+    innovation: Rows  # (H, 3) [m a step]
 
 
 class Trust:
     """Follows one model's predictions at grid points."""
 
     def __init__(self, horizons: tuple[int, ...]) -> None:
-        self._horizons = horizons
-        self._said: deque[_Said] = deque(maxlen=max(horizons) + 1)
-        self._power = np.zeros(len(horizons))  # Σ said · said
-        self._match = np.zeros(len(horizons))  # Σ said · fact
-        self._seen = _BEFORE  # index of the newest grid point judged
+        self._said: Said[_Words] = Said(horizons)
+        self._power = [0.0] * len(horizons)  # Σ said · said
+        self._match = [0.0] * len(horizons)  # Σ said · fact
 
     def clear(self) -> None:
         """Forget: the grid began anew."""
         self._said.clear()
-        self._power[:] = 0.0
-        self._match[:] = 0.0
-        self._seen = _BEFORE
+        self._power = [0.0] * len(self._power)
+        self._match = [0.0] * len(self._match)
 
-    def judge(self, newest: int, positions: Array) -> None:
-        """Compare with the grid's positions (n, 3), the last of which has index `newest`."""
-        for index in range(max(self._seen + 1, newest - len(positions) + 1), newest + 1):
-            self._judge(index, positions[len(positions) - 1 - (newest - index)])
-        self._seen = newest
+    def judge(self, newest: int, positions: Rows) -> None:
+        """Compare with the grid's last places (n, 3 or more) [m], the last of which has index `newest`."""
+        for _, place, told in self._said.facts(newest, positions):
+            for i, (ahead, said) in enumerate(told):
+                power, match = self._power[i] * FADE, self._match[i] * FADE
+                if said is not None:
+                    for axis in range(3):
+                        came = (place[axis] - said.position[axis]) / ahead - said.velocity[axis]
+                        word = said.innovation[i][axis]
+                        power += word * word
+                        match += word * came
+                self._power[i], self._match[i] = power, match
 
-    def tell(self, index: int, position: Array, velocity: Array, innovation: Array) -> None:
+    def tell(self, index: int, position: Numbers, velocity: Numbers, innovation: Rows) -> None:
         """Keep what was said at a grid point."""
-        self._said.append(_Said(index, position, velocity, innovation))
+        self._said.keep(index, _Words(position, velocity, innovation))
 
-    def shares(self) -> Array:
+    def shares(self) -> list[float]:
         """(H,) shares of the innovations to believe, 0…1."""
-        prior = PRIOR * (1.0 - FADE) * self._power + 1e-12
-        out: Array = np.clip((self._match + prior) / (self._power + prior), 0.0, 1.0)
-        return out
-
-    def _judge(self, index: int, position: Array) -> None:
-        self._power *= FADE
-        self._match *= FADE
-        for said in self._said:
-            ahead = index - said.point
-            if ahead in self._horizons:
-                i = self._horizons.index(ahead)
-                fact = (position - said.position) / ahead - said.velocity
-                told = said.innovation[i]
-                self._power[i] += float(told @ told)
-                self._match[i] += float(told @ fact)
+        found = []
+        for power, match in zip(self._power, self._match, strict=True):
+            prior = PRIOR * (1.0 - FADE) * power + 1e-12
+            found.append(min(max((match + prior) / (power + prior), 0.0), 1.0))
+        return found

@@ -160,8 +160,15 @@ vecs = st.builds(Vec, anything, anything, anything)
 @settings(max_examples=150, deadline=None)
 @given(
     samples=st.lists(
-        st.builds(TrackSample, st.integers(1, 4), anything, vecs, vecs,
-                  st.tuples(anything, anything, anything, anything, anything, anything)), max_size=6
+        st.builds(
+            TrackSample,
+            st.integers(1, 4),
+            anything,
+            vecs,
+            vecs,
+            st.tuples(anything, anything, anything, anything, anything, anything),
+        ),
+        max_size=6,
     ).map(tuple),
     side=st.sampled_from(Side),
 )
@@ -177,10 +184,16 @@ def test_whatever_a_sensor_says_nothing_raises(samples: tuple[TrackSample, ...],
 
 
 def test_five_pilots_catch_an_encircled_evader_with_late_tracks() -> None:
-    ring = [Vec(40.0, 0.0, 0.0), Vec(12.0, 38.0, 0.0), Vec(-32.0, 23.0, 0.0), Vec(-32.0, -23.0, 0.0),
-            Vec(12.0, -38.0, 0.0)]
+    ring = [
+        Vec(40.0, 0.0, 0.0),
+        Vec(12.0, 38.0, 0.0),
+        Vec(-32.0, 23.0, 0.0),
+        Vec(-32.0, -23.0, 0.0),
+        Vec(12.0, -38.0, 0.0),
+    ]
     roster = (
-        Player(1, Side.EVADER, 3.0, VehicleLimits()), *(Player(2 + n, Side.PURSUER, 4.0) for n in range(5))
+        Player(1, Side.EVADER, 3.0, VehicleLimits()),
+        *(Player(2 + n, Side.PURSUER, 4.0) for n in range(5)),
     )
     setup = GameSetup(roster, Rules(R=2.0, rho=4.0, planar=True))
     pilots = [Pilot(1, Side.EVADER), *(Pilot(2 + n, Side.PURSUER) for n in range(5))]

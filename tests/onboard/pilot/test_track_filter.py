@@ -127,8 +127,10 @@ def test_a_stamp_far_in_the_future_does_not_blind_the_filter() -> None:
 
 
 @settings(max_examples=60, deadline=None)
-@given(st.lists(st.tuples(*[st.floats(allow_nan=True, allow_infinity=True) for _ in range(10)]), max_size=12),
-       st.floats(-1e6, 1e6))
+@given(
+    st.lists(st.tuples(*[st.floats(allow_nan=True, allow_infinity=True) for _ in range(10)]), max_size=12),
+    st.floats(-1e6, 1e6),
+)
 def test_nothing_makes_it_raise_or_answer_nan(rows: list[tuple[float, ...]], t: float) -> None:
     track = TrackFilter()
     for row in rows:

@@ -7,7 +7,7 @@ import pytest
 
 from onboard.pilot.predictor import network, ridge
 from onboard.pilot.predictor.activation import Array
-from onboard.pilot.predictor.forecast import learnt
+from onboard.pilot.predictor.forecast import learnt, plain
 from onboard.pilot.predictor.heading import windows
 from onboard.pilot.predictor.model import REACH, SQUEEZE, Model, ModelSettings
 from onboard.pilot.predictor.network import Weights
@@ -63,7 +63,7 @@ def test_floats_say_what_arrays_say(axes: tuple[int, ...], still: bool) -> None:
         if still:
             positions[:] = positions[0]
         velocity = rng.normal(0.0, 3.0, 3)
-        said = learnt(model, positions, velocity, settings)
+        said = learnt(plain(model, settings), positions.tolist(), velocity.tolist())
         wanted = in_arrays(model, positions, velocity, settings)
         np.testing.assert_allclose(said.innovation, wanted, rtol=1e-11, atol=1e-11)
 

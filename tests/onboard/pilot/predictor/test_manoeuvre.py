@@ -52,7 +52,7 @@ def test_a_measured_velocity_is_used() -> None:
     for k in range(3):
         t = 0.1 * k
         filter.add(t, straight(t), Vec(SPEED * cos(1.0), SPEED * sin(1.0), 0.0), variance)
-    np.testing.assert_allclose(filter.places(np.array([1.0]))[0], straight(1.2)[:2], atol=1.0)
+    np.testing.assert_allclose(filter.places([1.0]), [straight(1.2)[:2]], atol=1.0)
 
 
 @pytest.mark.parametrize("rate", [-0.7, -1e-9, 0.0, 0.2])

@@ -205,6 +205,8 @@ def test_wild_samples_in_a_flight_never_break_it() -> None:
 
 def test_trainings_take_turns_and_keep_their_distance() -> None:
     tracks = {name: fly(12.0, slices=0).track for name in ("a", "b", "c")}
+    for track in tracks.values():
+        track.need.rising = True  # each asks at every turn
     trainer = Trainer(period=4.0)
     begun: list[tuple[float, str]] = []
     for k in range(2000):
