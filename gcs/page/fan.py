@@ -55,7 +55,7 @@ class Fan:
         newest = self._filter.newest
         flat = self._turning.places([ahead + (newest - self._turning.newest) for ahead in AHEAD_S])
         found = []
-        for after, (north, east) in zip(AHEAD_S, flat.tolist(), strict=True):
+        for after, (north, east) in zip(AHEAD_S, flat, strict=True):
             straight = self._filter.estimate(newest + after)
             found.append([after, north, east, straight.position.z, straight.sigma])
         return found if np.isfinite(found).all() else []

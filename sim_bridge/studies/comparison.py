@@ -169,9 +169,10 @@ def _paper(track: TrackPredictor, seed: int) -> list[PaperNetwork]:
 def _rolled(track: TrackPredictor, networks: list[PaperNetwork], until: float) -> list[tuple[float, Vec]]:
     """The paper's networks rolled on from the newest sample."""
     newest = track.filter.newest
-    window = track.grid.window(track.filter, 6)
-    if window is None:
+    places = track.grid.window(track.filter, 6)
+    if places is None:
         return []
+    window = np.array(places)
     steps = int((until - newest) / STEP) + 2
     with np.errstate(over="ignore", invalid="ignore"):
         columns = [network.roll(window[:, axis], steps) for axis, network in enumerate(networks)]
