@@ -118,10 +118,8 @@ def fit(
         )
     answer = _answer(act, weights, net, len(horizons)) * settings.networks
     turn_on, came = _turning(heard if settings.manoeuvres else None, positions, view, origins, horizons)
-    held = [
-        Held(wanted[part, i], base[part, i], answer[part, i], turn_on[part, i], came[part, i])
-        for i, part in enumerate(late)
-    ]
+    held = [Held(wanted[part, i], base[part, i], answer[part, i], turn_on[part, i], came[part, i])
+            for i, part in enumerate(late)]
     verdict = verdicts([judge(held[i], int(h), enough[i], settings.margin) for i, h in enumerate(horizons)])
     yield
 
