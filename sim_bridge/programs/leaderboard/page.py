@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from html import escape
 
 import msgspec
 import numpy as np
 
+from onboard.core.strategy.registry import EVADERS, PURSUERS, NamedEvader, NamedPursuer
 from onboard.game import palette
-from sim_bridge.programs.campaigns.plan import Plan
+from sim_bridge.programs.campaigns.plan import Chosen, Plan
 from sim_bridge.programs.leaderboard.ratings import Array, Board, Score
 
 STYLE = """
@@ -20,7 +22,7 @@ margin:2rem auto;padding:0 1rem}}
 h1{{font-size:1.6rem;margin:0}}h2{{font-size:1.15rem;margin:2rem 0 .5rem}}p,summary{{color:var(--faint)}}
 table{{border-collapse:collapse;font-variant-numeric:tabular-nums}}
 th,td{{padding:.25rem .6rem;text-align:right;border-bottom:1px solid var(--grid)}}
-th:first-child,td:first-child{{text-align:left}}th{{font-weight:600}}
+th:first-child,td:first-child{{text-align:left}}small{{color:var(--faint)}}th{{font-weight:600}}
 .matrix td+td{{min-width:4.5rem;text-align:center;color:#111}}.scroll{{overflow-x:auto}}
 svg{{vertical-align:middle}}code{{font-size:.9em}}
 """
@@ -40,43 +42,77 @@ def page(plan: Plan, board: Board, commitment: str) -> str:
     seeds = "public seeds" if not commitment else f"seeds hidden by a key (SHA-256 {commitment})"
     total = board.games * board.points.size
     details = "".join(
-        f"<details><summary>{escape(name)}</summary>{_matrix(board, k)}</details>"
-        for k, name in enumerate(board.scenarios)
+        f"<details><summary>{escape(_told(one))}</summary>{_matrix(board, k)}</details>"
+        for k, one in enumerate(plan.scenarios)
     )
+    counts = " × ".join(
+        _counted(count, word)
+        for count, word in ((len(board.pursuers), "strategy of the pursuers"),
+                            (len(board.evaders), "strategy of the evader"),
+                            (len(board.scenarios), "scenario"), (board.games, "game"))
+    )  # fmt: skip
     return f"""<!doctype html>
 <html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width">
 <title>Leaderboard of pursuit and evasion</title><style>{style}</style>
 <h1>Leaderboard of pursuit and evasion</h1>
-<p>{len(board.pursuers)} strategies of pursuers × {len(board.evaders)} of evaders × {len(board.scenarios)}
-scenarios × {board.games} games = {total} games; {escape(seeds)}.</p>
-<h2>Pursuers</h2>{_scores(board.pursuer_scores)}
-<h2>Evaders</h2>{_scores(board.evader_scores)}
-<p>Ratings on Elo's scale by the model of Bradley and Terry with a term for each scenario, each side's mean 0;
-in brackets 95 % of fits to games drawn again. The pursuers win by capture or by denying the target, the
-evader by arriving or, where there is no target, by escaping; an escape that has a target is a draw.</p>
-<h2>Captured, over all scenarios</h2>{_matrix(board, None)}
+<p>Pursuers hunt an evader that wants to its target. {counts} = {total} games; {escape(seeds)}.</p>
+<h2>Pursuers</h2>{_scores(board.pursuer_scores, _words(PURSUERS, plan))}
+<h2>Evaders</h2>{_scores(board.evader_scores, _words(EVADERS, plan))}
+<p>How to read it: who has 100 points of rating more than another wins 64 of 100 games where the other wins
+50, 400 points more: 91. A bar is the interval that holds 95 % of the ratings of games drawn again; of two
+whose bars overlap neither is shown to be better. 0 is the mean of a side. Points are the share of the games
+won, a draw being half a game.</p>
+<p>The pursuers win by capture or by denying the target, the evader by arriving or, where there is no target,
+by escaping; an escape that has a target is a draw. Ratings are on Elo's scale by the model of Bradley and
+Terry with a term for each scenario.</p>
+<h2>Captured, over all scenarios</h2>
+<p>The share of its games in which a strategy of the pursuers (a row) captures an evader (a column).</p>
+{_matrix(board, None)}
 <h2>Scenario by scenario</h2>{details}
 <h2>Played with</h2>
-<p>{escape(versions)}; sources <code>{plan.fingerprint.sources[:16]}</code>{escape(foreign)}.</p>
+<p><code>sim-bridge bench</code> of {escape(versions)}; sources
+<code>{plan.fingerprint.sources[:16]}</code>{escape(foreign)}.</p>
 </html>
 """
 
 
-def _scores(scores: list[Score]) -> str:
+def _counted(count: int, word: str) -> str:
+    """`1 game`, `2 games`; `strategies of the evader`."""
+    first, _, rest = word.partition(" ")
+    more = f"{first[:-1]}ies" if first.endswith("y") else f"{first}s"
+    return f"{count} {first if count == 1 else more} {rest}".rstrip()
+
+
+def _told(one: Chosen) -> str:
+    """A scenario in words: its short name and what it is."""
+    data = one.data
+    return f"{one.label}: {data.get('description') or data['name']}"
+
+
+def _words(known: Mapping[str, NamedPursuer | NamedEvader], plan: Plan) -> dict[str, str]:
+    """What each strategy does, in a line; of a plug-in whose it is."""
+    foreign = {name: f"of {told.rpartition(' ')[0]}" for name, told in plan.fingerprint.plugins.items()}
+    return foreign | {name: one.words for name, one in known.items()}
+
+
+def _scores(scores: list[Score], words: Mapping[str, str]) -> str:
     low = min(score.low for score in scores)
     span = max(max(score.high for score in scores) - low, 1.0)
 
     def bar(score: Score) -> str:
-        a, b, m = ((value - low) / span * (WIDTH - 10) + 5 for value in (score.low, score.high, score.rating))
+        places = (score.low, score.high, score.rating, 0.0)
+        a, b, m, mean = ((value - low) / span * (WIDTH - 10) + 5 for value in places)
         return (
             f'<svg width="{WIDTH}" height="14" role="img"'
             f' aria-label="{round(score.low)} to {round(score.high)}">'
+            f'<line x1="{mean:.1f}" x2="{mean:.1f}" y1="0" y2="14" stroke="var(--faint)" stroke-width=".5"/>'
             f'<line x1="{a:.1f}" x2="{b:.1f}" y1="7" y2="7" stroke="var(--bar)" stroke-width="3"/>'
             f'<circle cx="{m:.1f}" cy="7" r="4.5" fill="var(--bar)"/></svg>'
         )
 
     rows = "".join(
-        f"<tr><td>{escape(score.name)}</td><td>{score.rating:+.0f}</td>"
+        f"<tr><td><b>{escape(score.name)}</b><br><small>{escape(words.get(score.name, ''))}</small></td>"
+        f"<td>{score.rating:+.0f}</td>"
         f"<td>({score.low:+.0f} … {score.high:+.0f})</td><td>{bar(score)}</td><td>{score.share:.1%}</td></tr>"
         for score in scores
     )

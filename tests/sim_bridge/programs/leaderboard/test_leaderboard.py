@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from html import escape
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -11,6 +12,7 @@ import pytest
 from scipy.optimize import minimize
 
 from onboard.config.strict import ConfigError
+from onboard.core.strategy.registry import EVADERS, PURSUERS
 from sim_bridge.programs.campaigns.show import results
 from sim_bridge.programs.leaderboard.command import Options, bench, seeds_of
 from sim_bridge.programs.leaderboard.ratings import ELO, PRIOR, board, fit
@@ -89,6 +91,10 @@ def test_a_small_leaderboard_twice_gives_the_same_bytes_and_counts_as_its_games_
     assert page.open == []
     assert page.fetched == []
     assert f"{shares[1]:.0%}" in page.cells
+    text = first.page.read_text("utf-8")
+    for words in ("1 strategy of the pursuers × 2 strategies of the evader × 1 scenario × 60 games = 120",
+                  EVADERS["straight"].words, PURSUERS["paper"].words, "duel: a duel"):  # fmt: skip
+        assert escape(words) in text
     compared = board(found)
     assert [score.name for score in compared.evader_scores] == ["paper", "straight"]
     for score in compared.evader_scores:
