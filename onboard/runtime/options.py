@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from enum import Enum
+from functools import partial
 from typing import Annotated, Any
 
 import typer
@@ -17,12 +18,38 @@ from onboard.config.strict import ConfigError
 from onboard.runtime.resources import Shelf, named_files
 
 
+class _Coercion:
+    """What turns an option's words into its type: typer's own, which imports pydantic (0.1 CPU-seconds), once
+    there are words; typer asks it for options that nobody gave, too."""
+
+    def __init__(self, param: Any) -> None:
+        self._real = param.get_runtime_param
+
+    def coerce(self, value: Any, param: Any, ctx: Any) -> Any:
+        """The value in its type; None, or nothing of several, where none was given."""
+        if value is None:
+            return () if param.multiple or param.nargs == -1 else None
+        return self._real().coerce(value, param=param, ctx=ctx)
+
+
+def _itself(one: _Coercion) -> _Coercion:
+    return one
+
+
+def _coerce_late(command: Any, ctx: Any) -> None:
+    """Give a command's options a _Coercion; once each, however often it is called."""
+    for param in command.get_params(ctx):
+        if "get_runtime_param" not in vars(param):
+            param.get_runtime_param = partial(_itself, _Coercion(param))
+
+
 class Command(TyperCommand):
     """A command that takes no empty value: see `demand_no_empty_value`."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """As every command, once the values are looked at."""
         demand_no_empty_value(self, ctx, args)
+        _coerce_late(self, ctx)
         return super().parse_args(ctx, args)
 
 
@@ -32,6 +59,7 @@ class Group(TyperGroup):
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """As every group, once the values are looked at."""
         demand_no_empty_value(self, ctx, args)
+        _coerce_late(self, ctx)
         return super().parse_args(ctx, args)
 
 
