@@ -22,7 +22,7 @@ from onboard.core.math.angles import wrap
 from onboard.core.math.vectors import ZERO, Vec, along, distance, sub, unit, yaw_of
 from onboard.core.strategy.team.closure import least_number, past, pitch_band, sight_cone, way_out
 from onboard.core.strategy.team.parts import front_line, setting_out
-from onboard.core.strategy.team.plan_types import Heights, Margin, Member, Situation
+from onboard.core.strategy.team.plan_types import Heights, Margin, Member, Situation, nearest_staged
 from onboard.core.strategy.team.ring import laid
 
 NAMES = (
@@ -32,7 +32,6 @@ NAMES = (
 """What describes a start, in the order of the fit."""
 
 STAGING_S = 40.0  # that is tried as a change [s]
-RINGS = {True: 10.0, False: 17.0}  # safety distances of the ring that is tried, in the plane and in space
 GO = 0.5  # the chance of capture from which on an engagement is worth it
 Z = 1.96  # of a 95 % interval
 DELAY = 0.15  # [s] of a track and a control step in space
@@ -262,23 +261,31 @@ def changed(s: Situation) -> list[tuple[str, Situation]]:
     mean = sum(distance(member.vehicle.position, e) for member in fit) / len(fit)
     place = Vec(e.x + mean * cos(way.bearing), e.y + mean * sin(way.bearing), e.z)
     more = _moved(fit[0], s, place)
-    later = s._replace(t0=s.now + STAGING_S, expected=e)
-    aims = laid(later).aims
-    staged = tuple(
-        _moved(member, s, _towards(member, aim, STAGING_S)) for member, aim in zip(s.team, aims, strict=True)
-    )
-    radius = RINGS[s.rules.planar] * s.rules.rho
-    line = front_line(s)
-    ring = tuple(
-        _moved(member, s, Vec(e.x + radius * cos(a), e.y + radius * sin(a), e.z))
-        for member, a in zip(fit, (line + 2.0 * pi * k / len(fit) for k in range(len(fit))), strict=True)
-    )
+    radius = nearest_staged(s.rules)
     where = f"{degrees(way.bearing) % 360.0:.0f}°"
     return [
         (f"one more pursuer at heading {where}, {mean:.0f} m away", s._replace(team=(*s.team, more))),
-        (f"{STAGING_S:.0f} s of staging before the evader moves", s._replace(team=staged)),
-        (f"a ring of {radius:.0f} m, one on the line to the target", s._replace(team=ring)),
+        (f"{STAGING_S:.0f} s of staging before the evader moves", staged(s, STAGING_S)),
+        (f"a ring of {radius:.0f} m, one on the line to the target", ringed(s, radius)),
     ]
+
+
+def staged(s: Situation, seconds: float) -> Situation:
+    """The situation with its pursuers as far towards the slots of the best ring as `seconds` bring them,
+    while the evader stays about its place."""
+    later = s._replace(t0=s.now + seconds, expected=s.evader.position, nearest=nearest_staged(s.rules))
+    places = [_towards(member, aim, seconds) for member, aim in zip(s.team, laid(later).aims, strict=True)]
+    return s._replace(team=tuple(_moved(one, s, place) for one, place in zip(s.team, places, strict=True)))
+
+
+def ringed(s: Situation, radius: float, phase: float = 0.0) -> Situation:
+    """The situation with those who are fit on an even ring of `radius` [m], its first member `phase` [rad]
+    from the line to the target."""
+    fit = [member for member in s.team if member.fit]
+    e, first = s.evader.position, front_line(s) + phase
+    bearings = [first + 2.0 * pi * k / len(fit) for k in range(len(fit))]
+    places = [Vec(e.x + radius * cos(a), e.y + radius * sin(a), e.z) for a in bearings]
+    return s._replace(team=tuple(_moved(one, s, place) for one, place in zip(fit, places, strict=True)))
 
 
 def _towards(member: Member, aim: Vec, time: float) -> Vec:

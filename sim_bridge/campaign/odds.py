@@ -25,19 +25,19 @@ from onboard.core.math.states import FREE, Vehicle
 from onboard.core.math.vectors import ZERO, Vec, scale, sub, unit
 from onboard.core.strategy.registry import EVADERS, PURSUERS
 from onboard.core.strategy.team.plan_types import Heights, Member
-from onboard.game.odds import NAMES, Outcome, Sheet, Table, engagement, features
-from onboard.game.scenario import Scenario
+from onboard.game.go_or_no_go import engagement_of
+from onboard.game.odds import NAMES, Outcome, Sheet, Table, engagement, features, ringed, staged
+from onboard.game.scenario import Scenario, VehicleSpec
 from sim_bridge.campaign.compiled import campaign, starts_of
 from sim_bridge.campaign.plane_in_wind import drawn_wind
 from sim_bridge.campaign.spatial_draw import KERNELS, draw, kernel_of, sky_of, spatial
 from sim_bridge.campaign.spatial_game import Chosen
-from sim_bridge.plane_game.setup import conditions_of, vehicles_of
 
 EVADING = ("paper", "evasive")
 PURSUING = "constant-bearing"
 HELD_OUT = 4  # every so-manieth game judges, the others fit
 RIDGE = 1.0  # of the standardised weights
-SIZES = {"plane": (3, 4, 5, 6, 7), "space": (4, 5, 6)}
+SIZES = {"plane": (3, 4, 5, 6, 7), "space": (3, 4, 5, 6, 7, 8)}
 PLANE = Rules(R=2.0, rho=4.0, horizon=300.0, planar=True)
 
 Array = NDArray[np.float64]
@@ -94,41 +94,49 @@ def plane_part(games: int, count: int) -> Part:
 
 
 def space_scenario(seed: int, count: int) -> Scenario:
-    """A start of aircraft in space, in the world of `spatial/five`."""
+    """A start of aircraft in space, in the world of `spatial/five`.
+
+    Places are drawn; every fourth time some staging from them follows, every eighth time it is an even ring.
+    """
     rng = np.random.default_rng([2, count, seed])
     base = spatial("five")
     replace = msgspec.structs.replace
     yaws, far = bearings(rng, count)
-    scale_m, goal = rng.uniform(1500.0, 3500.0), rng.uniform(4000.0, 9000.0)
-    ahead = Vec(base.evader.speed, 0.0, 0.0)
-    spec = base.pursuers[0]
-    pursuers = []
+    scale_m, goal = rng.uniform(1200.0, 3500.0), rng.uniform(4000.0, 9000.0)
+    speed = float(rng.uniform(35.0, 45.0))
+    spec = replace(base.pursuers[0], speed=speed, speed_min=0.8 * speed)
+    places = []
     for yaw, d in zip(yaws, far, strict=True):
         level = float(max(700.0, scale_m * d))
-        place = Vec(level * cos(yaw), level * sin(yaw), -1500.0 + float(rng.normal(0.0, 60.0)))
-        nose = lead(place, spec.speed, Vec(0.0, 0.0, -1500.0), ahead)
-        told = degrees(atan2(nose.y, nose.x))
-        pursuers.append(replace(spec, position=(place.x, place.y, -place.z), heading_deg=told))
-    wind = replace(base.flight.wind, from_deg=drawn_wind(10_000 * count + seed))
-    return replace(
+        places.append(Vec(level * cos(yaw), level * sin(yaw), -1500.0 + float(rng.normal(0.0, 60.0))))
+    world = 10_000 * count + seed
+    drawn = replace(
         base,
         evader=replace(base.evader, target=(float(goal), 0.0, 1500.0)),
-        pursuers=tuple(pursuers),
-        seed=10_000 * count + seed,
-        flight=replace(base.flight, wind=wind),
+        seed=world,
+        flight=replace(base.flight, wind=replace(base.flight.wind, from_deg=drawn_wind(world))),
     )
+    found = _placed(drawn, spec, places)
+    kind, seconds, radius, phase = rng.uniform((0, 0, 1200, -pi), (1, 120, 3500, pi))
+    if kind < 0.25:
+        s = staged(engagement_of(found), float(seconds))
+    elif kind < 0.375:
+        s = ringed(engagement_of(found), float(radius), float(phase) / count * (kind < 0.3125))
+    else:
+        return found
+    return _placed(drawn, spec, [member.vehicle.position for member in s.team])
 
 
-def space_features(scenario: Scenario) -> tuple[float, ...]:
-    """What describes the start of a scenario in space."""
-    rules, target, _ = conditions_of(scenario)
-    vehicles = vehicles_of(scenario)
-    evader, *team = (
-        Member(one, spec.limits(), True) for one, spec in zip(vehicles, scenario.vehicles, strict=True)
-    )
-    fence = scenario.flight.fence
-    heights = Heights() if fence is None else Heights(fence.height_min, fence.height_max)
-    return features(engagement(evader, tuple(team), target, rules, heights, scenario.flight.sensor.sigma))
+def _placed(scenario: Scenario, spec: VehicleSpec, places: list[Vec]) -> Scenario:
+    """A scenario with pursuers like `spec` at `places`, their noses on parallel pursuit."""
+    e = scenario.evader
+    pursuers = []
+    for place in places:
+        nose = lead(place, spec.speed, e.start(), Vec(e.speed, 0.0, 0.0))
+        told = degrees(atan2(nose.y, nose.x))
+        there = (place.x, place.y, -place.z)
+        pursuers.append(msgspec.structs.replace(spec, position=there, heading_deg=told))
+    return msgspec.structs.replace(scenario, pursuers=tuple(pursuers))
 
 
 def space_part(games: int, count: int) -> Part:
@@ -142,7 +150,7 @@ def space_part(games: int, count: int) -> Part:
             d = draw(scenario, 0)
             log = np.zeros((d.steps, count + 1, 5))
             verdicts.append(play(d.start, Chosen(number, (0,) * count), sky_of(d, True), log))
-        rows.append(space_features(scenario))
+        rows.append(features(engagement_of(scenario)))
         ends.append([int(found.game.score.verdict) for found in verdicts])
     return Part(np.array(rows), np.array(ends))
 
@@ -260,9 +268,7 @@ def reliability(told: list[Judged], path: Path) -> None:
     figure = Figure(figsize=(9.0, 4.3 * len(SIZES)), layout="constrained")
     FigureCanvasAgg(figure)
     places: Any = figure.subplots(len(SIZES), 2, squeeze=False, sharex=True, sharey=True)
-    for axes, (kind, evader) in zip(
-        places.flat, [(k, e) for k in SIZES for e in EVADING], strict=True
-    ):
+    for axes, (kind, evader) in zip(places.flat, [(k, e) for k in SIZES for e in EVADING], strict=True):
         axes.plot([0, 1], [0, 1], color="0.7", lw=1)
         for one, colour in zip(
             [t for t in told if (t.kind, t.evader) == (kind, evader)], ("#aa3377", "#228833"), strict=True

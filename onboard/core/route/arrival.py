@@ -91,7 +91,15 @@ def joined(start: Pose, goal: Pose, radius: float, first: float, second: float, 
 
     A negative `straight` means that there is none: the circles of turns to different sides overlap.
     """
-    entry = ahead(goal, -last)
+    a, straight, b = legs(start, ahead(goal, -last), radius, first, second)
+    return Path(start, radius, 0.0, 0.0, first * a, straight, second * b, last)
+
+
+def legs(start: Pose, entry: Pose, radius: float, first: float, second: float) -> tuple[float, float, float]:
+    """The turn, the straight line and the turn that join two poses: [rad, unsigned], [m], [rad, unsigned].
+
+    Sides and a negative line as in `joined`.
+    """
     x = entry.x - second * radius * sin(entry.heading) - start.x + first * radius * sin(start.heading)
     y = entry.y + second * radius * cos(entry.heading) - start.y - first * radius * cos(start.heading)
     square = x * x + y * y
@@ -99,11 +107,10 @@ def joined(start: Pose, goal: Pose, radius: float, first: float, second: float, 
     if first != second:
         square -= 4.0 * radius * radius
         if square < 0.0:
-            return Path(start, radius, 0.0, 0.0, 0.0, -1.0, 0.0, last)
+            return 0.0, -1.0, 0.0
         course += first * atan2(2.0 * radius, sqrt(square))
     a = _sweep(first * (course - start.heading))
-    b = _sweep(second * (entry.heading - course))
-    return Path(start, radius, 0.0, 0.0, first * a, sqrt(square), second * b, last)
+    return a, sqrt(square), _sweep(second * (entry.heading - course))
 
 
 def shortest(start: Pose, goal: Pose, radius: float, last: float) -> Path:
