@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.patches import Circle
 
 from gcs.report import theme
 from gcs.report.data import Array, Flown, Run
-from gcs.report.drawing import FAINT, INK, WIDTH, Drawing, Panel, curve, legend_below
-from onboard.game import palette
-from onboard.game.hindsight import Ways, in_words, missed
+from gcs.report.drawing import INK, WIDTH, Drawing, Panel, curve, legend_below
+from onboard.game.hindsight import Ways, missed
+from onboard.game.hindsight_sketch import Marks, draw_map, draw_moment, note
 from onboard.wire.bus.messages import OutcomeResult, Role
 
 
@@ -24,48 +23,18 @@ def missed_capture(run: Run) -> Drawing | None:
     above, below = figure.subplots(2, 1, height_ratios=(2.2, 1.0))
     above.set_gid("a0")
     below.set_gid("a1")
-    at = int(np.abs(ways.t - found.t).argmin())
-    before, after = ways.evader[: at + 1], ways.evader[at:]
     evader = run.evader
-    colour = run.colour(evader.id) if evader is not None else INK
-    above.plot(before[:, 1], before[:, 0], color=colour, lw=1.0, label="evader until then")
-    above.plot(after[:, 1], after[:, 0], color=colour, lw=2.2, label="and from then on")
-    late = found.when - found.t if found.who >= 0 else float(ways.t[-1] - ways.t[at])
-    for k, id in enumerate(ids):
-        own = run.colour(id)
-        north, east = ways.pursuers[k, at, 0], ways.pursuers[k, at, 1]
-        above.plot(east, north, "o", color=own, label=f"pursuer {id}")
-        reach = float(ways.speeds[k] * max(0.0, late) + ways.R)
-        above.add_patch(Circle((east, north), reach, fill=False, ec=own, lw=0.8, ls="--"))
-    if found.who >= 0:
-        above.plot(found.place[1], found.place[0], "X", color=palette.CAPTURE.light, ms=10, ls="",
-                   label="where the last chance was")  # fmt: skip
-    if run.target is not None:
-        north, east, _ = run.target
-        above.plot(east, north, "*", color=palette.TARGET.light, ms=14, ls="", label="target")
-    above.set(xlabel="east [m]", ylabel="north [m]")
-    wide = max(float(np.ptp(ways.pursuers[:, at, axis])) for axis in range(2))
-    wide = 0.6 * wide + float(ways.speeds.max()) * max(0.0, late) + 2.0 * ways.R
-    middle = ways.pursuers[:, at].mean(axis=0)
-    above.set_xlim(middle[1] - wide, middle[1] + wide, auto=True)  # one gives way to the aspect
-    above.set_ylim(middle[0] - wide, middle[0] + wide, auto=True)
-    above.set_aspect("equal", adjustable="datalim")
+    own = INK if evader is None else run.colour(evader.id)
+    marks = Marks(ids, tuple(run.colour(id) for id in ids), own, run.target)
+    draw_map(above, ways, found, marks)
     series = tuple(curve(below, run, id, (found.instants, found.spare[:, k])) for k, id in enumerate(ids))
     for line in below.lines:
         line.set_label("")
-    below.axhline(0.0, color=INK, lw=1.0)
-    below.axvline(found.t, color=FAINT, lw=1.2, ls="--")
-    if np.isfinite(found.open_since):
-        below.axvspan(found.open_since, float(ways.t[-1]), color=palette.TARGET.light, alpha=0.08, lw=0)
-    below.set(xlabel=theme.clock(run), ylabel="could still reach by [m]", xlim=(ways.t[0], ways.t[-1]))
+    draw_moment(below, ways, found)
+    below.set_xlabel(theme.clock(run))
     legend_below(figure, above)
-    note = (
-        f"{in_words(found, ids)} Dashed circles: where each pursuer could have been by the last chance."
-        " Below: by how much each could still reach the rest of the evader's way; shaded: a ray was safe from"
-        " everybody. By declared airspeeds, without the time for turns: nothing possible is called too late."
-    )
     panels = (Panel(above, "plan", "m"), Panel(below, "time", "m", series))
-    return Drawing("missed_capture", "Why it was not captured", note, figure, panels)
+    return Drawing("missed_capture", "Why it was not captured", note(found, ids), figure, panels)
 
 
 def ways_of(run: Run) -> tuple[Ways | None, tuple[int, ...]]:

@@ -26,10 +26,9 @@ from onboard.core.strategy.team.plan_types import (
     Situation,
     nearest_staged,
 )
-from onboard.core.strategy.team.planner import no_plan, plan
+from onboard.core.strategy.team.planner import EVERY, no_plan, plan
 from onboard.pilot.setup import GameSetup, Own, Side
 
-EVERY_S = 0.5  # between two plans
 LEASE_S = 1.0  # for which a member's or a planner's last word counts
 OLD_S = 5.0  # beyond which a plan is no plan
 DELAY_S = 0.17  # from a measurement to the pursuers' answer to it: a sensor's 0.12 s and a control step
@@ -113,7 +112,7 @@ class TeamSeat:
     def work(self, known: Known) -> Plan | None:
         """Make a plan where one is due and it is this member's to make; it counts at once."""
         self._began = min(self._began, known.now)
-        due = known.now - self._planned_at >= EVERY_S - 1e-6
+        due = known.now - self._planned_at >= EVERY - 1e-6
         if not due or known.evader is None or not self.turn(known):
             return None
         self._planned_at = known.now

@@ -29,13 +29,17 @@ from onboard.core.game.advance import (
     PursuerStrategy,
     advance,
     begin,
+    decide_by_plan,
+    moved_on,
 )
+from onboard.core.game.planning import planned, steps_between, unplanned
 from onboard.core.game.referee import GameResult
 from onboard.core.game.rules import Target
 from onboard.core.math import each as each_module
 from onboard.core.math.each import each
 from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import Vec
+from onboard.core.strategy.team.flying import pursuer_team
 from sim_bridge.campaign.each_compiled import compile_each
 from sim_bridge.campaign.kernel_cache import kept, kernel
 
@@ -70,6 +74,7 @@ KERNELS = (
     "onboard.core.strategy.team.timed",
     "onboard.core.game.referee",
     "onboard.core.game.advance",
+    "onboard.core.game.planning",
 )
 
 # Everything is inlined, or else the many small functions would pass whole games by value; but
@@ -239,6 +244,8 @@ def _player(
 ) -> Callable[[Starts, Conditions, Ends, int, int], None]:
     """Plays games first…last − 1 of the starts into the ends."""
     team = tuple(range(1, pursuers + 1))
+    if decide_pursuer is pursuer_team:
+        return _planning_player(decide_evader, decide_pursuer, team, compiled)
 
     def play(starts: Starts, conditions: Conditions, ends: Ends, first: int, last: int) -> None:
         kept = ends.trace.shape[1]
@@ -258,17 +265,61 @@ def _player(
                 steps += 1
                 if steps < kept:
                     _note(game, ends.trace[number, steps])
-            ends.verdicts[number] = game.score.verdict
-            ends.times[number] = game.score.time
-            ends.captors[number] = game.score.captor
-            ends.smallest[number] = game.score.smallest
-            ends.unsafe[number] = game.score.unsafe
-            ends.steps[number] = steps
+            _close(ends, number, game, steps)
 
+    return _ready(play, (decide_evader, decide_pursuer), compiled)
+
+
+def _planning_player(
+    decide_evader: EvaderStrategy, decide_pursuer: PursuerStrategy, team: tuple[int, ...], compiled: bool
+) -> Callable[[Starts, Conditions, Ends, int, int], None]:
+    """`_player` for pursuers that fly by a plan."""
+
+    def play(starts: Starts, conditions: Conditions, ends: Ends, first: int, last: int) -> None:
+        kept = ends.trace.shape[1]
+        every = steps_between(conditions.control.dt)
+        for number in range(first, last):
+            mine = _aimed(conditions, starts.targets[number])
+            start = _begin(_Table(starts, number), team)
+            game = start
+            plan = unplanned(game)
+            steps = 0
+            if kept > 0:
+                _note(game, ends.trace[number, 0])
+            while game.score.verdict == GameResult.RUNNING:
+                if steps % every == 0:
+                    plan = planned(game, mine, plan)
+                decided = decide_by_plan(game, mine, decide_evader, decide_pursuer, plan.assignments)
+                now = moved_on(game, mine, decided)
+                game = Game(
+                    now.time, now.evader, now.pursuers, start.evader_limits, start.pursuer_limits, now.score
+                )
+                steps += 1
+                if steps < kept:
+                    _note(game, ends.trace[number, steps])
+            _close(ends, number, game, steps)
+
+    return _ready(play, (decide_evader, decide_pursuer), compiled)
+
+
+def _close(ends: Ends, number: int, game: Game, steps: int) -> None:
+    """Write down how a game ended."""
+    ends.verdicts[number] = game.score.verdict
+    ends.times[number] = game.score.time
+    ends.captors[number] = game.score.captor
+    ends.smallest[number] = game.score.smallest
+    ends.unsafe[number] = game.score.unsafe
+    ends.steps[number] = steps
+
+
+def _ready(
+    play: Callable[..., None], strategies: tuple[Callable[..., Any], ...], compiled: bool
+) -> Callable[..., None]:
+    """The kernel of a play, or the play itself."""
     if not compiled:
         return play
     register((*KERNELS, __name__))
-    register_strategies((decide_evader, decide_pursuer))
+    register_strategies(strategies)
     return kernel(play)
 
 

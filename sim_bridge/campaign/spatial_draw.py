@@ -19,6 +19,7 @@ from onboard.core.game.advance import EvaderStrategy, PursuerStrategy
 from onboard.core.math.vectors import Vec, sub, yaw_of
 from onboard.core.safety.policy import Fence
 from onboard.core.strategy.registry import EVADERS, pursuer_named
+from onboard.core.strategy.team.planner import EVERY
 from onboard.game.plugins import evader_strategy, pursuer_strategy
 from onboard.game.scenario import AirframeKind, Kind, Scenario, VehicleSpec, load
 from onboard.game.staging import places_of, start_headings
@@ -81,7 +82,6 @@ T0 = 6.5  # [s] from the beginning of the world to that of the game, as `fly --f
 DECIDES = 2  # samples after a multiple of 50 ms at which positions come and everybody decides
 PLACE_SIGMA = 300.0  # [m] by which a seed moves each pursuer's start, level
 HEIGHT_SIGMA = 60.0  # [m] and in height
-PLAN_EVERY = 0.5  # [s] between two plans of a team
 PLAN_LATE = 0.05  # [s] until a plan is heard over an undisturbed bus
 PLAN_PATIENCE = 5.0  # [s] without a plan after which a pursuer flies alone
 TURNS = 100  # draws of places within a fence
@@ -234,7 +234,7 @@ def planning_of(scenario: Scenario, step: float) -> Planning:
     The plan's messages are late and lost as those of the bus, where the scenario says so.
     """
     spec = scenario.flight.impairment
-    every = max(2, round(PLAN_EVERY / step))
+    every = max(2, round(EVERY / step))
     late = PLAN_LATE + (spec.delay_s + 0.5 * spec.jitter_s if spec.bus else 0.0)
     limits = tuple(
         one.limits()._replace(turn_rate=turn_rate_of(scenario, index))

@@ -44,6 +44,7 @@ from onboard.core.math.states import Vehicle
 from onboard.core.math.vectors import NORTH, Vec, along, distance, norm, scale
 from onboard.core.strategy.features import Turn, answer, evader_features, pursuer_features
 from onboard.core.strategy.knowledge import Decision, RuleId
+from onboard.core.strategy.team.plan_types import IDLE
 from sim_bridge.campaign.flight_lanes import AT_WORDS, draw_words
 from sim_bridge.campaign.lanes import LANES, lane_normal
 from sim_bridge.campaign.spatial_game import in_air
@@ -167,7 +168,7 @@ def look(vehicle: Vehicle, index: int, desk: Desk) -> float:
     world, t, g = here.world, here.table, here.game
     if world.learns[index + 1]:
         conditions = world.conditions
-        team = team_of(vehicle, index, desk.pursuers, conditions)
+        team = team_of(vehicle, index, desk.pursuers, conditions, IDLE)
         limits = world.template.pursuer_limits[index]
         view = pursuer_view(vehicle, limits, desk.sighting, team, conditions.control, conditions.rules)
         turn = pursuer_features(view, world.form, desk.exchange.pursuers_see[g, index])

@@ -15,11 +15,14 @@ from onboard.core.game.advance import (
     EvaderStrategy,
     Game,
     PursuerStrategy,
-    advance,
     decide,
+    decide_by_plan,
+    moved_on,
 )
+from onboard.core.game.planning import planned, steps_between, unplanned
 from onboard.core.game.referee import GameResult
 from onboard.core.math.vectors import Vec
+from onboard.core.strategy.team.flying import pursuer_team
 from onboard.game.plugins import evader_strategy, pursuer_strategy
 from onboard.game.scenario import Scenario, load
 from onboard.runtime.resources import configs
@@ -48,7 +51,11 @@ class Played(NamedTuple):
         """Those taken at the instant of a frame, reckoned anew: a picture needs two of thousands."""
         decide_evader: EvaderStrategy = evader_strategy(self.scenario.evader.strategy)
         decide_pursuer: PursuerStrategy = pursuer_strategy(self.strategy)
-        return decide(self.frames[index], self.conditions, decide_evader, decide_pursuer)
+        game = self.frames[index]
+        if decide_pursuer is not pursuer_team:
+            return decide(game, self.conditions, decide_evader, decide_pursuer)
+        parts = planned(game, self.conditions, unplanned(game)).assignments
+        return decide_by_plan(game, self.conditions, decide_evader, decide_pursuer, parts)
 
 
 class Result(msgspec.Struct, frozen=True):
@@ -77,11 +84,16 @@ def play(scenario: Scenario, strategy: str, dt: float | None = None, keep: bool 
     game = game_of(scenario)
     frames = []
     before = game
+    plan, every, steps = unplanned(game), steps_between(conditions.control.dt), 0
     while game.score.verdict == GameResult.RUNNING:
         if keep:
             frames.append(game)
         before = game
-        game = advance(game, conditions, decide_evader, decide_pursuer)
+        if decide_pursuer is pursuer_team and steps % every == 0:
+            plan = planned(game, conditions, plan)
+        decided = decide_by_plan(game, conditions, decide_evader, decide_pursuer, plan.assignments)
+        game = moved_on(game, conditions, decided)
+        steps += 1
     final = cut(before, game)
     if keep:
         frames.append(final)

@@ -29,7 +29,7 @@ from onboard.core.math.each import each, each_pair
 from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import ZERO, Vec, along, scale
 from onboard.core.strategy.knowledge import Decision
-from onboard.core.strategy.team.plan_types import IDLE
+from onboard.core.strategy.team.plan_types import IDLE, Assignment
 
 
 class Conditions(NamedTuple):
@@ -69,6 +69,12 @@ class Field(NamedTuple):
     sighting: Sighting  # of the evader, with its new heading
     conditions: Conditions
     decide: PursuerStrategy
+    parts: tuple[Assignment, ...]  # of the team's plan, in the pursuers' order
+
+
+def unassigned(_vehicle: Vehicle, _index: int, _shared: float) -> Assignment:
+    """The part of a pursuer without a plan (for `each`)."""
+    return IDLE
 
 
 def position_of(vehicle: Vehicle, _index: int, _shared: float) -> Vec:
@@ -98,20 +104,22 @@ def begin(
     )
 
 
-def team_of(own: Vehicle, index: int, pursuers: tuple[Vehicle, ...], conditions: Conditions) -> Team:
+def team_of(
+    own: Vehicle, index: int, pursuers: tuple[Vehicle, ...], conditions: Conditions, part: Assignment
+) -> Team:
     """What pursuer `index` knows of its side; its nearest mate only where a separation is kept."""
     rules = conditions.rules
     mate = Nearest(False, own.position)
     if rules.separation > 0.0:
         mate = nearest_mate(own.position, positions(pursuers), index)
     held = Held(False, False, mate.position, 0.0)
-    return Team(mate, pursuers, index, told(conditions.target, rules), held, IDLE, ZERO)
+    return Team(mate, pursuers, index, told(conditions.target, rules), held, part, ZERO)
 
 
 def decide_one(own: Vehicle, index: int, field: Field) -> Decision:
     """Pursuer `index`'s decision (for `each`)."""
     game, conditions = field.game, field.conditions
-    team = team_of(own, index, game.pursuers, conditions)
+    team = team_of(own, index, game.pursuers, conditions, field.parts[index])
     limits = game.pursuer_limits[index]
     view = pursuer_view(own, limits, field.sighting, team, conditions.control, conditions.rules)
     return field.decide(view)
@@ -120,8 +128,9 @@ def decide_one(own: Vehicle, index: int, field: Field) -> Decision:
 def decide_pursuers(
     game: Game, sighting: Sighting, conditions: Conditions, decide: PursuerStrategy
 ) -> tuple[Decision, ...]:
-    """All pursuers' decisions against the evader as they see it."""
-    return each(decide_one, game.pursuers, Field(game, sighting, conditions, decide))
+    """All pursuers' decisions against the evader as they see it, without a plan."""
+    parts = each(unassigned, game.pursuers, 0.0)
+    return each(decide_one, game.pursuers, Field(game, sighting, conditions, decide, parts))
 
 
 def moved(vehicle: Vehicle, decision: Decision, dt: float) -> Vehicle:
@@ -146,11 +155,25 @@ def still_view(game: Game, conditions: Conditions) -> EvaderView:
 def decide(
     game: Game, conditions: Conditions, decide_evader: EvaderStrategy, decide_pursuer: PursuerStrategy
 ) -> Decisions:
-    """Everybody's decision in still air: the evader first."""
+    """Everybody's decision in still air: the evader first. Pursuers without a plan."""
+    return decide_by_plan(
+        game, conditions, decide_evader, decide_pursuer, each(unassigned, game.pursuers, 0.0)
+    )
+
+
+def decide_by_plan(
+    game: Game,
+    conditions: Conditions,
+    decide_evader: EvaderStrategy,
+    decide_pursuer: PursuerStrategy,
+    parts: tuple[Assignment, ...],
+) -> Decisions:
+    """Everybody's decision in still air, each pursuer's by its part of the team's plan."""
     own = decide_evader(still_view(game, conditions))
     turned = Vehicle(game.evader.position, scale(own.direction, own.speed), game.evader.speed)
     seen = sighted(turned, own.direction, conditions.control.lookahead)
-    return Decisions(own, decide_pursuers(game, seen, conditions, decide_pursuer))
+    field = Field(game, seen, conditions, decide_pursuer, parts)
+    return Decisions(own, each(decide_one, game.pursuers, field))
 
 
 def judged(before: Game, evader: Vehicle, pursuers: tuple[Vehicle, ...], conditions: Conditions) -> Game:
@@ -170,11 +193,15 @@ def judged(before: Game, evader: Vehicle, pursuers: tuple[Vehicle, ...], conditi
     return Game(before.time + dt, evader, pursuers, before.evader_limits, before.pursuer_limits, score)
 
 
+def moved_on(game: Game, conditions: Conditions, decisions: Decisions) -> Game:
+    """The game after one step of the control's `dt` [s] as decided: move by (7)–(8), judge."""
+    evader = moved(game.evader, decisions.evader, conditions.control.dt)
+    pursuers = each_pair(move_one, game.pursuers, decisions.pursuers, conditions.control.dt)
+    return judged(game, evader, pursuers, conditions)
+
+
 def advance(
     game: Game, conditions: Conditions, decide_evader: EvaderStrategy, decide_pursuer: PursuerStrategy
 ) -> Game:
     """One step of the control's `dt` [s]: decide, move by (7)–(8), judge."""
-    decisions = decide(game, conditions, decide_evader, decide_pursuer)
-    evader = moved(game.evader, decisions.evader, conditions.control.dt)
-    pursuers = each_pair(move_one, game.pursuers, decisions.pursuers, conditions.control.dt)
-    return judged(game, evader, pursuers, conditions)
+    return moved_on(game, conditions, decide(game, conditions, decide_evader, decide_pursuer))

@@ -10,6 +10,7 @@ from __future__ import annotations
 from math import asin, atan, atan2, cos, pi, sin, sqrt
 from typing import NamedTuple
 
+from onboard.core.game.rules import Rules
 from onboard.core.game.views import PursuerView, level
 from onboard.core.geometry.cones import blocked_cones
 from onboard.core.geometry.free_ray import free_ray_limited, within
@@ -60,10 +61,14 @@ def goal_post(view: PursuerView) -> Vec:
     Who can stand, and captures farther off than the evader has to come, stands on the target: nobody arrives
     there without being captured. Who cannot orbits a place before it, on the line to the evader.
     """
-    goal, e = view.target.position, view.evader.position
-    if stands(view.limits) and view.rules.epsilon_min <= view.rules.R:
+    return kept_at(view.target.position, view.evader.position, view.limits, view.rules)
+
+
+def kept_at(goal: Vec, e: Vec, limits: VehicleLimits, rules: Rules) -> Vec:
+    """`goal_post` of a target from an evader at `e`, for a vehicle of these limits."""
+    if stands(limits) and rules.epsilon_min <= rules.R:
         return goal
-    out = min(GUARD * view.rules.rho, 0.5 * distance(e, goal))
+    out = min(GUARD * rules.rho, 0.5 * distance(e, goal))
     return along(goal, unit(sub(e, goal), NORTH), out)
 
 

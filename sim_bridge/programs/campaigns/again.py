@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import msgspec
 import numpy as np
+from numpy.typing import NDArray
 
 from onboard.config.strict import ConfigError
 from onboard.core.game.referee import GameResult
@@ -53,8 +54,16 @@ def game_of(folder: Path, text: str) -> Game:
     return Game(plan, plan.cell(number), seed, kept)
 
 
-def replay(game: Game, folder: Path) -> tuple[Row, list[Path]]:
-    """Play a game again and draw it. Returns how it ended now, and the pictures. Raises ConfigError."""
+class Replayed(NamedTuple):
+    """A game played again."""
+
+    row: Row  # how it ended now
+    pictures: list[Path]
+    why_not: str  # why the evader was not captured; "" where it was
+
+
+def replay(game: Game, folder: Path) -> Replayed:
+    """Play a game again and draw it. Raises ConfigError."""
     from sim_bridge.campaign.figures import draw_stages
 
     cell, seed = game.cell, game.seed
@@ -63,17 +72,35 @@ def replay(game: Game, folder: Path) -> tuple[Row, list[Path]]:
     made(folder)
     name = f"{cell.label}-{cell.number}-{seed}".replace("/", "-")
     if is_spatial(cell.scenario):
-        played = spatial_game(game.plan, cell, seed)
-        return spatial_row(cell, seed, played), draw_stages(drawn(cell, seed), played, folder, name)
+        flown = spatial_game(game.plan, cell, seed)
+        row = spatial_row(cell, seed, flown)
+        pictures = draw_stages(drawn(cell, seed), flown, folder, name)
+        return _explained(game, row, pictures, flown.log[:, :, :3])
     [row] = simple_games(cell, range(seed, seed + 1))
     scenario = drawn(cell, seed)
     if scenario.planar:
         from sim_bridge.plane_game.figures import draw_game
         from sim_bridge.plane_game.program import play
 
-        pursuing = pursuer_named(scenario.pursuers[0].strategy)
-        return row, draw_game(play(scenario, pursuing), folder, name)
-    return row, draw_stages(scenario, _in_space(scenario, row), folder, name)
+        played = play(scenario, pursuer_named(scenario.pursuers[0].strategy))
+        frames = [[g.evader.position, *(p.position for p in g.pursuers)] for g in played.frames]
+        return _explained(game, row, draw_game(played, folder, name), np.array(frames))
+    seen = _in_space(scenario, row)
+    return _explained(game, row, draw_stages(scenario, seen, folder, name), seen.log)
+
+
+def _explained(game: Game, row: Row, pictures: list[Path], places: NDArray[np.float64]) -> Replayed:
+    """A game with the picture of why its evader was not captured, where it was not."""
+    if row.verdict == GameResult.CAPTURED.name.lower() or len(places) < 2:
+        return Replayed(row, pictures, "")
+    from sim_bridge.campaign.why_not import ways_of, why_not
+
+    scenario = drawn(game.cell, game.seed)
+    aircraft = is_spatial(game.cell.scenario)
+    step = 1.0 / scenario.flight.control_rate_hz if aircraft else conditions_of(scenario).control.dt
+    path = pictures[0].with_name(f"{pictures[0].stem}-why-not.png")
+    words = why_not(scenario, ways_of(scenario, places, step, aircraft), path)
+    return Replayed(row, [*pictures, path], words)
 
 
 def _in_space(scenario: Scenario, row: Row) -> Any:

@@ -126,13 +126,16 @@ def replay(
     game: Game,
     figures: Annotated[Path, typer.Option(help="Folder for the picture.")] = Path("figures"),
 ) -> None:
-    """Play one game again and draw it; exit 1 when it is not the game of the folder."""
+    """Play one game again and draw it, and why the evader was not captured; exit 1 when it is not the game of
+    the folder."""
     from sim_bridge.programs.campaigns import again
 
     chosen = again.game_of(folder, game)
-    row, pictures = again.replay(chosen, figures)
+    row, pictures, why = again.replay(chosen, figures)
     captor = f" by pursuer {row.captor}" if row.captor else ""
     print(f"{row.verdict}{captor} after {row.time:.2f} s, smallest distance {row.smallest:.2f} m")
+    if why:
+        print(why)
     for path in pictures:
         print(f"drawn: {path}")
     if not again.agrees(chosen, row):

@@ -177,6 +177,26 @@ def way_out_at(cones: tuple[Cone, ...], pitch: float) -> WayOut:
     return widest
 
 
+class _Reach(NamedTuple):
+    """From how far a pursuer captures (for `each`)."""
+
+    situation: Situation
+    reach: float  # [m]
+
+
+def _whole(member: Member, _index: int, shared: _Reach) -> Cone:
+    if not member.fit:
+        return NOTHING
+    e = shared.situation.evader
+    return blocked_cone(member.vehicle, 0, Seen(e.position, e.speed, shared.reach))
+
+
+def escapes(s: Situation) -> bool:
+    """Whether the evader has a free ray at its safety distance ρ, as a goalkeeper asks it."""
+    cones = each(_whole, s.team, _Reach(s, s.rules.rho))
+    return free_ray_limited(heading_at(s.evader), cones, s.evader_limits, s.rules.planar).exists
+
+
 def cones_of(s: Situation) -> tuple[Cone, ...]:
     """What each member closes, with the margin."""
     return each(_cone, s.team, s)

@@ -9,34 +9,32 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from onboard.core.math.each import each
+from onboard.core.math.states import VehicleLimits
 from onboard.core.math.vectors import TINY, Vec, along, distance, sub, unit, yaw_of
+from onboard.core.strategy.denial import GUARD, LATE, kept_at, spare, stands
 from onboard.core.strategy.team.assignment import FORBIDDEN, assigned
 from onboard.core.strategy.team.parts import chasing, lost
 from onboard.core.strategy.team.plan_types import Assignment, Member, Plan, Reason, Role, Situation
 
 POSTS = 2  # at the target at most: one to keep the goal, one that blocks beside it
-GUARD = 3.5  # safety distances ρ from the target at which it is guarded, and from the evader to engage
 CHANGE = 3.0  # [s] that a change of parts costs
 SECOND = 3.0 * CHANGE  # [s] that the second post costs: nobody stays there while the goal stands empty
 EMPTY = 1e4  # [s] that a post costs that nobody takes though somebody could be there in time
 
 
-def spare(member: Member, s: Situation, place: Vec) -> float:
-    """How long before the evader a pursuer is at a place [s]; negative: after it."""
-    own = member.vehicle
-    its = distance(s.evader.position, place) / max(s.evader.speed, TINY)
-    return its - distance(own.position, place) / max(own.speed, TINY)
+def place_stands(s: Situation, limits: VehicleLimits) -> bool:
+    """Whether who has these limits keeps the target by standing on it."""
+    return stands(limits) and s.rules.epsilon_min <= s.rules.R
 
 
-def post(s: Situation, number: int) -> Vec:
-    """Where the target is guarded [m; NED]: on the line to the evader, the second beside the first."""
+def post(s: Situation, limits: VehicleLimits, number: int) -> Vec:
+    """Where who has these limits guards the target [m; NED]: as a goalkeeper does, the second beside the
+    first."""
     e, goal = s.evader.position, s.target.position
-    line = sub(e, goal)
-    towards = unit(line, Vec(1.0, 0.0, 0.0))
-    out = min(GUARD * s.rules.rho, 0.5 * distance(e, goal))
-    place = along(goal, towards, out)
+    place = kept_at(goal, e, limits, s.rules)
     if number == 0:
         return place
+    towards = unit(sub(e, goal), Vec(1.0, 0.0, 0.0))
     across = unit(Vec(-towards.y, towards.x, 0.0), Vec(0.0, 1.0, 0.0))
     beside = max(2.0 * s.rules.separation, s.rules.rho)
     # On the side to which the evader flies: there it comes round.
@@ -59,7 +57,7 @@ def _part(member: Member, index: int, shared: _Parts) -> Assignment:
         return lost(member, s.now)
     if number < 0:
         return chasing(member, s, Reason.NO_GAP_IN_REACH)
-    place = post(s, number)
+    place = post(s, member.limits, number)
     out = sub(s.evader.position, place)
     due = s.now + distance(s.evader.position, place) / max(s.evader.speed, TINY)
     if number == 0:
@@ -76,14 +74,18 @@ def guarded(s: Situation, previous: Plan) -> tuple[Assignment, ...]:
         member = s.team[i]
         was = previous.assignments[i].role
         for number in range(POSTS):
-            place = post(s, number)
+            place = post(s, member.limits, number)
             mine = Role.GOALKEEPER if number == 0 else Role.BLOCKER
             held = was == mine
             cost = distance(member.vehicle.position, place) / max(member.vehicle.speed, TINY)
-            if not member.fit or spare(member, s, place) < (-CHANGE if held else 0.0):
+            late = LATE * distance(s.evader.position, place) / max(s.evader.speed, TINY)
+            near = distance(member.vehicle.position, s.evader.position) < GUARD * s.rules.rho
+            if not member.fit or spare(member.vehicle, s.evader, place) < -late:
                 cost = FORBIDDEN
-            elif distance(member.vehicle.position, s.evader.position) < GUARD * s.rules.rho:
+            elif near and not stands(member.limits):
                 cost = FORBIDDEN  # it engages
+            elif number > 0 and place_stands(s, member.limits):
+                cost = FORBIDDEN  # one on the target is enough
             costs[i * tasks + number] = (cost if held else cost + CHANGE) + SECOND * number
         for number in range(POSTS, tasks):
             costs[i * tasks + number] = EMPTY

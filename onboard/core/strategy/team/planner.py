@@ -11,7 +11,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from onboard.core.math.each import each
-from onboard.core.strategy.team.closure import way_out
+from onboard.core.strategy.team.closure import escapes, way_out
 from onboard.core.strategy.team.guarding import guarded
 from onboard.core.strategy.team.parts import chasing, lost
 from onboard.core.strategy.team.plan_types import (
@@ -27,8 +27,9 @@ from onboard.core.strategy.team.plan_types import (
 )
 from onboard.core.strategy.team.ring import closing, staged
 
+EVERY = 0.5  # [s] between two plans
 KEEP = 0.09  # [rad] a ring that was closed counts as closed until it is open by this
-WIDE = 0.5  # [rad] a band that is open by less may close in the chase: nobody leaves it for the target
+WIDE = 0.5  # [rad] in space a band open by less may close in the chase: nobody leaves it for the target
 
 
 def no_plan(team: tuple[Member, ...], now: float) -> Plan:
@@ -51,7 +52,7 @@ def engaged(s: Situation, previous: Plan) -> Plan:
         band = Band(True, way.gap, way.bearing, way.pitch, NOBODY, s.now)
         return Plan(s.now, each(_chase, s.team, _Shared(s, Reason.ENCLOSED)), band)
     band = closing(s, way)
-    if s.target.exists and way.gap > WIDE:
+    if s.target.exists and way.gap > (0.0 if s.rules.planar else WIDE) and escapes(s):
         return Plan(s.now, guarded(s, previous), band)
     return Plan(s.now, each(_chase, s.team, _Shared(s, Reason.NO_GAP_IN_REACH)), band)
 

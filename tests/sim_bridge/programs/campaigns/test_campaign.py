@@ -196,9 +196,10 @@ def test_a_game_of_simple_motion_in_space_is_drawn_as_it_was_played(tmp_path: Pa
     plan = plan_of(Options((scenario,), games=3), until=False)
     run(tmp_path / "folder", plan, Ways(), print)
     game = again.game_of(tmp_path / "folder", "0:2")
-    row, pictures = again.replay(game, tmp_path / "pictures")
+    row, pictures, why = again.replay(game, tmp_path / "pictures")
     assert again.agrees(game, row)
-    assert [path.suffix for path in pictures] == [".png", ".svg"]
+    assert [path.suffix for path in pictures] == [".png", ".svg", *[".png"] * bool(why)]
+    assert bool(why) == (row.verdict != "captured")
 
 
 def test_a_game_that_its_folder_has_otherwise_is_told(reference: Reference) -> None:
