@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 def ways_of(scenario: Scenario, places: Array, step: float, aircraft: bool) -> Ways:
     """A game by everybody's places (n, players, 3) [m; NED], evader first, every `step` [s]; that of
     `aircraft` in the air of the scenario's mean wind, others in air that stands."""
-    t = step * np.arange(len(places))
+    t = np.asarray(step * np.arange(len(places)), dtype=np.float64)
     if aircraft:
         wind = wind_at(climate_of(scenario.flight.wind), scenario.evader.start())
         places = places - np.outer(t - t[-1], wind)[:, None, :]

@@ -10,8 +10,9 @@ from onboard.core.game.rules import Rules, Target
 from onboard.core.math.states import Mate, Vehicle, VehicleLimits
 from onboard.core.math.vectors import ZERO, Vec
 from onboard.core.strategy.team.plan_types import IDLE, Heights, Reason, Role
+from onboard.core.strategy.team.planner import EVERY
 from onboard.pilot.setup import GameSetup, Own, Player, Side
-from onboard.pilot.team_seat import EVERY_S, LEASE_S, OLD_S, Field, Known, TeamSeat
+from onboard.pilot.team_seat import LEASE_S, OLD_S, Field, Known, TeamSeat
 
 TEAM = (2, 3, 5)
 TARGET = Vec(4000.0, 0.0, -500.0)
@@ -77,7 +78,7 @@ class Squadron:
 
 def test_the_lowest_id_plans_twice_a_second_and_all_fly_by_its_plan() -> None:
     team = Squadron()
-    assert team.planners(4.0) == [2] * round(4.0 / EVERY_S)
+    assert team.planners(4.0) == [2] * round(4.0 / EVERY)
     parts = {id: team.seats[id].part(team.now) for id in TEAM}
     assert parts[2].role is Role.GOALKEEPER  # it alone is at the target first
     assert parts[2].reason is Reason.FIRST_AT_TARGET
