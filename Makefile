@@ -24,7 +24,7 @@ help:
 	@echo "make page-pictures  the pictures of docs/page.md again, from games flown for them; five minutes"
 	@echo "make figures   the committed tables of games, routes and predictors again, in one sweep"
 	@echo "make bench-matrix  every evader against every pursuers' strategy; resumable"
-	@echo "make bench-team   teams of pursuers against the paper's rules, hours; resumable"
+	@echo "make bench-team   teams of pursuers against the paper's rules, computed and flown, hours; resumable"
 	@echo "make bench-predictor   the comparison with LSTM and GRU"
 	@echo "make bench-gym   steps of learning environments, beside VMAS and PettingZoo's simple_tag"
 	@echo "make golden    what whole games, agents and campaigns do, against what was recorded of them"
@@ -104,7 +104,7 @@ bench-matrix: install
 	$(BIN)/python -m tests.benchmarks.matrix
 
 bench-team: install
-	$(BIN)/python -m tests.benchmarks.team --seeds 200
+	$(BIN)/python -m tests.benchmarks.team --seeds 200 --fly 20 --jobs 2
 	$(BIN)/python -m tests.benchmarks.team_plane
 	$(BIN)/python -m tests.benchmarks.own_air --seeds 200
 	$(BIN)/python -m tests.benchmarks.end_game --seeds 60

@@ -12,9 +12,11 @@ from __future__ import annotations
 
 import argparse
 import time
+from collections.abc import Mapping
 from datetime import UTC, datetime
 from inspect import getclosurevars
-from math import degrees, hypot
+from itertools import combinations
+from math import degrees, hypot, inf
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -24,7 +26,7 @@ import numpy as np
 from onboard.autopilot.arduplane import ArduPlaneEncoder
 from onboard.core.guidance.plane import Reference, Said
 from onboard.core.math.angles import wrap
-from onboard.core.math.vectors import sub, yaw_of
+from onboard.core.math.vectors import distance, sub, yaw_of
 from onboard.game.scenario import Scenario
 from onboard.game.staging import places_of, start_headings
 from onboard.pilot.predictor_choice import Predicting
@@ -32,12 +34,13 @@ from onboard.runtime.loop import run_virtual, virtual_clock
 from sim_bridge.campaign.aboard import Aboard
 from sim_bridge.campaign.plane_in_wind import Flown
 from sim_bridge.campaign.spatial_campaign import Played, play_drawn, play_seed
-from sim_bridge.campaign.spatial_draw import draw, drawn_scenario, spatial
+from sim_bridge.campaign.spatial_draw import Sides, draw, drawn_scenario, spatial
 from sim_bridge.campaign.spatial_game import Evasion
 from sim_bridge.rehearsal import Options, Rehearsal
 from sim_bridge.vehicle.autopilot.arduplane import ArduPlane
 from sim_bridge.vehicle.flight.airframe import Plane
 from sim_bridge.vehicle.flight.plane import PlaneState
+from sim_bridge.vehicle.motion import Motion
 from sim_bridge.vehicle.wind.dryden import GustState
 from tests.support import benchmark_record
 
@@ -60,6 +63,21 @@ class Flight(NamedTuple):
     smallest: float  # [m]
     t0: float  # [s] since the beginning of the world
     began: tuple[Began, ...]
+    apart: float  # [m] the least between two pursuers since t₀; inf with one
+
+
+class Apart:
+    """The least distance between two pursuers since t₀; its `step` is a `Bridge.watch`."""
+
+    def __init__(self, master: Any, evader: int) -> None:
+        self.least = inf
+        self._master, self._evader = master, evader
+
+    def step(self, wall_ns: int, motions: Mapping[int, Motion]) -> None:
+        """Look at everybody's place at an instant."""
+        if self._master.t0_ns and wall_ns >= self._master.t0_ns:
+            places = [motion.position for id, motion in motions.items() if id != self._evader]
+            self.least = min([self.least, *(distance(a, b) for a, b in combinations(places, 2))])
 
 
 def ready_for(scenario: Scenario, seed: int, evasion: Evasion) -> Scenario:
@@ -90,9 +108,12 @@ def fly(scenario: Scenario) -> Flight:
                         began.append(Began(vehicle.airframe.state, aboard, field._states[n]))
 
             world.step = step  # type: ignore[method-assign]
+            near = Apart(game.master, scenario.ids[0])
+            game.bridge.watch = near.step
             outcome = await game.until_ended()
             t0 = (game.master.t0_ns - (world.wall_ns - world.elapsed_ns)) / 1e9
-            return Flight(outcome.verdict.value, outcome.time, outcome.smallest_distance, t0, tuple(began))
+            end = (outcome.verdict.value, outcome.time, outcome.smallest_distance)
+            return Flight(*end, t0, tuple(began), near.least)
 
     return run_virtual(play())
 
@@ -116,9 +137,20 @@ def _aboard(vehicle: Any, agent: Any, scenario: Scenario, later: float) -> Aboar
     )
 
 
-def compute(scenario: Scenario, seed: int, evasion: Evasion, flight: Flight, compiled: bool = True) -> Played:
-    """The compiled game of a seed, begun with the states of a flight at t₀."""
+def compute(
+    scenario: Scenario,
+    seed: int,
+    evasion: Evasion,
+    flight: Flight,
+    compiled: bool = True,
+    sides: Sides | None = None,
+) -> Played:
+    """The compiled game of a seed, begun with the states of a flight at t₀.
+
+    By the scenario's strategies, or by `sides` of a kernel that holds them among others.
+    """
     d = draw(scenario, seed, flight.t0, compiled)
+    d = d if sides is None else d._replace(sides=sides)
     players, crew = [], []
     for i, began in enumerate(flight.began):
         off = np.subtract(began.plane.position, d.players[i].plane.position)
