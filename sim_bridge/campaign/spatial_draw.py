@@ -62,6 +62,7 @@ KERNELS = (
     "onboard.core.safety.envelope",
     "onboard.core.safety.fence",
     "onboard.core.safety.field_profile",
+    "onboard.core.safety.passing",
     "onboard.core.safety.separation",
     "onboard.core.safety.supervisor",
     "onboard.pilot.kalman",

@@ -16,7 +16,7 @@ from onboard.core.safety.fence import brake, keep_height, outside_by, turn
 from onboard.core.safety.field_profile import keep_layer
 from onboard.core.safety.health import HealthAction, health
 from onboard.core.safety.policy import Action, Cause, Command, Policy, SupervisorInput
-from onboard.core.safety.separation import keep_apart
+from onboard.core.safety.separation import kept_apart
 
 PROTECTIVE = (
     Cause.FENCE_AHEAD,
@@ -232,7 +232,7 @@ def allow(
         cause = judged.cause
     ground = add(bounded(slow.velocity, before, e).velocity, wind)
     if policy.separation > 0.0:
-        apart = keep_apart(ground, position, flying.id, mates, policy)
+        apart = kept_apart(ground, position, flying.velocity, flying.id, mates, policy)
         ground = apart.velocity
         if apart.changed:
             cause = Cause.SEPARATION
