@@ -14,6 +14,7 @@ from onboard.core.math.vectors import Vec, yaw_of
 from onboard.core.route.arrival import Pose, arrive, at
 from onboard.core.strategy.team.parts import setting_out
 from onboard.core.strategy.team.ring import laid
+from onboard.core.strategy.team.staging import stacked
 from onboard.core.strategy.team.timed import LAST, WIDER
 from onboard.game.scenario import Scenario, VehicleSpec
 from sim_bridge.campaign.plane_in_wind import climate_of, wind_at
@@ -104,7 +105,9 @@ def _staged(scenario: Scenario, seconds: float, seed: int) -> tuple[VehicleSpec,
         place = (north + PLACE_OFF * a, east + PLACE_OFF * b)
         yaw = wrap(there.heading + HEADING_OFF * c)
         found.append(replace(spec, position=(*place, -aim.z), heading_deg=degrees(yaw)))
-    return tuple(found)
+    # Who is late is on its way still: in flight the supervisor keeps it off its mates.
+    places = stacked([spec.start() for spec in found], scenario.parameters.separation, s.heights)
+    return tuple(replace(p, position=(at.x, at.y, -at.z)) for p, at in zip(found, places, strict=True))
 
 
 def near(scenario: Scenario) -> bool:

@@ -21,8 +21,9 @@ LONGEST = 60.0  # [s] that it looks ahead at most
 STEPS = 8  # into which that time is cut
 SLACK = 0.05  # of the distance, kept besides
 STRAY = 3.0  # [m/s] by which gusts and a mate's own turning let the distance shrink
-CLIMB_LAG = 2.0  # [s] until a plane climbs as told
+CLIMB_LAG = 1.5  # [s] until a plane climbs as told
 TURN_AHEAD = 2.0  # [s] of turning by which an ordered course leads the present one: the bank is full then
+LATER, LATEST = 1.5, 0.75  # [s] before the last way out closes that the higher id, and the lower, takes it
 BESIDE = 0.3  # sine of the angle from its course at which the mate's place counts as beside it
 WAYS = 9  # the demand; it climbing or sinking; left and right, each as demanded, climbing, sinking
 
@@ -54,18 +55,19 @@ class Room(NamedTuple):
 
 def turning(e: Envelope) -> float:
     """The turn rate of a plane that may be counted on [rad/s]."""
-    return clamp(min(e.turn_rate if e.turn_rate > 0.0 else pi, e.speed_max / max(e.turn_radius, 1.0)), 1e-3, pi)
+    return clamp(
+        min(e.turn_rate if e.turn_rate > 0.0 else pi, e.speed_max / max(e.turn_radius, 1.0)), 1e-3, pi
+    )
 
 
-def ahead(keep: float, alone: bool, policy: Policy) -> float:
-    """How far ahead a plane looks [s]: a turn wins ½ a t² across, a = v ω, or a t² where both turn."""
+def ahead(keep: float, policy: Policy) -> float:
+    """How far ahead a plane looks [s]: a turn wins ½ a t² across, a = v ω."""
     across = max(policy.envelope.speed_max * turning(policy.envelope), 0.1)
-    share = 2.0 if alone else 1.0
-    return min(LONGEST, EARLY * (policy.reaction + sqrt(share * keep / across)))
+    return min(LONGEST, EARLY * (policy.reaction + sqrt(2.0 * keep / across)))
 
 
 def met(position: Vec, own_id: int, mates: tuple[Mate, ...], policy: Policy) -> list[Passing]:
-    """The mates that are near enough to be met. The higher id looks farther ahead than the lower."""
+    """The mates that are near enough to be met."""
     e = policy.envelope
     found: list[Passing] = []
     for mate in mates:
@@ -75,7 +77,7 @@ def met(position: Vec, own_id: int, mates: tuple[Mate, ...], policy: Policy) -> 
             continue
         quiet = mate.age > policy.mate_age
         keep = policy.separation * (2.0 if quiet else 1.0)
-        time = ahead(keep, quiet or own_id > mate.id, policy)
+        time = ahead(keep, policy)
         x = mate.position.x - position.x
         y = mate.position.y - position.y
         z = mate.position.z - position.z
@@ -103,7 +105,7 @@ def room(now: Moved, aim: Vec, near: list[Passing]) -> Room:
         turned = clamp(left, -most, most)
         vx = level * cos(course + 0.5 * turned)
         vy = level * sin(course + 0.5 * turned)
-        late = clamp(CLIMB_LAG - t, 0.0, dt)
+        late = clamp(CLIMB_LAG + now.reaction - t, 0.0, dt)
         vz = (now.velocity.z * late + aim.z * (dt - late)) / dt
         for k in range(len(near)):
             one = near[k]
@@ -130,25 +132,44 @@ def room(now: Moved, aim: Vec, near: list[Passing]) -> Room:
 
 
 def pass_clear(v: Vec, now: Moved, position: Vec, near: list[Passing], policy: Policy) -> Vec:
-    """The velocity with which a plane passes its mates: `v` [m/s; ground] where that is clear, else a way out."""
+    """The velocity with which a plane passes its mates: `v` [m/s; ground] while it leaves a way out.
+
+    It is free where its own way is clear, and where it can be flown for a while longer and a way out is clear
+    still. The lower id waits longer, so that the higher gives way first.
+    """
     free = room(now, v, near)
     if free.least >= 0.0:
         return v
     one = near[free.mate]
+    wait = LATER if one.first else LATEST
+    later = Moved(now.velocity, now.rate, now.reaction + wait)
+    if best_way(v, later, position, near, one, policy).room.least >= 0.0:
+        return v
+    found = best_way(v, now, position, near, one, policy)
+    return found.aim if found.room.least > free.least else v
+
+
+class Found(NamedTuple):
+    """A way out."""
+
+    aim: Vec  # velocity [m/s; ground]
+    room: Room
+
+
+def best_way(v: Vec, now: Moved, position: Vec, near: list[Passing], one: Passing, policy: Policy) -> Found:
+    """The first way out that is clear, else that with most room; `one` is the mate in the way."""
     side = side_of(v, one)
     up = rises(one)
-    best = free.least
-    found = v
+    best = Found(v, Room(-1e18, -1))
     for way in range(1, WAYS):
         aim = way_out(way, v, now, side, up)
         aim = Vec(aim.x, aim.y, climb_within(aim.z, position, policy))
         here = room(now, aim, near)
+        if here.least > best.room.least:
+            best = Found(aim, here)
         if here.least >= 0.0:
-            return aim
-        if here.least > best:
-            best = here.least
-            found = aim
-    return found
+            break
+    return best
 
 
 def way_out(way: int, v: Vec, now: Moved, side: float, up: bool) -> Vec:
@@ -202,7 +223,7 @@ def side_of(v: Vec, one: Passing) -> float:
 
 
 def rises(one: Passing) -> bool:
-    """Whether a plane climbs rather than sinks: the higher of the two, and where they are level the lower id."""
+    """Whether a plane climbs rather than sinks: the higher one, and of two that are level the lower id."""
     if abs(one.line.z) > 0.05 * one.keep:
         return one.line.z > 0.0
     return not one.first

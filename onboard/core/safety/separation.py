@@ -24,10 +24,10 @@ class Separated(NamedTuple):
     changed: bool
 
 
-def kept_apart(  # noqa: PLR0913  (compiled code takes no bundles)
+def kept_apart(
     v: Vec, position: Vec, velocity: Vec, own_id: int, mates: tuple[Mate, ...], policy: Policy
 ) -> Separated:
-    """The velocity `v` [m/s; ground] of a vehicle that flies at `velocity`, changed so that it keeps apart."""
+    """What becomes of `v` [m/s; ground] so that a vehicle that flies at `velocity` keeps apart."""
     if policy.envelope.hovers:
         return keep_apart(v, position, own_id, mates, policy)
     near = met(position, own_id, mates, policy)

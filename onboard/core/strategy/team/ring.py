@@ -25,7 +25,7 @@ from onboard.core.strategy.team.plan_types import (
     Role,
     Situation,
 )
-from onboard.core.strategy.team.staging import Ring, least_gap, radius_at, ring_of, slots_of, swing
+from onboard.core.strategy.team.staging import Ring, least_gap, radius_at, ring_of, slots_of, stacked, swing
 from onboard.core.strategy.team.timed import out_in_time, timed_swing
 
 TURNED = 0.63  # [rad] that a pursuer turns on its way to a slot, more or less: 8 s at 4.5 deg/s
@@ -198,6 +198,8 @@ def laid(s: Situation) -> Slots:
     found = [i for i in range(n)]
     if stand:
         found = _nearest_slots(s, order, places)
+    if s.rules.separation > 0.0 and not s.rules.planar:
+        places = stacked(places, s.rules.separation, s.heights)
     for i in range(n):
         aims[order.who[i]] = places[found[i]]
         late[order.who[i]] = swings.late[i]

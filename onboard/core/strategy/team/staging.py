@@ -17,7 +17,10 @@ from math import acos, asin, cos, inf, pi, sqrt
 from typing import NamedTuple
 
 from onboard.core.math.angles import TURN
-from onboard.core.math.vectors import TINY, clamp
+from onboard.core.math.vectors import TINY, Vec, clamp, distance
+from onboard.core.strategy.team.plan_types import Heights
+
+STACK = 1.25  # times the separation: slots stay so far apart, and are so far above one another
 
 
 class Ring(NamedTuple):
@@ -146,3 +149,23 @@ def slots_of(
         low[i] = place
         high[i] = place
     return low
+
+
+def stacked(places: list[Vec], separation: float, heights: Heights) -> list[Vec]:
+    """The same places [m; NED], higher or lower where one is too near one before it: `separation` [m]."""
+    keep = STACK * separation
+    found = places.copy()
+    n = len(places)
+    for i in range(n):
+        for k in range(2 * n + 1):
+            z = places[i].z - keep * (0.5 * (k + 1) if k % 2 == 1 else -0.5 * k)  # up, down, twice up …
+            if k > 0 and not heights.floor <= -z <= heights.ceiling:
+                continue
+            place = Vec(places[i].x, places[i].y, z)
+            free = True
+            for j in range(i):
+                free = free and distance(place, found[j]) >= keep - 1e-9
+            if free:
+                found[i] = place
+                break
+    return found

@@ -9,7 +9,9 @@ import pytest
 from numpy.typing import NDArray
 from scipy.optimize import linprog
 
-from onboard.core.strategy.team.staging import flight, radius_at, ring_of, slots_of, swing
+from onboard.core.math.vectors import Vec, distance
+from onboard.core.strategy.team.plan_types import Heights
+from onboard.core.strategy.team.staging import flight, radius_at, ring_of, slots_of, stacked, swing
 
 Array = NDArray[np.float64]
 
@@ -92,3 +94,19 @@ def test_swing_is_the_farthest_bearing_that_is_reached(far: float, reach: float)
         slot = radius_at(far, found, nearest)
         assert slot >= nearest
         assert flight(far, found, nearest) <= reach + 1e-6
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_slots_keep_the_separation_of_each_other_by_their_heights(seed: int) -> None:
+    """Slots of a plan lay 0, 9 and 15 m apart where two pursuers reach no other bearing in time."""
+    rng = np.random.default_rng(seed)
+    places = [Vec(*rng.uniform(-90.0, 90.0, 2).tolist(), -1500.0) for _ in range(4)]
+    places.append(Vec(2e3, 0.0, -1500.0))
+    heights = Heights(1450.0, 3000.0)
+    found = stacked(places, 100.0, heights)
+    assert found[4] == places[4]
+    assert found[0] == places[0]
+    for i in range(5):
+        assert (found[i].x, found[i].y) == (places[i].x, places[i].y)
+        assert heights.floor <= -found[i].z <= heights.ceiling
+        assert all(distance(found[i], found[j]) >= 100.0 for j in range(i))

@@ -1,8 +1,8 @@
-"""Encounters of aircraft flown out step by step, each under its own supervisor: an oracle of separation.
+"""Encounters of aircraft flown out step by step, each under its supervisor: an oracle of separation.
 
-An aircraft here is what it physically is, and knows nothing of the supervisor's forecasts: a course that turns
-at a limited rate towards the one ordered, a climb that follows late, its own gusts (Gauss–Markov, 3 m/s, 10 s)
-and the mean wind; mates are known late. Decisions come at 5 Hz, a quarter of what is flown.
+An aircraft here is what it physically is, and knows nothing of the supervisor's forecasts: a course that
+turns at a limited rate towards the one ordered, a climb that follows late, its own gusts (Gauss–Markov,
+3 m/s, 10 s) and the mean wind; mates are known late. Decisions come at 5 Hz, a quarter of what is flown.
 """
 
 from __future__ import annotations
@@ -94,10 +94,10 @@ def nearest(team: list[Aircraft], wish: Wish, wind: Vec, seconds: float, delay: 
     return least
 
 
-def to_a_place(far: float, rng: np.random.Generator, count: int) -> tuple[list[Aircraft], Wish]:
-    """All round a place and bound for it, some on circles after: the worst that convergence can be."""
+def to_a_place(rng: np.random.Generator, count: int) -> tuple[list[Aircraft], Wish]:
+    """All round a place and bound for it, for good."""
     bearings = rng.uniform(-pi, pi) + np.cumsum(rng.uniform(0.3, 2.2, count))
-    out = far + rng.uniform(-150.0, 150.0, count)
+    out = 1200.0 + rng.uniform(-150.0, 150.0, count)
     high = rng.uniform(-80.0, 80.0, count)
     team = [
         Aircraft(Vec(r * cos(b), r * sin(b), -1500.0 + h), wrap(b + pi), int(rng.integers(1 << 30)), 3.0)
