@@ -21,7 +21,7 @@ from onboard.config.strict import ConfigError
 from onboard.runtime import options
 from onboard.runtime.options import VersionOption
 from onboard.runtime.program import run
-from onboard.runtime.resources import AIRCRAFT, SCENARIOS, shipped_file
+from onboard.runtime.resources import AIRCRAFT, CLASSIC, SCENARIOS, shipped_file
 from sim_bridge.programs.campaigns.cli import app as campaign_app
 from sim_bridge.programs.shipped_list import Listed
 
@@ -214,6 +214,43 @@ def bench(
     made = room.bench(told, lambda line: typer.echo(f"sim-bridge: {line}", err=True))
     print(text(made.board))
     print(f"\n{made.page} (open it in a browser), {made.data.name}")
+
+
+@app.command(
+    epilog="Examples: sim-bridge classic | sim-bridge classic two-cutters --starts 5"
+    " | sim-bridge classic convex-target --strategy goalkeeper --strategy evasive --json"
+    " | sim-bridge classic half-space --picture half-space.svg",
+)
+def classic(
+    name: Annotated[
+        str,
+        typer.Argument(
+            help="Problem; none: all of them with their values.",
+            metavar="[NAME]",
+            autocompletion=options.shipped(CLASSIC),
+        ),
+    ] = "",
+    file: Annotated[
+        Path | None, typer.Option(help="Scenario of one's own in place of the problem's (classic/NAME).")
+    ] = None,
+    strategy: Annotated[
+        list[str] | None, typer.Option(help="Strategy of either side; may be repeated. Default: several.")
+    ] = None,
+    starts: Annotated[
+        int, options.value(Flights, "--starts", words="Games: the file's start and others near it.", unit="N")
+    ] = 20,
+    seed: Annotated[int, options.value(Seed, "--seed", words="Seed of the other starts.", unit="N")] = 1,
+    json: Annotated[bool, typer.Option("--json", help="One JSON object a line, nothing else.")] = False,
+    picture: Annotated[Path | None, typer.Option(help="Draw the problem (PNG, SVG or PDF).")] = None,
+) -> None:
+    """Play classical problems with known values: the value, what strategies reach of it, and why not all."""
+    from sim_bridge.programs.classic import command as room
+
+    own = None if file is None else shipped_file(file, SCENARIOS)
+    chosen = room.Options(own, tuple(strategy or ()), starts, seed, json, picture)
+    if not name:
+        room.refuse_without_problem(chosen)
+    print(room.classic(name, chosen) if name else room.listed(json))
 
 
 scenario_app = options.group(

@@ -22,7 +22,8 @@ class Shelf(NamedTuple):
         return self._replace(rooms=(room, *(one for one in self.rooms if one != room)))
 
 
-SCENARIOS = Shelf("scenarios", ("flight", "spatial", "table1", "gym"))
+SCENARIOS = Shelf("scenarios", ("flight", "spatial", "table1", "gym", "classic"))
+CLASSIC = Shelf("scenarios", ("classic",))  # problems with known values
 AIRCRAFT = Shelf("aircraft")
 ROUTES = Shelf("routes")
 

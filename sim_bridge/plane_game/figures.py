@@ -23,7 +23,8 @@ EVADER, TARGET, CIRCLE, CONE = (
 STRATEGY_NAMES = {"paper": "strategy of this paper", "earlier": "strategy of the earlier paper [37]"}
 
 
-def _pyplot() -> Any:
+def pyplot() -> Any:
+    """Matplotlib's interface, drawing into files: the same bytes for the same picture."""
     import matplotlib
 
     matplotlib.use("Agg")
@@ -38,7 +39,7 @@ def draw_game(played: Played, folder: Path, stem: str = "") -> list[Path]:
 
     Returns the files written.
     """
-    plt = _pyplot()
+    plt = pyplot()
     figure, axes = plt.subplots(1, 2, figsize=(14, 7.2), layout="constrained")
     for axis, index, title in ((axes[0], 0, "initial stage"), (axes[1], -1, "final stage")):
         draw_stage(axis, played, len(played.frames) - 1 if index else 0)
@@ -135,7 +136,7 @@ def check_film(path: Path) -> None:
 def animate(played: Played, path: Path, seconds: float = 10.0, fps: int = 12) -> None:
     """The game as GIF, or as MP4 where ffmpeg is at hand. Raises ConfigError."""
     check_film(path)
-    plt = _pyplot()
+    plt = pyplot()
     from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
 
     figure, axis = plt.subplots(figsize=(7.5, 7.5), layout="constrained")

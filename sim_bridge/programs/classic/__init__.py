@@ -1,0 +1,1 @@
+"""`sim-bridge classic`: problems with known values, and what strategies reach of them."""
