@@ -9,9 +9,10 @@ from onboard.config.strict import ConfigError
 from onboard.game.scenario import load
 from onboard.runtime.resources import configs
 from sim_bridge.classic.chases import CARS, CHAUFFEUR, CUTTERS, LIONS
-from sim_bridge.classic.guards import BORDER, CONVEX, ESCORT, FLAG, HALF_SPACE, PERIMETER
+from sim_bridge.classic.guards import BORDER, CONVEX, HALF_SPACE
 from sim_bridge.classic.play import Scene
 from sim_bridge.classic.problem import Problem, scene_of
+from sim_bridge.classic.raids import ESCORT, FLAG, PERIMETER
 
 PROBLEMS: dict[str, Problem] = {
     one.name: one

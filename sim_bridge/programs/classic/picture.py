@@ -11,9 +11,10 @@ from onboard.core.math.vectors import Vec
 from onboard.core.strategy.registry import DEFAULT_PURSUER
 from onboard.game import palette
 from onboard.runtime.whole_files import whole_or_nothing
-from sim_bridge.classic.guards import BORDER, ESCORT, FLAG, HALF_SPACE, PERIMETER, border
+from sim_bridge.classic.guards import BORDER, HALF_SPACE, border
 from sim_bridge.classic.play import Scene, ours
 from sim_bridge.classic.problem import Problem, play
+from sim_bridge.classic.raids import ESCORT, FLAG, PERIMETER
 from sim_bridge.classic.values.regions import balls_of
 from sim_bridge.plane_game.figures import pyplot
 
