@@ -28,6 +28,7 @@ from sim_bridge.world.staging import (
 )
 
 RATE_HZ = 100.0
+STEP_S = round(NS_PER_S / RATE_HZ) / NS_PER_S
 BEHIND_MAX = 50  # physics steps made up for in one call; beyond them time is lost, and counted
 
 
@@ -138,18 +139,21 @@ class World:
             behind = BEHIND_MAX
         for _ in range(behind):
             self._done += 1
+            now_ns = self.elapsed_ns
+            now_s = now_ns / NS_PER_S
             for vehicle in self.vehicles.values():
-                self._move(vehicle)
+                self._move(vehicle, now_ns, now_s)
 
-    def _move(self, vehicle: SimVehicle) -> None:
+    def _move(self, vehicle: SimVehicle, now_ns: int, now_s: float) -> None:
+        """One physics step: what the autopilot has to do beside steering, it does only when it is due."""
         autopilot, airframe = vehicle.autopilot, vehicle.airframe
-        now_ns = self.elapsed_ns
         motion = airframe.motion
-        vehicle.air = air = self._wind(vehicle.id, motion, now_ns / NS_PER_S)
+        vehicle.air = air = self._wind(vehicle.id, motion, now_s)
         demand = autopilot.step(now_ns, motion, air)
-        if not autopilot.parked:
-            airframe.step(demand, air, self.step_ns / NS_PER_S)
-        self._flush(vehicle)
+        if not autopilot.landed:  # else it stands where it is
+            airframe.step(demand, air, STEP_S)
+        if autopilot.speaks:
+            self._flush(vehicle)
 
     def _flush(self, vehicle: SimVehicle) -> None:
         frames = vehicle.autopilot.outgoing()

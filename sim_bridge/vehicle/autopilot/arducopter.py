@@ -15,6 +15,7 @@ from sim_bridge.vehicle.autopilot.command import ACCEPTED, DENIED, FAILED, Comma
 from sim_bridge.vehicle.autopilot.generations import ADDED, renamed
 from sim_bridge.vehicle.autopilot.multicopter import Leg, Multicopter, Speeds
 from sim_bridge.vehicle.autopilot.parameters import Parameters
+from sim_bridge.vehicle.autopilot.resting import AWAKE, until
 from sim_bridge.vehicle.motion import Demand
 
 M = ARDUCOPTER_MODES
@@ -155,6 +156,11 @@ class ArduCopter(Multicopter, ArduPilot):
             elif self.leg == Leg.STICK:
                 self.fly(Leg.HOLD, now_ns)
         return super().guide(now_ns, dt)
+
+    def steady_until(self, now_ns: int) -> int:
+        if self.leg != Leg.VELOCITY or self.mode in BY_STICK:
+            return AWAKE
+        return until(self._target_ns, self.parameters["GUID_TIMEOUT"])
 
     def silence_limit_s(self) -> float:
         return self.parameters["FS_GCS_TIMEOUT"] if self.parameters["FS_GCS_ENABLE"] else 0.0

@@ -14,6 +14,7 @@ from onboard.wire.mavlink.dialect import DialectPacket, dialect
 from sim_bridge.vehicle.autopilot.autopilot import Autopilot
 from sim_bridge.vehicle.autopilot.command import ACCEPTED, DENIED, FAILED, Command
 from sim_bridge.vehicle.autopilot.health import CURRENT_FLYING
+from sim_bridge.vehicle.autopilot.resting import BATTERY_LEVELS, ardupilot_level, ardupilot_rest
 
 VERSIONS = {Firmware.OLDER: (4, 4, 4), Firmware.RECORDED: (4, 5, 6), Firmware.NEWER: (4, 7, 0)}
 GUIDED_POINT, GUIDED_ALTITUDE = 2, 3  # MISSION_ITEM.current: not of a mission, to be flown to at once
@@ -49,9 +50,6 @@ class Place(NamedTuple):
     altitude_m: float  # above mean sea level
 
 
-BATTERY_LEVELS = ((1, "BATT_LOW_VOLT", "BATT_LOW_MAH"), (2, "BATT_CRT_VOLT", "BATT_CRT_MAH"))
-
-
 class ArduPilot(Autopilot):
     """What ArduCopter and ArduPlane do alike: modes by number, the watched ground station, failsafes."""
 
@@ -69,6 +67,7 @@ class ArduPilot(Autopilot):
     _battery_level = 0  # acted upon: 0 none, 1 low, 2 critical; it never falls
     _fence_breached = False
     _prearm_ns = -1
+    _levelled: tuple[tuple[float, ...], float] = ((), 0.0)  # `battery_level`, and for what it was reckoned
     blockable: ClassVar[tuple[str, ...]]  # modes by their bits in FLTMODE_GCSBLOCK
     recovered: ClassVar[str]  # what is said of a failsafe that is over
 
@@ -141,6 +140,16 @@ class ArduPilot(Autopilot):
             self._watch_estimator(now_ns)
             self._watch_battery(now_ns)
             self._watch_fence(now_ns)
+
+    def watched_until(self, now_ns: int) -> int:
+        return ardupilot_rest(self, now_ns)
+
+    def battery_level(self) -> float:
+        """The charge, 0…1, down to which no battery level beyond the one acted upon is reached."""
+        key = (self.parameters.changes, self.health.sag, self._battery_level)
+        if key != self._levelled[0]:
+            self._levelled = (key, ardupilot_level(self))
+        return self._levelled[1]
 
     @abstractmethod
     def on_silence(self, now_ns: int) -> None:
@@ -219,6 +228,9 @@ class ArduPilot(Autopilot):
     def _watch_battery(self, now_ns: int) -> None:
         """Voltage or charge below a level for BATT_LOW_TIMER; levels never fall again before a reboot."""
         p, h = self.parameters, self.health
+        if h.battery > self.battery_level():
+            self._battery_low_ns = -1
+            return
         used = (1.0 - h.battery) * self.setup.options.battery_s * CURRENT_FLYING / 3.6  # [mAh]
         left = p["BATT_CAPACITY"] - used
         level = 0

@@ -23,6 +23,7 @@ from sim_bridge.vehicle.autopilot.company import Company
 from sim_bridge.vehicle.autopilot.generations import REMOVED
 from sim_bridge.vehicle.autopilot.health import Fault, pack_voltage
 from sim_bridge.vehicle.autopilot.microservices import SERVICES
+from sim_bridge.vehicle.autopilot.resting import AWAKE
 from sim_bridge.vehicle.autopilot.setup import Setup
 from sim_bridge.vehicle.autopilot.state import COMPONENT, AutopilotState
 from sim_bridge.vehicle.motion import Air, Demand, Motion
@@ -57,12 +58,15 @@ class Autopilot(AutopilotState):
         self._ground_station_ns = -1  # last heartbeat of the watched one; −1 = never
         self._any_station_ns = -1  # last heartbeat of any ground station; −1 = never
         self._heartbeat_ns = now_ns  # when the next one is due
+        self._rest_ns = AWAKE  # until when nothing is due, if nobody tells it anything
+        self._steady: Demand | None = None  # what it demands until then, where motion does not change it
         self.enter(now_ns, self.mode)
 
     # ------------------------------------------------------------------ the world's side
 
     def receive(self, now_ns: int, data: bytes, peer: Hashable) -> None:
         """Take one datagram. Never raises: what is bad or meant for others is counted and dropped."""
+        self._rest_ns = AWAKE
         for packet in self._framers.feed(peer, data, self.setup.options.epoch_ns + now_ns):
             self._take(now_ns, dialect_packet(packet.raw))
 
@@ -73,8 +77,10 @@ class Autopilot(AutopilotState):
         self.motion = Motion(motion.position, ZERO, 0.0, 0.0, 0.0, motion.yaw) if self.landed else motion
         self.air = air
         self.wind_filter.step(now_ns, self.motion, air, self.landed)
-        self._place = None
         self.health.drain(dt, self.armed and not self.landed)
+        if now_ns < self._rest_ns:
+            return self.guide(now_ns, dt) if self._steady is None else self._steady
+        self._rest_ns, self._place = AWAKE, None
         if not self.home_known and self.positioned(now_ns):
             self.home_known = True
             self.emit(telemetry.home_position(self, now_ns))
@@ -84,12 +90,16 @@ class Autopilot(AutopilotState):
         self.watch(now_ns)
         demand = self.guide(now_ns, dt)
         self._send_due(now_ns)
+        quiet = not self._late and self._company.alone and self.parameters.listed and self.home_known
+        if quiet and self.armed and not self.landed:  # until when this need not be done again
+            due_ns = min(self._heartbeat_ns, self.streams.first)
+            self._rest_ns = min(due_ns, self.watched_until(now_ns)) if due_ns > now_ns else AWAKE
+            self._steady = demand if self.steady_until(now_ns) >= self._rest_ns else None
         return demand
 
-    @property
-    def parked(self) -> bool:
-        """Whether the vehicle stands on the ground: the world then leaves the airframe where it is."""
-        return self.landed
+    def wake(self) -> None:
+        """Look at everything in the next step: something was done to the vehicle."""
+        self._rest_ns = AWAKE
 
     # ------------------------------------------------------------------ faults
 
@@ -97,6 +107,7 @@ class Autopilot(AutopilotState):
         """Restart: sequence, boot time, streams and guidance begin anew; parameters, home and battery stay.
 
         In flight a real one would come up flying (a watchdog reset keeps the vehicle armed)."""
+        self.wake()
         self._boot(now_ns)
         self._heartbeat_ns = now_ns
         self._framers.clear()
@@ -114,11 +125,13 @@ class Autopilot(AutopilotState):
         """The safety pilot's switch: the mode is entered whatever the ground station wants.
 
         Raises KeyError where this kind has no mode of that name."""
+        self.wake()
         self.transmitter.choose(name)
         self._change(now_ns, self.modes[name])
 
     def fail(self, fault: Fault, failed: bool = True) -> None:
         """Make something fail, or recover."""
+        self.wake()
         if failed:
             self.health.faults.add(fault)
         else:
@@ -126,14 +139,17 @@ class Autopilot(AutopilotState):
 
     def set_battery(self, share: float) -> None:
         """Set the flight battery's charge, 0…1."""
+        self.wake()
         self.health.battery = min(1.0, max(0.0, share))
 
     def set_voltage(self, voltage: float) -> None:
         """Let the flight battery's voltage drop to `voltage` [V] at its present charge."""
+        self.wake()
         self.health.sag = max(0.0, pack_voltage(self.health.battery) - voltage)
 
     def set_throttle(self, now_ns: int, throttle: float | None) -> None:
         """Move the pilot's throttle stick, 0…1; None: the transmitter is no longer heard."""
+        self.wake()
         self.transmitter.put(throttle, now_ns)
 
     # ------------------------------------------------------------------ the personality's side
@@ -153,6 +169,14 @@ class Autopilot(AutopilotState):
     @abstractmethod
     def watch(self, now_ns: int) -> None:
         """Look for what triggers a failsafe, and act on it."""
+
+    @abstractmethod
+    def watched_until(self, now_ns: int) -> int:
+        """Until when [ns] `watch` surely finds nothing, armed in the air and told nothing; 0: look again."""
+
+    def steady_until(self, now_ns: int) -> int:
+        """Until when [ns] `guide` surely says the same, however the vehicle moves; 0: ask again."""
+        return AWAKE
 
     @abstractmethod
     def why_not_armable(self, now_ns: int) -> str:
@@ -189,8 +213,6 @@ class Autopilot(AutopilotState):
         handlers[dialect.MAV_CMD_DO_SET_MODE] = self.set_mode_result
         handlers[dialect.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN] = self._do_reboot
         return handlers
-
-    # ------------------------------------------------------------------ what personalities use
 
     def request_mode(self, now_ns: int, mode: int) -> str:
         """Change the mode where it may be entered; gives the reason where it may not, else ""."""

@@ -34,6 +34,11 @@ class Company:
         self._beat_ns = now_ns
         self._ask_ns = now_ns
 
+    @property
+    def alone(self) -> bool:
+        """Whether nobody else speaks."""
+        return not self._gimbal and not self._hz
+
     def step(self, now_ns: int) -> list[Voice]:
         """What is said now."""
         if not self._gimbal and not self._hz:

@@ -9,6 +9,11 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+OFFBOARD_LOSS = {0: "POSCTL", 1: "ALTCTL", 2: "STABILIZED", 3: "RTL", 4: "LAND", 5: "HOLD", 6: "TERMINATE",
+                 7: "TERMINATE"}  # fmt: skip
+"""COM_OBL_RC_ACT; 6 terminates the flight and 7 disarms: the motors stop."""
+LINK = {1: "HOLD", 2: "RTL", 3: "LAND", 5: "TERMINATE", 6: "TERMINATE"}  # NAV_DLL_ACT and NAV_RCL_ACT
+GEOFENCE = {2: "HOLD", 3: "RTL", 4: "TERMINATE", 5: "LAND"}  # GF_ACTION
 STRENGTH = ("POSCTL", "ALTCTL", "STABILIZED", "HOLD", "RTL", "LAND", "TERMINATE")  # weakest first
 
 
@@ -47,6 +52,11 @@ class Latches:
                 if condition.action:
                     self._wishes[condition.cause] = Wish(condition.action, now_ns)
         return begun
+
+    @property
+    def latched(self) -> bool:
+        """Whether any action is wanted."""
+        return bool(self._wishes)
 
     def release(self) -> None:
         """A person chose a mode: what is latched counts no more; a condition must begin anew."""

@@ -60,12 +60,12 @@ class Health:
         self.payload: float | None = 1.0 if batteries > 1 else None  # … of the second, which feeds a payload
         self.sag = 0.0  # voltage that is missing beside the charge: a bad cell [V]
         self.faults: set[Fault] = set()
-        self._drain = 1.0 / battery_s  # [1/s] in flight
+        self.drain_rate = 1.0 / battery_s  # [1/s] in flight
 
     def drain(self, dt: float, flying: bool) -> None:
         """Use the battery for `dt` seconds."""
         share = 1.0 if flying else CURRENT_IDLE / CURRENT_FLYING
-        self.battery = max(0.0, self.battery - self._drain * share * dt)
+        self.battery = max(0.0, self.battery - self.drain_rate * share * dt)
 
     @property
     def voltage(self) -> float:

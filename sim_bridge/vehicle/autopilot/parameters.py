@@ -52,6 +52,7 @@ class Parameters:
         a parameter is delivered: the simulation goes on to read and put it under its own.
         """
         self._aliases = dict(aliases)
+        self.changes = 0  # counted: what hangs on values is reckoned anew only then
         self._table = tuple(sorted(self._delivered(parameter) for parameter in table))
         self._numbers = {parameter.name: number for number, parameter in enumerate(self._table)}
         self._values = {p.name: p.default for p in self._table}
@@ -84,11 +85,17 @@ class Parameters:
         if alias.name not in self._numbers:
             raise KeyError(name)
         self._read.clear()
+        self.changes += 1
         self._values[alias.name] = min(max(value * alias.factor, -LARGEST), LARGEST)
 
     def list_all(self) -> None:
         """Begin to send the whole table."""
         self._listing = 0
+
+    @property
+    def listed(self) -> bool:
+        """Whether no listing is under way."""
+        return self._listing >= len(self._table)
 
     def due(self, most: int) -> list[MavMessage]:
         """The next values of a listing under way."""
@@ -117,6 +124,7 @@ class Parameters:
                 low, high = RANGES[parameter.kind]
                 value = float(min(max(round(value), low), high))
             self._read.clear()
+            self.changes += 1
             self._values[name] = value
         return self._value(parameter, UNNUMBERED)
 

@@ -20,10 +20,18 @@ from onboard.wire.mavlink.modes import PX4_MODES
 from sim_bridge.vehicle.autopilot import ardupilot, telemetry
 from sim_bridge.vehicle.autopilot.autopilot import Autopilot
 from sim_bridge.vehicle.autopilot.command import ACCEPTED, DENIED, FAILED, LATER, Command
-from sim_bridge.vehicle.autopilot.failsafes import Condition, Latches, stronger
+from sim_bridge.vehicle.autopilot.failsafes import (
+    GEOFENCE,
+    LINK,
+    OFFBOARD_LOSS,
+    Condition,
+    Latches,
+    stronger,
+)
 from sim_bridge.vehicle.autopilot.generations import renamed
 from sim_bridge.vehicle.autopilot.parameters import Parameter, Parameters
 from sim_bridge.vehicle.autopilot.px4_streams import FULL_RATES
+from sim_bridge.vehicle.autopilot.resting import px4_rest
 from sim_bridge.vehicle.autopilot.setup import Setup
 
 M = PX4_MODES
@@ -31,11 +39,6 @@ BY_HAND = frozenset(M[name] for name in ("MANUAL", "ALTCTL", "POSCTL", "ACRO", "
 NOT_SIMULATED = frozenset(M[name] for name in ("READY", "MISSION", "FOLLOW", "PRECLAND"))
 POSITIONAL = frozenset(M[name] for name in ("OFFBOARD", "HOLD", "RTL", "TAKEOFF", "POSCTL"))
 LOST_POSITION_S = 5.0  # for which the estimator reckons on without satellites
-OFFBOARD_LOSS = {0: "POSCTL", 1: "ALTCTL", 2: "STABILIZED", 3: "RTL", 4: "LAND", 5: "HOLD", 6: "TERMINATE",
-                 7: "TERMINATE"}  # fmt: skip
-"""COM_OBL_RC_ACT; 6 terminates the flight and 7 disarms: the motors stop."""
-LINK = {1: "HOLD", 2: "RTL", 3: "LAND", 5: "TERMINATE", 6: "TERMINATE"}  # NAV_DLL_ACT and NAV_RCL_ACT
-GEOFENCE = {2: "HOLD", 3: "RTL", 4: "TERMINATE", 5: "LAND"}  # GF_ACTION
 BEAT_AFTER_ORDER_NS = 40_000_000  # from the second acknowledgement of a mode's order
 STATION_HEARD_S = 10.0  # for which a link counts as a ground station's after its heartbeat
 NO_POSITION, NO_VELOCITY, NO_ACCELERATION, NO_YAW = 0x007, 0x038, 0x1C0, 0x400
@@ -118,11 +121,6 @@ class Px4(Autopilot):
     def _switch(self, now_ns: int, mode: int) -> None:
         self.mode = mode
         self.enter(now_ns, mode)
-
-    def pilot_mode(self, now_ns: int, name: str) -> None:
-        """The safety pilot's switch: the mode is entered whatever the ground station wants."""
-        self.transmitter.choose(name)
-        self._change(now_ns, M[name])
 
     def request_mode(self, now_ns: int, mode: int) -> str:
         """Change the mode where it may be entered; gives the reason where it may not, else ""."""
@@ -249,6 +247,9 @@ class Px4(Autopilot):
         mode = M.get(wanted, self.mode) if wanted else self._intended
         if mode != self.mode:
             self._switch(now_ns, mode)
+
+    def watched_until(self, now_ns: int) -> int:
+        return px4_rest(self, now_ns)
 
     def _fallback(self, now_ns: int) -> str:
         """The mode in which it flies while the intended one has not what it needs; "" where it has."""

@@ -11,6 +11,7 @@ from sim_bridge.vehicle.autopilot import default_parameters as tables
 from sim_bridge.vehicle.autopilot.command import ACCEPTED, DENIED, Command
 from sim_bridge.vehicle.autopilot.multicopter import Leg, Multicopter, Speeds
 from sim_bridge.vehicle.autopilot.px4 import BY_HAND, M, Px4
+from sim_bridge.vehicle.autopilot.resting import AWAKE, FOR_EVER
 from sim_bridge.vehicle.motion import Demand
 
 FAR = 1e5  # [m] a take-off to a place beyond this never leaves the ground
@@ -91,6 +92,10 @@ class Px4Multicopter(Px4, Multicopter):
         elif self.mode in BY_HAND and not self.landed:
             self._by_hand(now_ns)
         return super().guide(now_ns, dt)
+
+    def steady_until(self, now_ns: int) -> int:
+        steady = self.leg == Leg.VELOCITY and self.is_mode("OFFBOARD") and self._setpoint.position is None
+        return FOR_EVER if steady else AWAKE
 
     def _by_hand(self, now_ns: int) -> None:
         """POSCTL and its like: the sticks, or where nobody holds them a slow sinking."""

@@ -125,6 +125,16 @@ class AutopilotState(ABC):
         for number, chunk in enumerate(chunks):
             self.emit(dialect.MAVLink_statustext_message(severity, chunk, self._text_number, number))
 
+    @property
+    def parked(self) -> bool:
+        """Whether the vehicle stands on the ground: the world then leaves the airframe where it is."""
+        return self.landed
+
+    @property
+    def speaks(self) -> bool:
+        """Whether there are frames to be sent."""
+        return bool(self._out)
+
     def outgoing(self) -> list[bytes]:
         """The frames to be sent now, each to every peer; they are handed over once."""
         out = self._out

@@ -38,6 +38,11 @@ class Streams:
         interval = self._intervals.get(number)
         return -1 if interval is None else interval // 1000
 
+    @property
+    def first(self) -> int:
+        """When the next message is due [ns]."""
+        return self._first
+
     def due(self, now_ns: int) -> list[int]:
         """Numbers of the messages to be sent now."""
         if now_ns < self._first:

@@ -31,6 +31,11 @@ class Transmitter:
             self._was_heard = True
         self._throttle = None if throttle is None else min(1.0, max(0.0, throttle))
 
+    @property
+    def silent(self) -> bool:
+        """Whether it was heard once and is heard no more."""
+        return self._silent_ns >= 0
+
     def choose(self, mode: str) -> None:
         """Turn the mode switch to a mode's place, one of six."""
         self._switch = 1165 + 133 * (self._places.setdefault(mode, len(self._places)) % 6)
