@@ -12,6 +12,7 @@ import contextlib
 from collections.abc import Iterator, Sequence
 from io import FileIO
 from pathlib import Path
+from struct import Struct
 from typing import NamedTuple, Protocol
 
 import msgspec
@@ -50,6 +51,8 @@ SCHEMA = 1
 SUFFIX = ".events"
 CHUNK = 64 * 1024  # bytes collected before they are handed to the disk
 FLUSH_S = 1.0  # and for how long at most
+_LENGTH = Struct("<I")
+_ROOM = bytes(_LENGTH.size)
 RECORD_MAX = 16 * 1024 * 1024
 
 
@@ -101,10 +104,11 @@ class Lost(Record, frozen=True, tag=4):
 
 def recorded(effects: Sequence[AnyEffect]) -> tuple[AnyRecorded, ...]:
     """The effects as they are recorded."""
+    kept = [effect for effect in effects if type(effect) is not Keep]
+    if not kept:
+        return ()
     return tuple(
-        Asked(effect.number, effect.side, effect.strategy) if isinstance(effect, Think) else effect
-        for effect in effects
-        if not isinstance(effect, Keep)
+        [Asked(e.number, e.side, e.strategy) if type(e) is Think else e for e in kept]  # a list is faster
     )
 
 
@@ -211,16 +215,19 @@ class EventFile:
         return {"events_unrecorded": self.lost, "events_file_full": int(self.full)}
 
     def _add(self, record: Record) -> None:
-        data = self._encoder.encode(record)
-        size = 4 + len(data)
+        buffer = self._buffer
+        begin = len(buffer)
+        buffer += _ROOM
+        self._encoder.encode_into(record, buffer, begin + 4)
+        size = len(buffer) - begin
         if self._size + size > self._limit and not self.full:
+            del buffer[begin:]
             self.full = True
             self._add(Full(self._limit))
             self._flush()
             return
         self._size += size
-        self._buffer += len(data).to_bytes(4, "little")
-        self._buffer += data
+        _LENGTH.pack_into(buffer, begin, size - 4)
 
     def _flush(self) -> None:
         if not self._buffer:

@@ -59,6 +59,7 @@ from onboard.wire.mavlink.frames import first_number
 from onboard.wire.mavlink.signing import Signing
 from onboard.wire.mavlink.telemetry import FLIGHT
 
+IDLE = Idle()
 PEERS_MAX = 64  # of one link that are numbered; who was heard longest ago is forgotten
 
 
@@ -155,6 +156,7 @@ class Agent:
         self._connected = True
         self._waiting: deque[tuple[AnyEvent, Instant]] = deque()
         self._busy = False
+        self._last, self._last_ns = Instant(0.0, 0), -1
         self._arrived_ns = 0  # when the datagram arrived that is being handled; 0 = none is
         self._timer: asyncio.TimerHandle | None = None
         self._timer_at = inf
@@ -221,29 +223,34 @@ class Agent:
 
     def feed(self, event: AnyEvent) -> None:
         """Give the machine an event and do what it wants done, and then what can wait."""
-        if self._ended is None or self._ended.done():
+        ended = self._ended
+        if ended is None or ended.done():
             return
-        self._put(event)
         if self._busy:
+            self._put(event)
             return
         self._busy = True
         core, waiting, do, events = self.core, self._waiting, self._effects, self._equipment.events
         try:
-            while waiting or core.pending:
-                if waiting:
-                    event, now = waiting.popleft()
-                    effects = core.handle(event, now)
-                else:
-                    event, now = Idle(), self._instant()
-                    effects = core.idle(now)
+            now = self._instant()
+            effects = core.handle(event, now)
+            while True:
                 for effect in effects:
                     do[type(effect)](effect)
                 if events is not None:
                     events.add(now, event, effects)
+                if waiting:
+                    event, now = waiting.popleft()
+                    effects = core.handle(event, now)
+                elif core.pending:
+                    event, now = IDLE, self._instant()
+                    effects = core.idle(now)
+                else:
+                    break
             self._arm()
         except Exception as error:  # on a loop's callback it would only be logged: the agent must end
-            if not self._ended.done():
-                self._ended.set_exception(error)
+            if not ended.done():
+                ended.set_exception(error)
         finally:
             self._busy = False
 
@@ -251,8 +258,12 @@ class Agent:
         self._waiting.append((event, self._instant()))
 
     def _instant(self) -> Instant:
-        clock = self.clock
-        return tuple.__new__(Instant, (clock.monotonic_ns() / NS_PER_S, clock.wall_ns()))  # twice as fast
+        clock, last = self.clock, self._last
+        elapsed_ns, wall_ns = clock.monotonic_ns(), clock.wall_ns()
+        if elapsed_ns != self._last_ns or wall_ns != last.wall_ns:  # much happens at one instant, if virtual
+            self._last_ns = elapsed_ns
+            self._last = last = tuple.__new__(Instant, (elapsed_ns / NS_PER_S, wall_ns))  # twice as fast
+        return last
 
     def _arm(self) -> None:
         """Set the one timer."""

@@ -307,20 +307,23 @@ class MemoryBus:
         """Bring a parcel to own listeners, through the impairment: all of them hear it, or none."""
         self._delivery.bring(parcel.delivery, parcel.sample.payload, partial(self._admit, listeners, parcel))
 
-    def _admit(self, listeners: tuple[Listener, ...], parcel: Parcel, payload: bytes) -> None:
-        """Let own listeners hear what came of a parcel, within the bounds."""
-        loop, sample = asyncio.get_running_loop(), parcel.sample
+    def _admit(
+        self, listeners: tuple[Listener, ...], parcel: Parcel, payload: bytes, now: float | None = None
+    ) -> None:
+        """Let own listeners hear what came of a parcel, within the bounds; `now` [s] is the loop's time."""
+        sample = parcel.sample
+        if now is None:
+            now = asyncio.get_running_loop().time()
         if payload is not sample.payload:
             sample = Sample(sample.key, payload)
-        slot = (sample.key, parcel.source[0])
-        if self._limit.admits(sample.key, len(payload), loop.time()):
+        if self._limit.admits(sample.key, len(payload), now):
             if self._later:
-                self._later.pop(slot, None)
+                self._later.pop((sample.key, parcel.source[0]), None)
             self._arrived(listeners, parcel, sample)
         elif parcel.delivery is Delivery.LATEST and len(payload) <= PAYLOAD_MAX:
             if not self._later:  # the newest of a flood counts, but not every one of them
-                loop.call_later(LATER_S, self._take_later)
-            self._later[slot] = partial(self._arrived, listeners, parcel, sample)
+                asyncio.get_running_loop().call_later(LATER_S, self._take_later)
+            self._later[sample.key, parcel.source[0]] = partial(self._arrived, listeners, parcel, sample)
 
     def _arrived(self, listeners: tuple[Listener, ...], parcel: Parcel, sample: Sample) -> None:
         number, source = parcel.number, parcel.source
@@ -358,11 +361,11 @@ class MemoryBus:
 
 def _arrive(hearers: list[tuple[MemoryBus, tuple[Listener, ...]]], parcel: Parcel) -> None:
     """A parcel arrives at connections without an impairment, one after the other."""
-    payload = parcel.sample.payload
+    payload, now = parcel.sample.payload, asyncio.get_running_loop().time()
     for number, (bus, listeners) in enumerate(hearers, 1):
         bus._delivery.end()
         try:
-            bus._admit(listeners, parcel, payload)
+            bus._admit(listeners, parcel, payload, now)
         except BaseException:  # one hearer's fault is not the others'
             if hearers[number:]:
                 asyncio.get_running_loop().call_soon(_arrive, hearers[number:], parcel)

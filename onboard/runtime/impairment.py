@@ -67,6 +67,7 @@ class Channel:
         self._in_burst = False
         self._impairment = impairment
         self._steady = steady(impairment)
+        self.clear = impairment == CLEAR  # and always was: whatever is sent arrives at once
         self._owed = 0  # datagrams whose random numbers are not drawn yet
         self._started = False
 
@@ -79,8 +80,13 @@ class Channel:
     def impairment(self, impairment: Impairment) -> None:
         old, self._impairment = self._impairment, impairment
         self._steady = steady(impairment)
+        self.clear = self.clear and impairment == CLEAR
         if (old.burst_rate, old.burst_s) != (impairment.burst_rate, impairment.burst_s):
             self._started = False
+
+    def passed(self) -> None:
+        """A datagram was sent while `clear`: its random numbers are drawn once there is any chance."""
+        self._owed += 1
 
     def fate(self, data: bytes, now_ns: int) -> list[tuple[int, bytes]]:
         """When (the instant, ns) and in what shape the copies of a datagram sent at `now_ns` arrive."""
@@ -194,9 +200,12 @@ class Impaired:
     def _through(
         self, channel: Channel, data: bytes, peer: Hashable | None, to: Callable[[bytes, Hashable], None]
     ) -> None:
+        if channel.clear:
+            channel.passed()
+            to(data, peer)
+            return
         loop = asyncio.get_running_loop()
-        now = loop.time()
-        now_ns = round(now * NS_PER_S)
+        now_ns = round(loop.time() * NS_PER_S)
         for arrival_ns, shape in channel.fate(data, now_ns):
             if arrival_ns <= now_ns:
                 to(shape, peer)

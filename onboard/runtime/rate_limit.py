@@ -31,7 +31,7 @@ BESIDE = Rate(500.0, 250.0)  # STATUSTEXT, and kinds that nobody reads, all toge
 FROM_OTHERS = Rate(500.0, 250.0)  # datagrams of a link, from all others together
 
 
-class _Bucket:
+class Bucket:
     """What is left of a bound."""
 
     __slots__ = ("at", "left")
@@ -40,6 +40,19 @@ class _Bucket:
         self.left = burst
         self.at = now
 
+    def admits(self, rate: Rate, now: float) -> bool:
+        """Whether one more at `now` [s; steady] is within the bound."""
+        per_s, burst = rate
+        left = self.left + (now - self.at) * per_s
+        if left > burst:
+            left = burst
+        self.at = now
+        if left < 1.0:
+            self.left = left
+            return False
+        self.left = left - 1.0
+        return True
+
 
 class RateLimit:
     """One bucket for each sender and kind, `most` of them."""
@@ -47,27 +60,22 @@ class RateLimit:
     def __init__(self, most: int = BUCKETS_MAX) -> None:
         self.limited: Counter[str] = Counter()  # by kind
         self._most = most
-        self._buckets: OrderedDict[Hashable, _Bucket] = OrderedDict()
+        self._buckets: OrderedDict[Hashable, Bucket] = OrderedDict()
 
     def admits(self, sender: Hashable, kind: str, rate: Rate, now: float) -> bool:
         """Whether one more of a kind from a sender at `now` [s; steady] is within its bound."""
+        bucket = self._buckets.get((sender, kind)) or self.bucket(sender, kind, rate, now)
+        if bucket.admits(rate, now):
+            return True
+        self.limited[kind] += 1
+        return False
+
+    def bucket(self, sender: Hashable, kind: str, rate: Rate, now: float) -> Bucket:
+        """The bucket of a kind from a sender, full where it is new."""
         key = (sender, kind)
-        bucket = self._buckets.get(key)
-        if bucket is None:
-            if len(self._buckets) >= self._most:
-                key = ("", "")  # the rest share one
-            bucket = self._buckets.setdefault(key, _Bucket(rate.burst, now))
-        per_s, burst = rate
-        left = bucket.left + (now - bucket.at) * per_s
-        if left > burst:
-            left = burst
-        bucket.at = now
-        if left < 1.0:
-            bucket.left = left
-            self.limited[kind] += 1
-            return False
-        bucket.left = left - 1.0
-        return True
+        if key not in self._buckets and len(self._buckets) >= self._most:
+            key = ("", "")  # the rest share one
+        return self._buckets.setdefault(key, Bucket(rate.burst, now))
 
 
 class BusLimit:
@@ -75,20 +83,29 @@ class BusLimit:
 
     def __init__(self) -> None:
         self._limit = RateLimit(PLACES_KEPT)  # room for every key of the largest game
-        self._bounds: dict[Topic[Any], tuple[str, Rate]] = {}
+        self._known: dict[str, tuple[str, Rate, Bucket]] = {}  # by key
 
     def admits(self, key: str, size: int, now: float) -> bool:
         """Whether a message of `size` bytes on a key is within its bound."""
-        place = TOPICS.find(key)
         if size > PAYLOAD_MAX:
             self._limit.limited["payload"] += 1
             return False
+        kind, rate, bucket = self._known.get(key) or self._bound(key, now)
+        if bucket.admits(rate, now):
+            return True
+        self._limit.limited[kind] += 1
+        return False
+
+    def _bound(self, key: str, now: float) -> tuple[str, Rate, Bucket]:
+        """The kind under which a key's messages are counted, their bound, and what is left of it."""
+        place = TOPICS.find(key)
         if place is None:
-            return self._limit.admits("", "foreign", FOREIGN, now)
-        bound = self._bounds.get(place.topic)
-        if bound is None:
-            bound = self._bounds[place.topic] = _bound_of(place.topic)
-        return self._limit.admits(key, *bound, now)
+            return "foreign", FOREIGN, self._limit.bucket("", "foreign", FOREIGN, now)
+        kind, rate = _bound_of(place.topic)
+        found = kind, rate, self._limit.bucket(key, kind, rate, now)
+        if len(self._known) < PLACES_KEPT:  # keys come from the network
+            self._known[key] = found
+        return found
 
     def counters(self) -> dict[str, int]:
         """How many were over their bound, by kind: `limited_KIND`."""

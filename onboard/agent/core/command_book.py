@@ -119,6 +119,11 @@ class Orders:
         return entry, True
 
     @property
+    def open(self) -> bool:
+        """Whether any command was given that another one has not ended."""
+        return self._open is not None
+
+    @property
     def _sets_off(self) -> bool:
         """Whether the open command sets off, and is not reported yet."""
         entry = self._open

@@ -33,37 +33,32 @@ class Journal:
         self._nonce = nonce
         self._number = 0
         self._recent: dict[str, list[float]] = {}
-        self._entries: list[Entry] = []
-        self._events: list[Event] = []
+        self.noted: list[Entry] = []  # not stamped yet
+        self.stamped: list[Event] = []  # to be said
         self.suppressed = 0  # events of floods that were only counted
         self.kinds: dict[str, int] = {}  # how often each kind was said
 
-    @property
-    def pending(self) -> bool:
-        """Whether there is something to say."""
-        return bool(self._events)
-
     def info(self, kind: str, text: str, level: str = "", module: str = "") -> None:
         """Note something that a person may want to know."""
-        self._entries.append(Entry(Severity.INFO, kind, text, level, module))
+        self.noted.append(Entry(Severity.INFO, kind, text, level, module))
 
     def warning(self, kind: str, text: str, level: str = "", module: str = "") -> None:
         """Note something that a person should look at."""
-        self._entries.append(Entry(Severity.WARNING, kind, text, level, module))
+        self.noted.append(Entry(Severity.WARNING, kind, text, level, module))
 
     def error(self, kind: str, text: str, level: str = "", module: str = "") -> None:
         """Note something that a person must act on."""
-        self._entries.append(Entry(Severity.ERROR, kind, text, level, module))
+        self.noted.append(Entry(Severity.ERROR, kind, text, level, module))
 
     def say(self, severity: Severity, kind: str, text: str, level: str = "", module: str = "") -> None:
         """Note something of the given severity."""
-        self._entries.append(Entry(severity, kind, text, level, module))
+        self.noted.append(Entry(severity, kind, text, level, module))
 
     def stamp(self, now: Instant) -> None:
         """Number and stamp what was noted since the last call; a flood of one kind is cut and counted."""
-        if not self._entries:
+        if not self.noted:
             return
-        for entry in self._entries:
+        for entry in self.noted:
             recent = [at for at in self._recent.get(entry.kind, ()) if now.s - at < WINDOW_S]
             if len(recent) >= BURST:
                 self._recent[entry.kind] = recent
@@ -77,14 +72,14 @@ class Journal:
                 kind=entry.kind, text=entry.text,
                 level=DecisionLevel(entry.level), module=DecisionModule(entry.module), nonce=self._nonce,
             )  # fmt: skip
-            self._events.append(event)
-        self._entries.clear()
+            self.stamped.append(event)
+        self.noted.clear()
 
     def tell(self, out: Outbox) -> None:
         """Publish and log what was stamped."""
-        for event in self._events:
+        for event in self.stamped:
             out.put(Publish(self._key, EVENTS.encode(event), EVENTS.delivery))
             when = datetime.fromtimestamp(event.stamp_ns / NS_PER_S, UTC).strftime("%H:%M:%S.%f")[:-3]
             line = f"{when} {event.severity.value:7} vehicle {self._id} {event.kind}: {event.text}"
             out.put(Note(event.severity, line))
-        self._events.clear()
+        self.stamped.clear()

@@ -135,10 +135,13 @@ class AgentCore:
 
     def handle(self, event: AnyEvent, now: Instant) -> list[AnyEffect]:
         """Take an event; the effects are to be done in their order, at once."""
-        self.desk.expire(now.s)
+        if self.orders.open:
+            self.desk.expire(now.s)
         self._handlers[type(event)](event, now)
-        self.radio.flush(now)
-        self.journal.stamp(now)
+        if self.radio.due:
+            self.radio.flush(now)
+        if self.journal.noted:
+            self.journal.stamp(now)
         return self.out.take()
 
     def next_deadline(self) -> float:
@@ -157,7 +160,7 @@ class AgentCore:
     @property
     def pending(self) -> bool:
         """Whether `idle` has something to do."""
-        return bool(self._messages) or self._stepped_wall is not None or self.journal.pending
+        return self._stepped_wall is not None or bool(self._messages or self.journal.stamped)
 
     def idle(self, now: Instant) -> list[AnyEffect]:
         """Say what there is to say, and learn a little."""

@@ -72,7 +72,7 @@ class Radio:
         self._sender = Sender(system, COMPANION, signing=signing, link_id=link_id)
         self._lines = [_Line(link) for link in links]
         self._redundant = Redundant(len(links))
-        self._due: list[Outgoing] = []
+        self.due: list[Outgoing] = []  # to be sent with the next `flush`
         self._good_at = NEVER  # when the vehicle's own autopilot was last heard [s]
         self._refused = 0  # frames whose signatures were not good
         self._refused_at = NEVER
@@ -129,16 +129,16 @@ class Radio:
 
     def send(self, message: Outgoing) -> None:
         """Send to the autopilot, with the next `flush`."""
-        self._due.append(message)
+        self.due.append(message)
 
     def flush(self, now: Instant) -> None:
         """Put what is to be sent in the outbox.
 
         Nothing leaves while mute, or while it is not known who of several peers the autopilot is.
         """
-        if not self._due:
+        if not self.due:
             return
-        due, self._due = self._due, []
+        due, self.due = self.due, []
         for message in due:
             if self.mute:
                 self.causes["muted"] += 1
