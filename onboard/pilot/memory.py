@@ -49,6 +49,12 @@ class Memory:
                 predictor = self.tracks[sample.id] = TrackPredictor(sample.id, SETTINGS[self.predicting])
             predictor.add(sample.t, sample.position, sample.velocity, sample.variance)
 
+    def prepare(self, id: int) -> None:
+        """Reckon now what the next prediction of a track needs."""
+        predictor = self.tracks.get(id)
+        if predictor is not None:
+            predictor.prepare()
+
     def predict(self, id: int, t: float) -> Prediction | None:
         """A track at instant `t`; None where there is none that is usable."""
         predictor = self.tracks.get(id)

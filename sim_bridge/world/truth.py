@@ -17,6 +17,7 @@ COLUMNS = (
     "stamp_ns", "id", "north_m", "east_m", "down_m", "v_north_m_s", "v_east_m_s", "v_down_m_s",
     "airspeed_m_s", "roll_rad", "pitch_rad", "yaw_rad",
 )  # fmt: skip
+LINE = "%d,%d" + ",%.6f" * (len(COLUMNS) - 2) + "\n"
 
 
 class TruthLog:
@@ -32,9 +33,8 @@ class TruthLog:
         if wall_ns < self._next_ns:
             return
         self._next_ns = wall_ns // STEP_NS * STEP_NS + STEP_NS
-        lines = []
-        for id, motion in motions.items():
-            angles = (motion.roll, motion.pitch, motion.yaw)
-            values = (*motion.position, *motion.velocity, motion.airspeed, *angles)
-            lines.append(",".join((str(wall_ns), str(id), *(f"{value:.6f}" for value in values))))
-        self._write(("\n".join(lines) + "\n").encode())
+        lines = [
+            LINE % (wall_ns, id, *m.position, *m.velocity, m.airspeed, m.roll, m.pitch, m.yaw)
+            for id, m in motions.items()
+        ]
+        self._write("".join(lines).encode())

@@ -95,7 +95,7 @@ class GamePlayer:
         self._tracks.heard(track)
         self._memory.take((sample,))
         if self.state(now.wall_ns).on:  # what the next step asks for is reckoned now
-            self._memory.predict(track.id, self._seconds(now.wall_ns))
+            self._memory.prepare(track.id)
 
     # ------------------------------------------------------------------ the part
 

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from onboard.core.math.angles import wrap
 from onboard.core.math.constants import STANDARD_GRAVITY
-from onboard.core.math.vectors import ZERO, Vec, add, along, clamp, norm, scale, sub, yaw_of
+from onboard.core.math.vectors import ZERO, Vec, add, along, clamp, norm, sub, yaw_of
 from onboard.game.scenario import WINGED, Kind, VehicleSpec
 from sim_bridge.vehicle.flight.multicopter_wind import (
     DRAG,
@@ -29,6 +29,8 @@ from sim_bridge.vehicle.flight.multicopter_wind import (
 from sim_bridge.vehicle.flight.plane import carried
 from sim_bridge.vehicle.motion import CALM, Air, Airframe, Demand, Lateral, Motion
 
+VELOCITY = Lateral.VELOCITY
+_new = tuple.__new__  # twice as fast as a call of the class
 ROLL_RATE = radians(180.0)  # [rad/s] how fast a plane banks
 HEADING_GAIN = 2.0  # [1/s] turn rate per heading error, below the limit
 MOVING = 0.3  # [m/s] a multicopter turns its nose along its course above this
@@ -75,38 +77,21 @@ class KinematicMulticopter:
     def step(self, demand: Demand, air: Air, dt: float) -> Motion:
         a = self._ability
         old = self._motion
-        wanted = demand.velocity if demand.lateral == Lateral.VELOCITY else ZERO
-        speed = norm(wanted)
-        if speed > a.speed_max:
-            wanted = scale(wanted, a.speed_max / speed)
-        still = self._still
-        change = sub(wanted, still)
-        size = norm(change)
-        most = a.acceleration * dt
-        self._still = velocity = (
-            wanted
-            if size <= most
-            else Vec(
-                still.x + change.x * most / size,
-                still.y + change.y * most / size,
-                still.z + change.z * most / size,
-            )
-        )
-        ax, ay = (velocity.x - still.x) / dt, (velocity.y - still.y) / dt
+        velocity, (sx, sy, _) = self._follow(demand, dt), self._still
+        self._still = velocity
+        ax, ay = (velocity.x - sx) / dt, (velocity.y - sy) / dt
         moving = ZERO
         if air is not CALM:
             moving = Vec(air.wind.x + air.gust.x, air.wind.y + air.gust.y, air.wind.z + air.gust.z)
-        if moving != ZERO or self._deviation != STILL:
+        if moving != ZERO or (self._deviation is not STILL and self._deviation != STILL):
             thrust = Vec(ax + DRAG * velocity.x, ay + DRAG * velocity.y, 0.0)
             self._deviation = deviated(self._deviation, self._loop, moving, thrust, dt)
             ax, ay = thrust.x + self._deviation.lean.x, thrust.y + self._deviation.lean.y
             velocity = add(velocity, self._deviation.velocity)
-        at, was = old.position, old.velocity
-        position = Vec(
-            at.x + 0.5 * (was.x + velocity.x) * dt,
-            at.y + 0.5 * (was.y + velocity.y) * dt,
-            at.z + 0.5 * (was.z + velocity.z) * dt,
-        )
+        x, y, z = velocity
+        at, (wx, wy, wz) = old.position, old.velocity
+        place = (at.x + 0.5 * (wx + x) * dt, at.y + 0.5 * (wy + y) * dt, at.z + 0.5 * (wz + z) * dt)
+        position = _new(Vec, place)
         yaw, facing = old.yaw, demand.facing
         led = self._still  # gusts turn no nose
         if facing is None and led.x * led.x + led.y * led.y > MOVING * MOVING:
@@ -117,11 +102,27 @@ class KinematicMulticopter:
         c, s = cos(yaw), sin(yaw)
         roll = atan((c * ay - s * ax) / STANDARD_GRAVITY)  # thrust leans into the acceleration
         pitch = -atan((c * ax + s * ay) / STANDARD_GRAVITY)
-        rates = Vec((roll - old.roll) / dt, (pitch - old.pitch) / dt, wrap(yaw - old.yaw) / dt)
-        airspeed = norm(sub(velocity, moving))
-        moved = (position, velocity, airspeed, roll, pitch, yaw, rates)
-        self._motion = tuple.__new__(Motion, moved)  # twice as fast as `Motion(…)`
-        return self._motion
+        rates = _new(Vec, ((roll - old.roll) / dt, (pitch - old.pitch) / dt, wrap(yaw - old.yaw) / dt))
+        x, y, z = x - moving.x, y - moving.y, z - moving.z
+        moved = (position, velocity, sqrt(x * x + y * y + z * z), roll, pitch, yaw, rates)
+        self._motion = motion = _new(Motion, moved)
+        return motion
+
+    def _follow(self, demand: Demand, dt: float) -> Vec:
+        """The velocity over ground [m/s; NED] a step on, as it would be in still air."""
+        a, still = self._ability, self._still
+        wanted = demand.velocity if demand.lateral == VELOCITY else ZERO
+        x, y, z = wanted
+        speed = sqrt(x * x + y * y + z * z)
+        if speed > a.speed_max:
+            k = a.speed_max / speed
+            x, y, z = wanted = _new(Vec, (x * k, y * k, z * k))
+        x, y, z = x - still.x, y - still.y, z - still.z
+        size = sqrt(x * x + y * y + z * z)
+        most = a.acceleration * dt
+        if size <= most:
+            return wanted
+        return _new(Vec, (still.x + x * most / size, still.y + y * most / size, still.z + z * most / size))
 
     @property
     def wind_estimate(self) -> Vec:
