@@ -18,7 +18,7 @@ from typing import Protocol
 from mcap._chunk_builder import ChunkBuilder
 from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
-from mcap.records import DataEnd, Footer, MessageIndex, Statistics
+from mcap.records import Channel, DataEnd, Footer, MessageIndex, Schema, Statistics
 from mcap.writer import MCAP0_MAGIC, CompressionType, Writer
 
 MAGIC: bytes = MCAP0_MAGIC
@@ -208,16 +208,19 @@ class WholeFile:
 
 
 _MESSAGE = Struct("<BQHIQQ")  # opcode, length, channel, sequence, log time, publish time
+_HEAD = _MESSAGE.size - 9  # [bytes] of a message before its payload
+_INDEX = Struct("<BQHI")  # opcode, length, channel, size of the pairs
+_OPCODE = int(Opcode.MESSAGE)
 
 
 class _Index(MessageIndex):
-    """Where a chunk's messages of one channel lie, written at once."""
+    """Where a chunk's messages of one channel lie, written at once; `records` holds the pairs end to end."""
 
     def write(self, stream: RecordBuilder) -> None:
-        stream.start_record(Opcode.MESSAGE_INDEX)
-        flat = [number for record in self.records for number in record]
-        stream.write(pack(f"<HI{len(flat)}Q", self.channel_id, 8 * len(flat), *flat))
-        stream.finish_record()  # type: ignore[no-untyped-call]
+        places: list[int] = self.records  # type: ignore[assignment]
+        size = 8 * len(places)
+        head = _INDEX.pack(Opcode.MESSAGE_INDEX, _INDEX.size - 9 + size, self.channel_id, size)
+        stream.write(head + pack(f"<{len(places)}Q", *places))
 
 
 class _Chunk(ChunkBuilder):
@@ -229,22 +232,50 @@ class _Chunk(ChunkBuilder):
     def __init__(self, counts: Statistics) -> None:
         super().__init__()
         self._counts = counts
+        self._places: dict[int, list[int]] = {}  # by channel: stamp and place of each message, in turn
+        self._pieces: list[bytes] = []  # of messages, not in the library's buffer yet
+        self.size = 0  # [bytes] of the records so far
+
+    @property
+    def count(self) -> int:
+        return self.size
 
     def put(self, channel: int, stamp_ns: int, payload: bytes, sequence: int) -> None:
         """Add a message."""
-        if self.num_messages:
-            self.message_start_time = min(self.message_start_time, stamp_ns)
-        else:
+        if not self.num_messages or stamp_ns < self.message_start_time:
             self.message_start_time = stamp_ns
-        self.message_end_time = max(self.message_end_time, stamp_ns)
-        index = self.message_indices.get(channel)
-        if index is None:
-            index = self.message_indices[channel] = _Index(channel_id=channel, records=[])
-        index.records.append((stamp_ns, self.record_writer.count))
+        if stamp_ns > self.message_end_time:
+            self.message_end_time = stamp_ns
+        places: list[int] | None = self._places.get(channel)
+        if places is None:
+            places = self._places[channel] = []
+            self.message_indices[channel] = _Index(channel_id=channel, records=places)  # type: ignore[arg-type]
+        places += (stamp_ns, self.size)
         self.num_messages += 1
-        size = _MESSAGE.size - 9 + len(payload)
-        head = _MESSAGE.pack(Opcode.MESSAGE, size, channel, sequence, stamp_ns, stamp_ns)
-        self.record_writer.write(head + payload)
+        size = _HEAD + len(payload)
+        self.size += 9 + size
+        self._pieces.append(_MESSAGE.pack(_OPCODE, size, channel, sequence, stamp_ns, stamp_ns))
+        self._pieces.append(payload)
+
+    def add_channel(self, channel: Channel) -> None:
+        self._join()
+        super().add_channel(channel)
+        self.size = self.record_writer.count
+
+    def add_schema(self, schema: Schema) -> None:
+        self._join()
+        super().add_schema(schema)
+        self.size = self.record_writer.count
+
+    def end(self) -> bytes:
+        self._join()
+        self.size = 0
+        return bytes(super().end())  # type: ignore[no-untyped-call]
+
+    def _join(self) -> None:
+        """Put what was collected in the library's buffer."""
+        self.record_writer.write(b"".join(self._pieces))
+        self._pieces.clear()
 
     def reset(self) -> None:
         """Count the complete chunk, and begin another."""
@@ -256,7 +287,10 @@ class _Chunk(ChunkBuilder):
             counts.message_end_time = max(counts.message_end_time, self.message_end_time)
             counts.message_count += self.num_messages
             for channel, index in self.message_indices.items():
-                counts.channel_message_counts[channel] += len(index.records)
+                counts.channel_message_counts[channel] += len(index.records) // 2
+        self._places.clear()
+        self._pieces.clear()
+        self.size = 0
         super().reset()  # type: ignore[no-untyped-call]
 
 
@@ -285,7 +319,7 @@ class McapWriter:
     def message(self, channel: int, stamp_ns: int, payload: bytes, sequence: int = 0) -> None:
         """Add a message to the chunk in progress."""
         self._chunk.put(channel, stamp_ns, payload, sequence)
-        if self._chunk.record_writer.count > self._chunk_bytes:
+        if self._chunk.size > self._chunk_bytes:
             self.flush()
 
     def flush(self) -> None:

@@ -84,13 +84,18 @@ class Recorder:
         self._unnamed: dict[str, str] = {}  # new channels since the last flush
         self._last_ns = 0
         self._flushed_ns = 0
+        self._due_ns = 0  # when `tick` has something to do
+        self._other = -1  # the channel of what has no channel of its own
         self._recorded = self._lost = 0
         self._closed = False
         self._file.settle()
 
     def record(self, key: str, payload: bytes, stamp_ns: int) -> None:
         """Take in one message that arrived at `stamp_ns` (station time, never running back)."""
-        self.tick(stamp_ns)
+        if stamp_ns >= self._due_ns:
+            self.tick(stamp_ns)
+        elif stamp_ns > self._last_ns:
+            self._last_ns = stamp_ns
         if self._closed or self._full:
             self._lost += 1
             return
@@ -98,11 +103,12 @@ class Recorder:
         channel = self._channels.get(key)
         if channel is None:
             channel = self._open_channel(key)
-        if channel == self._channels.get(OTHER):
+        if channel == self._other:
             payload = msgspec.msgpack.encode((key, payload))
         self._writer.message(channel, self._last_ns, payload, self._recorded & 0xFFFFFFFF)
         if self._views is not None:
-            for view in self._views.note(key, payload, self._last_ns):
+            view = self._views.note(key, payload, self._last_ns)
+            if view is not None:
                 self._put(view.topic, view.layout, view.payload, self._last_ns)
 
     def tick(self, now_ns: int) -> None:
@@ -117,6 +123,9 @@ class Recorder:
                 self._put(view.topic, view.layout, view.payload, at_ns)
         if self._last_ns - self._flushed_ns >= FLUSH_NS:
             self.flush()
+        self._due_ns = self._flushed_ns + FLUSH_NS
+        if self._views is not None:
+            self._due_ns = min(self._due_ns, self._views.next_ns)
 
     def flush(self) -> None:
         """Put everything on the disk now."""
@@ -153,8 +162,8 @@ class Recorder:
 
     @property
     def _full(self) -> bool:
-        held_up = bool(self._file.trouble) or self._file.busy
-        return held_up and self._file.waiting_bytes > self._most_waiting
+        file = self._file
+        return file.waiting_bytes > self._most_waiting and (bool(file.trouble) or file.busy)
 
     def _wait(self) -> None:
         if self._disk_thread is not None:
@@ -163,7 +172,8 @@ class Recorder:
     def _open_channel(self, key: str) -> int:
         place = HEARD_HERE.find(key)
         if place is None or len(self._channels) >= MOST_CHANNELS:
-            return self._channel(OTHER, Layout("", "msgpack", b""))
+            self._other = self._channel(OTHER, Layout("", "msgpack", b""))
+            return self._other
         return self._channel(key, layout_of(place.topic))
 
     def _put(self, topic: str, layout: Layout, payload: bytes, stamp_ns: int) -> None:

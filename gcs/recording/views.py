@@ -97,21 +97,24 @@ class Views:
         self._drops: Counter[str] = Counter()
         self._encode = msgspec.json.Encoder().encode
 
-    def note(self, key: str, payload: bytes, stamp_ns: int) -> list[View]:
-        """Take a message in; what is to be written at once (log lines)."""
+    def note(self, key: str, payload: bytes, stamp_ns: int) -> View | None:
+        """Take a message in; what is to be written at once (a line of the log), None for most."""
         place = HEARD_HERE.find(key)
         if place is None:
-            return []
-        if place.topic is topics.STATE or place.topic is topics.DECISION:  # decoded when they are drawn
+            return None
+        topic = place.topic
+        if topic is topics.STATE or topic is topics.DECISION:  # decoded when they are drawn
             self._note_vehicle(place, payload, stamp_ns)
-            return []
-        take = _TAKERS.get(place.topic)
-        heard = HEARD_HERE.heard(key, payload, self._drops) if take is not None else None
-        line = take(self, heard.message) if heard is not None and take is not None else None
+            return None
+        take = _TAKERS.get(topic)
+        if take is None:
+            return None
+        heard = HEARD_HERE.heard(key, payload, self._drops)
+        line = take(self, heard.message) if heard is not None else None
         if line is None:
-            return []
+            return None
         log = fox.Log(fox.time_of(stamp_ns), line.level, line.text, line.name)
-        return [View("/log", LOG, self._encode(log))]
+        return View("/log", LOG, self._encode(log))
 
     def _note_vehicle(self, place: topics.Place, payload: bytes, stamp_ns: int) -> None:
         if place.id is None or place.id > MOST_DRAWN:
