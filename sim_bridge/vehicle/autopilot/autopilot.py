@@ -59,6 +59,7 @@ class Autopilot(AutopilotState):
         self._any_station_ns = -1  # last heartbeat of any ground station; −1 = never
         self._heartbeat_ns = now_ns  # when the next one is due
         self._rest_ns = AWAKE  # until when nothing is due, if nobody tells it anything
+        self._rest_values = 0  # `changes` of the parameters then
         self._steady: Demand | None = None  # what it demands until then, where motion does not change it
         self.enter(now_ns, self.mode)
 
@@ -78,7 +79,7 @@ class Autopilot(AutopilotState):
         self.air = air
         self.wind_filter.step(now_ns, self.motion, air, self.landed)
         self.health.drain(dt, self.armed and not self.landed)
-        if now_ns < self._rest_ns:
+        if now_ns < self._rest_ns and self.parameters.changes == self._rest_values:
             return self.guide(now_ns, dt) if self._steady is None else self._steady
         self._rest_ns, self._place = AWAKE, None
         if not self.home_known and self.positioned(now_ns):
@@ -94,6 +95,7 @@ class Autopilot(AutopilotState):
         if quiet and self.armed and not self.landed:  # until when this need not be done again
             due_ns = min(self._heartbeat_ns, self.streams.first)
             self._rest_ns = min(due_ns, self.watched_until(now_ns)) if due_ns > now_ns else AWAKE
+            self._rest_values = self.parameters.changes
             self._steady = demand if self.steady_until(now_ns) >= self._rest_ns else None
         return demand
 
