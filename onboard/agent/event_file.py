@@ -104,12 +104,13 @@ class Lost(Record, frozen=True, tag=4):
 
 def recorded(effects: Sequence[AnyEffect]) -> tuple[AnyRecorded, ...]:
     """The effects as they are recorded."""
-    kept = [effect for effect in effects if type(effect) is not Keep]
-    if not kept:
-        return ()
-    return tuple(
-        [Asked(e.number, e.side, e.strategy) if type(e) is Think else e for e in kept]  # a list is faster
-    )
+    kept: list[AnyRecorded] = []  # in a loop: most events have one effect, or none
+    for effect in effects:
+        if isinstance(effect, Think):
+            kept.append(Asked(effect.number, effect.side, effect.strategy))
+        elif not isinstance(effect, Keep):
+            kept.append(effect)
+    return tuple(kept)
 
 
 # ---------------------------------------------------------------------- writing
