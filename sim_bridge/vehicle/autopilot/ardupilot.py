@@ -14,7 +14,13 @@ from onboard.wire.mavlink.dialect import DialectPacket, dialect
 from sim_bridge.vehicle.autopilot.autopilot import Autopilot
 from sim_bridge.vehicle.autopilot.command import ACCEPTED, DENIED, FAILED, Command
 from sim_bridge.vehicle.autopilot.health import CURRENT_FLYING
-from sim_bridge.vehicle.autopilot.resting import BATTERY_LEVELS, ardupilot_level, ardupilot_rest
+from sim_bridge.vehicle.autopilot.resting import (
+    AWAKE,
+    BATTERY_LEVELS,
+    ardupilot_level,
+    drained_ns,
+    until,
+)
 
 VERSIONS = {Firmware.OLDER: (4, 4, 4), Firmware.RECORDED: (4, 5, 6), Firmware.NEWER: (4, 7, 0)}
 GUIDED_POINT, GUIDED_ALTITUDE = 2, 3  # MISSION_ITEM.current: not of a mission, to be flown to at once
@@ -142,13 +148,23 @@ class ArduPilot(Autopilot):
             self._watch_fence(now_ns)
 
     def watched_until(self, now_ns: int) -> int:
-        return ardupilot_rest(self, now_ns)
+        h = self.health
+        troubled = self._failsafe or self._radio_failsafe or self._ekf_failsafe or self.transmitter.silent
+        if troubled or self._ekf_bad_ns >= 0 or self._battery_low_ns >= 0 or h.faults:
+            return AWAKE
+        if self.parameters["FENCE_ENABLE"]:
+            return AWAKE
+        rest = drained_ns(now_ns, h.battery, self.battery_level(), h.drain_rate)
+        limit = self.silence_limit_s()
+        return min(rest, until(now_ns, limit - self.ground_station_silence_s(now_ns))) if limit else rest
 
     def battery_level(self) -> float:
         """The charge, 0…1, down to which no battery level beyond the one acted upon is reached."""
         key = (self.parameters.changes, self.health.sag, self._battery_level)
         if key != self._levelled[0]:
-            self._levelled = (key, ardupilot_level(self))
+            full = self.setup.options.battery_s * CURRENT_FLYING / 3.6  # [mAh]
+            level = ardupilot_level(self.parameters, self.health.sag, full, self._battery_level)
+            self._levelled = (key, level)
         return self._levelled[1]
 
     @abstractmethod

@@ -17,21 +17,14 @@ from onboard.game.scenario import Firmware
 from onboard.wire.geodesy import Geodetic
 from onboard.wire.mavlink.dialect import DialectPacket, dialect
 from onboard.wire.mavlink.modes import PX4_MODES
-from sim_bridge.vehicle.autopilot import ardupilot, telemetry
+from sim_bridge.vehicle.autopilot import ardupilot, failsafes, telemetry
 from sim_bridge.vehicle.autopilot.autopilot import Autopilot
 from sim_bridge.vehicle.autopilot.command import ACCEPTED, DENIED, FAILED, LATER, Command
-from sim_bridge.vehicle.autopilot.failsafes import (
-    GEOFENCE,
-    LINK,
-    OFFBOARD_LOSS,
-    Condition,
-    Latches,
-    stronger,
-)
+from sim_bridge.vehicle.autopilot.failsafes import Condition, Latches, stronger
 from sim_bridge.vehicle.autopilot.generations import renamed
 from sim_bridge.vehicle.autopilot.parameters import Parameter, Parameters
 from sim_bridge.vehicle.autopilot.px4_streams import FULL_RATES
-from sim_bridge.vehicle.autopilot.resting import px4_rest
+from sim_bridge.vehicle.autopilot.resting import AWAKE, FOR_EVER, px4_rest
 from sim_bridge.vehicle.autopilot.setup import Setup
 
 M = PX4_MODES
@@ -249,7 +242,13 @@ class Px4(Autopilot):
             self._switch(now_ns, mode)
 
     def watched_until(self, now_ns: int) -> int:
-        return px4_rest(self, now_ns)
+        calm = self.mode == self._intended and self._blind_ns < 0 and not self.transmitter.silent
+        if not calm or self._in_failsafe or self._signal_lost or self._latches.latched or self.health.faults:
+            return AWAKE
+        streams_ns = self._setpoint_ns if self.is_mode("OFFBOARD") else FOR_EVER
+        silence_s = self.ground_station_silence_s(now_ns)
+        rest = px4_rest(self.parameters, self.health, now_ns, silence_s, streams_ns)
+        return min(rest, self._beat_ns or FOR_EVER)
 
     def _fallback(self, now_ns: int) -> str:
         """The mode in which it flies while the intended one has not what it needs; "" where it has."""
@@ -261,7 +260,7 @@ class Px4(Autopilot):
                 self._signal_lost = True
                 self.say(dialect.MAV_SEVERITY_CRITICAL, "Failsafe: Offboard signal lost")
             action = int(self.parameters["COM_OBL_RC_ACT"])
-            wanted = OFFBOARD_LOSS.get(action, "HOLD")
+            wanted = failsafes.OFFBOARD_LOSS.get(action, "HOLD")
         else:
             self._signal_lost = False
         if blind and self.armed and not self.landed:
@@ -294,10 +293,12 @@ class Px4(Autopilot):
         deaf = self.transmitter.lost(now_ns) and not excepted
         act = int(p["COM_LOW_BAT_ACT"])
         return [
-            Condition("geofence", outside, GEOFENCE.get(int(p["GF_ACTION"]), ""), "Geofence violation"),
-            Condition("link", silent, LINK.get(int(p["NAV_DLL_ACT"]), ""),
+            Condition("geofence", outside, failsafes.GEOFENCE.get(int(p["GF_ACTION"]), ""),
+                      "Geofence violation"),
+            Condition("link", silent, failsafes.LINK.get(int(p["NAV_DLL_ACT"]), ""),
                       "Connection to ground station lost"),
-            Condition("sticks", deaf, LINK.get(int(p["NAV_RCL_ACT"]), ""), "Manual control signal lost"),
+            Condition("sticks", deaf, failsafes.LINK.get(int(p["NAV_RCL_ACT"]), ""),
+                      "Manual control signal lost"),
             Condition("low battery", charge <= p["BAT_LOW_THR"], "", "Low battery level"),
             Condition("critical battery", charge <= p["BAT_CRIT_THR"], {2: "LAND", 3: "RTL"}.get(act, ""),
                       "Critical battery level"),
