@@ -48,6 +48,8 @@ class Outcome(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class Sheet(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The games of one kind (plane, or aircraft in space)."""
 
+    command: str  # that made it
+    sources: str  # hash of what the games were played by
     games: int  # of each evader
     low: tuple[float, ...]  # least of each feature
     high: tuple[float, ...]
@@ -59,8 +61,6 @@ class Sheet(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """odds.json."""
 
-    command: str
-    sources: str  # hash of what the games were played by
     pursuers: str  # their strategy
     sheets: dict[str, Sheet]  # plane, space
 

@@ -1,12 +1,15 @@
 """The table behind go or no-go: many compiled games from drawn starts, fitted, and judged on games held out.
 
-`python -m sim_bridge.campaign.odds` writes onboard/game/odds.json and benchmarks/results/odds.md. Games that
-were played stay in the folder `--parts`, so that a run that was stopped goes on.
+`python -m sim_bridge.campaign.odds` writes onboard/game/odds.json, and of each kind a page in
+benchmarks/results with its picture; `--kind space` makes one kind anew. Games that were played stay in the
+folder `--parts`, so that a run that was stopped goes on.
 """
 
 from __future__ import annotations
 
+import argparse
 import os
+import platform
 from hashlib import sha256
 from importlib.util import find_spec
 from math import atan2, cos, degrees, pi, sin
@@ -37,7 +40,7 @@ EVADING = ("paper", "evasive")
 PURSUING = "constant-bearing"
 HELD_OUT = 4  # every so-manieth game judges, the others fit
 RIDGE = 1.0  # of the standardised weights
-SIZES = {"plane": (3, 4, 5, 6, 7), "space": (3, 4, 5, 6, 7, 8)}
+SIZES = {"plane": (3, 4, 5, 6, 7), "space": (4, 5, 6, 7)}
 PLANE = Rules(R=2.0, rho=4.0, horizon=300.0, planar=True)
 
 Array = NDArray[np.float64]
@@ -211,7 +214,7 @@ def judged(kind: str, evader: str, outcome: str, said: Array, y: Array) -> Judge
     return Judged(kind, evader, outcome, len(y), float(y.mean()), brier, plain, tuple(bins))
 
 
-def sheet(kind: str, part: Part) -> tuple[Sheet, list[Judged]]:
+def sheet(kind: str, part: Part, command: str) -> tuple[Sheet, list[Judged]]:
     """A kind's fits, and how they do on every fourth game, which they have not seen."""
     x, games = part.x, len(part.x)
     held = np.arange(games) % HELD_OUT == 0
@@ -233,13 +236,14 @@ def sheet(kind: str, part: Part) -> tuple[Sheet, list[Judged]]:
         return tuple(float(f"{v:.6g}") for v in values)
 
     low, high = short(np.quantile(x, 0.002, axis=0)), short(np.quantile(x, 0.998, axis=0))
-    return Sheet(games, low, high, short(mean), short(deviation), fits), told
+    return Sheet(command, sources(), games, low, high, short(mean), short(deviation), fits), told
 
 
-def page(told: list[Judged], made: str) -> str:
+def page(kind: str, told: list[Judged], made: str) -> str:
     """The judgement as Markdown."""
+    where = {"plane": "in the plane", "space": "in space"}[kind]
     lines = [
-        "# Go or no-go: what the table says, and what happened",
+        f"# Go or no-go {where}: what the table says, and what happened",
         "",
         made,
         "",
@@ -265,14 +269,12 @@ def reliability(told: list[Judged], path: Path) -> None:
     from matplotlib.figure import Figure
     from scipy.stats import binomtest
 
-    figure = Figure(figsize=(9.0, 4.3 * len(SIZES)), layout="constrained")
+    figure = Figure(figsize=(9.0, 4.3), layout="constrained")
     FigureCanvasAgg(figure)
-    places: Any = figure.subplots(len(SIZES), 2, squeeze=False, sharex=True, sharey=True)
-    for axes, (kind, evader) in zip(places.flat, [(k, e) for k in SIZES for e in EVADING], strict=True):
+    places: Any = figure.subplots(1, len(EVADING), squeeze=False, sharex=True, sharey=True)
+    for axes, evader in zip(places.flat, EVADING, strict=True):
         axes.plot([0, 1], [0, 1], color="0.7", lw=1)
-        for one, colour in zip(
-            [t for t in told if (t.kind, t.evader) == (kind, evader)], ("#aa3377", "#228833"), strict=True
-        ):
+        for one, colour in zip([t for t in told if t.evader == evader], ("#aa3377", "#228833"), strict=True):
             said = [s for s, _, _ in one.bins]
             share = [k / n for _, n, k in one.bins]
             reach = [binomtest(k, n).proportion_ci(method="wilson") for _, n, k in one.bins]
@@ -281,7 +283,7 @@ def reliability(told: list[Judged], path: Path) -> None:
             label = f"{one.outcome}: Brier {one.brier:.3f} (share alone {one.plain:.3f})"
             axes.errorbar(said, share, yerr=np.maximum(error, 0.0), fmt="o-", ms=4, lw=1, capsize=2,
                           color=colour, label=label)  # fmt: skip
-        axes.set_title(f"{kind}, evader {evader}", fontsize=10)
+        axes.set_title(f"evader {evader}", fontsize=10)
         axes.legend(fontsize=8, loc="upper left", frameon=False)
         axes.grid(alpha=0.2)
     for axes in places[-1]:
@@ -299,32 +301,42 @@ def sources() -> str:
     return sha256(b"\0".join(texts)).hexdigest()[:16]
 
 
+PAGES = {"plane": "odds", "space": "odds-space"}
+GAMES = {"plane": 1200, "space": 600}
+
+
+def make(kind: str, given: Any) -> Sheet:
+    """A kind's sheet, its page and its picture."""
+    games = getattr(given, kind)
+    command = f"python -m sim_bridge.campaign.odds --kind {kind} --{kind} {games}"
+    found, told = sheet(kind, parts(given.parts, kind, games), command)
+    where = f"{platform.machine()} ({os.cpu_count()} cores)"
+    made = f"`{command}` on {where}, sources `{found.sources}`. {found.games} games against each evader, of"
+    made += f" {', '.join(map(str, SIZES[kind]))} pursuers. Features: {', '.join(NAMES[1:])}."
+    text = page(kind, told, made)
+    (given.pages / f"{PAGES[kind]}.md").write_text(text, encoding="utf-8")
+    reliability(told, given.pictures / f"{PAGES[kind]}.png")
+    print(text)
+    return found
+
+
 def main() -> None:
     """Play what is missing, fit, judge, write."""
-    import argparse
-    import platform
-
     parser = argparse.ArgumentParser(prog="python -m sim_bridge.campaign.odds", description=__doc__)
-    parser.add_argument("--plane", type=int, default=1200, help="games of each number of pursuers")
-    parser.add_argument("--space", type=int, default=300, help="likewise, of aircraft")
+    parser.add_argument("--kind", choices=tuple(SIZES), help="make this one anew, keep the other")
+    for kind in SIZES:
+        parser.add_argument(f"--{kind}", type=int, default=GAMES[kind], help="games of each team's size")
     parser.add_argument("--parts", type=Path, default=Path(".odds"), help="folder of played games")
     parser.add_argument("--table", type=Path, default=Path("onboard/game/odds.json"))
-    parser.add_argument("--page", type=Path, default=Path("benchmarks/results/odds.md"))
-    parser.add_argument("--figure", type=Path, default=Path("docs/pictures/odds.png"))
+    parser.add_argument("--pages", type=Path, default=Path("benchmarks/results"))
+    parser.add_argument("--pictures", type=Path, default=Path("docs/pictures"))
     given = parser.parse_args()
-    sheets, told = {}, []
-    for kind in SIZES:
-        games = {"plane": given.plane, "space": given.space}[kind]
-        sheets[kind], judgement = sheet(kind, parts(given.parts, kind, games))
-        told += judgement
-    command = f"python -m sim_bridge.campaign.odds --plane {given.plane} --space {given.space}"
-    table = Table(command, sources(), PURSUING, sheets)
+    kept = {}
+    if given.kind:
+        kept = msgspec.json.decode(given.table.read_bytes(), type=Table).sheets
+    sheets = kept | {kind: make(kind, given) for kind in SIZES if given.kind in (None, kind)}
+    table = Table(PURSUING, sheets)
     given.table.write_bytes(msgspec.json.format(msgspec.json.encode(table), indent=1) + b"\n")
-    where = f"{platform.machine()} ({os.cpu_count()} cores)"
-    made = f"`{command}` on {where}, sources `{table.sources}`. Features: {', '.join(NAMES[1:])}."
-    given.page.write_text(page(told, made), encoding="utf-8")
-    reliability(told, given.figure)
-    print(given.page.read_text(encoding="utf-8"))
 
 
 if __name__ == "__main__":
