@@ -35,6 +35,7 @@ STAGING_S = 40.0  # that is tried as a change [s]
 GO = 0.5  # the chance of capture from which on an engagement is worth it
 Z = 1.96  # of a 95 % interval
 DELAY = 0.15  # [s] of a track and a control step in space
+OTHER = 0.25  # share by which an evader may turn and climb otherwise than the table's
 BEYOND = 0.1  # share of a range of the table by which a start may lie outside it
 
 
@@ -51,6 +52,9 @@ class Sheet(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     command: str  # that made it
     sources: str  # hash of what the games were played by
     games: int  # of each evader
+    sizes: tuple[int, int]  # pursuers, least and most
+    turn: float  # radius of the evader's tightest turn, in safety distances; 0: it turns at once
+    pitch: float  # [rad] its steepest
     low: tuple[float, ...]  # least of each feature
     high: tuple[float, ...]
     mean: tuple[float, ...]
@@ -158,8 +162,22 @@ def sheet_of(s: Situation) -> Sheet | None:
     return table().sheets.get("plane" if s.rules.planar else "space")
 
 
+def manners(s: Situation) -> tuple[float, float]:
+    """The evader's `turn` and `pitch`, as a sheet has them."""
+    limits, speed = s.evader_limits, s.evader.speed
+    turn = speed / (limits.turn_rate * s.rules.rho) if limits.turn_rate > 0.0 else 0.0
+    steepest = 0.0 if s.rules.planar else min(0.5 * pi, max(limits.pitch_max, -limits.pitch_min))
+    return turn, steepest
+
+
 def outside(s: Situation, sheet: Sheet) -> str:
     """Why the table says nothing of a start; "" where it does."""
+    count, (fewest, most) = sum(member.fit for member in s.team), sheet.sizes
+    if not fewest <= count <= most:
+        return f"pursuers: found {count}, the table's games have {fewest} to {most}"
+    for name, found, meant in zip(("turn", "pitch"), manners(s), (sheet.turn, sheet.pitch), strict=True):
+        if abs(found - meant) > OTHER * meant:
+            return f"the evader's {name}: found {found:.2f}, the table's games have {meant:.2f}"
     for name, x, low, high in zip(NAMES, features(s), sheet.low, sheet.high, strict=True):
         room = BEYOND * (high - low) + 1e-9
         if not low - room <= x <= high + room:

@@ -29,7 +29,7 @@ from onboard.core.math.vectors import ZERO, Vec, scale, sub, unit
 from onboard.core.strategy.registry import EVADERS, PURSUERS
 from onboard.core.strategy.team.plan_types import Heights, Member
 from onboard.game.go_or_no_go import engagement_of
-from onboard.game.odds import NAMES, Outcome, Sheet, Table, engagement, features, ringed, staged
+from onboard.game.odds import NAMES, Outcome, Sheet, Table, engagement, features, manners, ringed, staged
 from onboard.game.scenario import Scenario, VehicleSpec
 from sim_bridge.campaign.compiled import campaign, starts_of
 from sim_bridge.campaign.plane_in_wind import drawn_wind
@@ -51,6 +51,7 @@ class Part(NamedTuple):
 
     x: Array  # (games, features)
     ends: NDArray[np.int64]  # (games, evaders) verdicts
+    sources: str  # hash of what played them
 
 
 def bearings(rng: np.random.Generator, count: int) -> tuple[Array, Array]:
@@ -93,7 +94,7 @@ def plane_part(games: int, count: int) -> Part:
         team = tuple(Member(one, FREE, True) for one in game.pursuers)
         s = engagement(Member(game.evader, FREE, True), team, Target(True, target), PLANE, Heights(), 0.0)
         rows.append(features(s))
-    return Part(np.array(rows), np.array(ends).T)
+    return Part(np.array(rows), np.array(ends).T, sources())
 
 
 def space_scenario(seed: int, count: int) -> Scenario:
@@ -155,7 +156,7 @@ def space_part(games: int, count: int) -> Part:
             verdicts.append(play(d.start, Chosen(number, (0,) * count), sky_of(d, True), log))
         rows.append(features(engagement_of(scenario)))
         ends.append([int(found.game.score.verdict) for found in verdicts])
-    return Part(np.array(rows), np.array(ends))
+    return Part(np.array(rows), np.array(ends), sources())
 
 
 def parts(folder: Path, kind: str, games: int) -> Part:
@@ -166,11 +167,12 @@ def parts(folder: Path, kind: str, games: int) -> Part:
         path = folder / f"{kind}-{count}-{games}-{PURSUING}.npz"
         if not path.exists():
             part = (plane_part if kind == "plane" else space_part)(games, count)
-            np.savez(path, x=part.x, ends=part.ends)
+            np.savez(path, **part._asdict())
             print(f"played: {path}", flush=True)
         with np.load(path) as kept:
-            found.append(Part(kept["x"], kept["ends"]))
-    return Part(np.concatenate([p.x for p in found]), np.concatenate([p.ends for p in found]))
+            found.append(Part(kept["x"], kept["ends"], str(kept["sources"])))
+    by = "+".join(sorted({p.sources for p in found}))
+    return Part(np.concatenate([p.x for p in found]), np.concatenate([p.ends for p in found]), by)
 
 
 def fitted(z: Array, y: Array) -> Outcome:
@@ -236,7 +238,10 @@ def sheet(kind: str, part: Part, command: str) -> tuple[Sheet, list[Judged]]:
         return tuple(float(f"{v:.6g}") for v in values)
 
     low, high = short(np.quantile(x, 0.002, axis=0)), short(np.quantile(x, 0.998, axis=0))
-    return Sheet(command, sources(), games, low, high, short(mean), short(deviation), fits), told
+    fewest, most = min(SIZES[kind]), max(SIZES[kind])
+    turn, pitch = manners(engagement_of(spatial("five"))) if kind == "space" else (0.0, 0.0)
+    evaders = (fewest, most), turn, pitch
+    return Sheet(command, part.sources, games, *evaders, low, high, short(mean), short(deviation), fits), told
 
 
 def page(kind: str, told: list[Judged], made: str) -> str:
@@ -250,15 +255,15 @@ def page(kind: str, told: list[Judged], made: str) -> str:
         f"Every {HELD_OUT}th game was held out of the fit. Pursuers: `{PURSUING}`. Brier score: the mean of"
         " squares of (said − happened); beside it that of always saying the share.",
         "",
-        "| kind | evader | outcome | held out | share | Brier | of the share alone |"
-        " said 0–10 %: happened | … | 90–100 %: happened |",
-        "|---|---|---|---|---|---|---|---|---|---|",
+        "| evader | outcome | held out | share | Brier | of the share alone |"
+        " said in the mean: happened, by tenths |",
+        "|---|---|---|---|---|---|---|",
     ]
     for one in told:
         cells = [f"{100 * s:.0f} %: {100 * k / n:.0f} % of {n}" for s, n, k in one.bins]
         lines.append(
-            f"| {one.kind} | {one.evader} | {one.outcome} | {one.games} | {100 * one.share:.0f} % |"
-            f" {one.brier:.3f} | {one.plain:.3f} | {cells[0]} | {'; '.join(cells[1:-1])} | {cells[-1]} |"
+            f"| {one.evader} | {one.outcome} | {one.games} | {100 * one.share:.0f} % |"
+            f" {one.brier:.3f} | {one.plain:.3f} | {'; '.join(cells)} |"
         )
     return "\n".join(lines) + "\n"
 

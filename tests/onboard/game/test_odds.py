@@ -96,3 +96,32 @@ def test_new_games_end_as_often_as_the_table_says() -> None:
 def test_every_shipped_scenario_is_judged(path: Path) -> None:
     told = lines(engagement_of(load(path)))
     assert told[0].partition(":")[0] in ("go", "no-go", "open", "unknown")
+
+
+def shipped(name: str) -> Situation:
+    """A spatial scenario at its start."""
+    return engagement_of(load(configs() / "scenarios" / "spatial" / f"{name}.toml"))
+
+
+def test_rings_in_space_are_a_go_and_open_starts_none() -> None:
+    for name in ("ring-5", "ring-6"):
+        s = shipped(name)
+        assert lines(s)[0].startswith("go: ")
+        assert odds(s).chances["paper"].captured.low > 0.8
+        assert odds(s).chances["evasive"].captured.high < 0.3  # it dodges: nothing here answers it
+    for name in ("five", "six"):
+        s = shipped(name)
+        assert lines(s)[0].startswith("no-go: ")
+        found = odds(s)
+        ringed = next(change for change in found.changes if change.words.startswith("a ring of 1496 m"))
+        assert ringed.captured.low > found.chances["paper"].captured.high
+
+
+def test_in_space_it_says_which_games_it_has_not_seen() -> None:
+    s = shipped("ring-5")
+    two = s._replace(team=s.team[:2])
+    assert "pursuers: found 2, the table's games have 4 to 7" in odds(two).beyond
+    nimble = s._replace(evader_limits=s.evader_limits._replace(turn_rate=4.0 * s.evader_limits.turn_rate))
+    assert odds(nimble).beyond.startswith("the evader's turn: found 1.8")
+    steep = s._replace(evader_limits=s.evader_limits._replace(pitch_max=1.0))
+    assert odds(steep).beyond.startswith("the evader's pitch: found 1.00")
