@@ -44,9 +44,10 @@ $(STAMP): locks/all.lock pyproject.toml
 	@touch $(STAMP)
 
 demo: install
-	@$(BIN)/sim-bridge planar --figures figures
+	@$(BIN)/sim-bridge planar
 	@echo
-	@$(BIN)/sim-bridge fly demo
+	@nice $(BIN)/sim-bridge planar --figures figures > /dev/null & drawing=$$!; \
+	  $(BIN)/sim-bridge fly demo && wait $$drawing
 	@echo
 	@echo "figures of the plane games are in figures/. What to try next:"
 	@echo "  $(BIN)/sim-bridge fly --fast one-on-one      the same in a few seconds, on virtual time"

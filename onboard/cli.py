@@ -135,6 +135,9 @@ def run(arguments: list[str] | None = None) -> int:
 
         print(version())
         return 0
+    from onboard.agent.lean import lean
+
+    lean()
     file = Path(given["config"]) if "config" in given else None
     options: dict[str, Any] = {name: given[name] for name in OPTIONS if name in given}
     from onboard.agent import config

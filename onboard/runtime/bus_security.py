@@ -5,17 +5,19 @@ from __future__ import annotations
 import base64
 import json
 import socket
-import ssl
 import tempfile
 from enum import Enum
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import zenoh
 
 from onboard.config.strict import ConfigError
 from onboard.runtime.membership import Membership, membership_of
 from onboard.runtime.zenoh_config import DEFAULT_ENDPOINT
+
+if TYPE_CHECKING:
+    import ssl
 
 PROBE_S = 2.0  # for one look at why a session does not open
 LOOPBACK = ("127.", "[::1]", "localhost")
@@ -78,6 +80,8 @@ def why_not(member: Membership, config_file: Path) -> str:
     The words tell a certificate that has ended, another authority, a name that the listener does not have,
     and a place where nobody answers.
     """
+    import ssl
+
     try:
         context = _context(config_file)
     except (OSError, ValueError, KeyError, TypeError) as error:
@@ -119,6 +123,8 @@ def _places(config: zenoh.Config) -> list[str]:
 
 
 def _context(config_file: Path) -> ssl.SSLContext:
+    import ssl  # 5 MB that a process without keys does without
+
     tls = json.loads(config_file.read_text(encoding="utf-8"))["transport"]["link"]["tls"]
     root = base64.b64decode(tls["root_ca_certificate_base64"]).decode("ascii")
     context = ssl.create_default_context(cadata=root)

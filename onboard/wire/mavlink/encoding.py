@@ -177,3 +177,7 @@ _STREAMED: dict[type, tuple[Layout, Callable[[Any], tuple[float, ...]]]] = {
     VelocityTarget: (_layout(dialect.MAVLINK_MSG_ID_SET_POSITION_TARGET_LOCAL_NED), _velocity_target),
     PlaceTarget: (_layout(dialect.MAVLINK_MSG_ID_SET_POSITION_TARGET_GLOBAL_INT), _place_target),
 }
+
+_names = {name for writer in _WRITERS.values() for name in writer.__code__.co_names}
+WRITTEN = frozenset(number for number, kind in dialect.mavlink_map.items() if kind.__name__ in _names)
+"""Numbers of the messages that are written by their class."""
