@@ -17,6 +17,7 @@ from onboard.config.printable import printable
 from onboard.config.strict import ConfigError
 from onboard.runtime import early
 from onboard.runtime.early import INTERRUPTED
+from onboard.runtime.extras import lacking
 
 MISTAKE = 2
 NOT_WRITTEN = 74  # EX_IOERR of sysexits.h
@@ -116,6 +117,9 @@ def _end_of(error: BaseException) -> _End | None:
         cause = error.__context__  # `from None` hides it from tracebacks alone
         full = isinstance(cause, OSError) and cause.errno in FULL
         return _End(NOT_WRITTEN if full else MISTAKE, str(error))
+    if isinstance(error, ModuleNotFoundError):
+        words = lacking(error.name or "")
+        return _End(MISTAKE, words) if words else None
     if isinstance(error, KeyboardInterrupt):  # its words say what was left behind
         return _End(INTERRUPTED, ": ".join(("interrupted", *map(str, error.args[:1]))))
     if isinstance(error, BrokenPipeError):

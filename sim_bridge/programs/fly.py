@@ -67,7 +67,7 @@ def fly(path: Path, options: Options, say: Callable[[str], None] = print) -> Flo
 
             server = ServeOptions(bus=options.bus, listen=True, once=True, seed=options.seed)
             summary, timing = asyncio.run(fly_real(scenario, server, folder, path.parent, tell))
-    except ConfigError:
+    except (ConfigError, ModuleNotFoundError):
         run_folder.discard(folder)
         raise
     except KeyboardInterrupt:

@@ -52,6 +52,10 @@ def ended(command: list[str], **environment: str) -> tuple[int, str, str]:
         ("import os\nraise PermissionError(13, os.strerror(13), 'runs/1.tlog')", 74, "",
          "prog: runs/1.tlog: permission denied\n"),
         ("open('/')", 74, "", "prog: /: is a directory\n"),
+        ("raise ModuleNotFoundError('No', name='mcap.writer')", 2, "",
+         "prog: found no mcap, expected: pip install 'apollonius[gcs]'\n"),
+        ("raise ModuleNotFoundError('No', name='PIL')", 2, "",
+         "prog: found no PIL, expected: pip install 'apollonius[page]' or 'apollonius[sim]'\n"),
     ],
 )  # fmt: skip
 def test_every_end_has_its_code_and_at_most_one_line(
@@ -92,6 +96,12 @@ def test_a_group_with_a_fault_in_it_keeps_its_traceback() -> None:
     code, _, err = ended(script(body))
     assert code == 1
     assert "ZeroDivisionError" in err
+
+
+def test_a_module_that_no_extra_brings_is_a_fault_of_the_program() -> None:
+    code, _, err = ended(script("import onboard.nowhere"))
+    assert code == 1
+    assert "Traceback" in err
 
 
 def test_a_fault_of_the_program_keeps_its_traceback() -> None:
