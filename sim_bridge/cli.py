@@ -188,7 +188,7 @@ def bench(
     scenario: Annotated[
         list[Path] | None,
         typer.Option(
-            help="Scenario; may be repeated. Default: Table 1, demo, five and six.",
+            help="Scenario; may be repeated. Default: Table 1, demo and five.",
             autocompletion=options.shipped(SCENARIOS),
         ),
     ] = None,

@@ -42,7 +42,7 @@ def matrix(title: str, board: Board, chosen: list[int]) -> list[str]:
 def page(plan: Plan, board: Board) -> list[str]:
     """The committed page."""
     versions = ", ".join(f"{name} {value}" for name, value in sorted(plan.fingerprint.versions.items()))
-    aircraft = [k for k, name in enumerate(board.scenarios) if name in ("five", "six")]
+    aircraft = [k for k, name in enumerate(board.scenarios) if name == "five"]
     plane = [k for k in range(len(board.scenarios)) if k not in aircraft]
     counts = " × ".join(
         map(str, (len(board.pursuers), len(board.evaders), len(board.scenarios), board.games))
@@ -71,12 +71,16 @@ def main() -> None:
     for name in ("scenario", "evader", "pursuers"):
         parser.add_argument(f"--{name}", action="append", default=[], help="as of `sim-bridge bench`")
     told = parser.parse_args()
-    begun = process_time()
+    begun, fresh = process_time(), not told.folder.exists()
     chosen = tuple(map(Path, told.scenario)), tuple(told.evader), tuple(told.pursuers)
     made = bench(Options(*chosen, told.games, None, told.workers, told.folder), print)
-    print(f"{process_time() - begun:.0f} CPU-seconds of this process")
+    took = f"{process_time() - begun:.0f} CPU-seconds of one process"
     found = results(told.folder / "games")
     lines = page(found.plan, made.board)
+    if fresh and told.workers == 1:
+        lines += [f"All of it, what had to be compiled included, took {took}."]
+    elif told.workers == 1:
+        lines += [f"With the shards that were there, it took {took}."]
     print("\n".join(lines))
     parts = [
         f" --{name} {value}" for name in ("scenario", "evader", "pursuers") for value in getattr(told, name)

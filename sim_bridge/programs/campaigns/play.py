@@ -14,12 +14,14 @@ from onboard.game.plugins import evader_strategy, pursuer_strategy
 from onboard.game.scenario import Scenario
 from onboard.runtime.progress import Tell, silent
 from sim_bridge.campaign.compiled import campaign, starts_of
+from sim_bridge.campaign.matrix import matrix
 from sim_bridge.campaign.spatial_campaign import Played, play_drawn
 from sim_bridge.campaign.spatial_draw import Sides, draw, drawn_scenario
 from sim_bridge.campaign.spatial_game import Chosen
 from sim_bridge.plane_game.setup import conditions_of, game_of
 from sim_bridge.programs.campaigns.plan import Cell, Plan, Shard, is_spatial, spread_of
 
+PAIRS = 6  # of strategies up to which each has the fastest kernel, its own; beyond, compiling takes longer
 GOLDEN = 0.618033988749895  # its multiples modulo 1 lie apart, however many there are
 
 
@@ -60,7 +62,7 @@ def _games(plan: Plan, cell: Cell, seeds: range) -> Iterable[Row]:
         return (_flown(cell, seed) for seed in seeds)
     if is_spatial(cell.scenario):
         return (spatial_row(cell, seed, spatial_game(plan, cell, seed)) for seed in seeds)
-    return simple_games(cell, seeds)
+    return simple_games(cell, seeds, _shared_by(plan))
 
 
 def drawn(cell: Cell, seed: int) -> Scenario:
@@ -73,7 +75,7 @@ def drawn(cell: Cell, seed: int) -> Scenario:
 
 def spatial_game(plan: Plan, cell: Cell, seed: int) -> Played:
     """One game of aircraft in their wind, with its paths."""
-    sides = _sides(cell, _shared(tuple((pair.evader, pair.pursuers) for pair in plan.pairs)))
+    sides = _sides(cell, _shared_by(plan))
     one = draw(cell.scenario, seed)._replace(sides=sides)
     return play_drawn(one, sides.chosen.evader)
 
@@ -90,6 +92,14 @@ class _Shared(NamedTuple):
 
     evaders: tuple[str, ...]
     pursuers: tuple[str, ...]
+
+
+ALONE = _Shared((), ())
+
+
+def _shared_by(plan: Plan) -> _Shared:
+    """Those of a plan."""
+    return _shared(tuple((pair.evader, pair.pursuers) for pair in plan.pairs))
 
 
 @cache
@@ -121,18 +131,30 @@ def _sides(cell: Cell, shared: _Shared) -> Sides:
 # ---------------------------------------------------------------- simple motion
 
 
-def simple_games(cell: Cell, seeds: range) -> list[Row]:
-    """Games of simple motion, all in one call of the kernel."""
+def simple_games(cell: Cell, seeds: range, shared: _Shared = ALONE) -> list[Row]:
+    """Games of simple motion, all in one call of the kernel; of many strategies all share one."""
     games = [drawn(cell, seed) for seed in seeds]
     conditions = conditions_of(games[0])
     starts = starts_of([game_of(one) for one in games], [conditions.target.position] * len(games))
-    play = _simple(cell.scenario.evader.strategy, cell.scenario.pursuers[0].strategy, len(games[0].pursuers))
-    ends = play(starts, conditions)
+    pair = cell.scenario.evader.strategy, cell.scenario.pursuers[0].strategy
+    together = len(shared.evaders) * len(shared.pursuers) > PAIRS
+    if together and pair[0] in shared.evaders and pair[1] in shared.pursuers:
+        numbers = shared.evaders.index(pair[0]), shared.pursuers.index(pair[1])
+        ends = _together(shared, len(games[0].pursuers))(starts, conditions, *numbers)
+    else:
+        ends = _simple(*pair, len(games[0].pursuers))(starts, conditions)
     return [
         Row(cell.number, seed, GameResult(int(ends.verdicts[k])).name.lower(), float(ends.times[k]),
             float(ends.smallest[k]), int(ends.captors[k]) + 1, float(ends.unsafe[k]), -1)
         for k, seed in enumerate(seeds)
     ]  # fmt: skip
+
+
+@cache
+def _together(shared: _Shared, count: int) -> Callable[..., Any]:
+    """The play of many games by any two of the strategies, compiled once for all."""
+    sides = tuple(map(evader_strategy, shared.evaders)), tuple(map(pursuer_strategy, shared.pursuers))
+    return matrix(*sides, count)
 
 
 @cache

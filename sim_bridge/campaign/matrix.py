@@ -1,0 +1,130 @@
+"""Many games of simple motion, many strategies of both sides in one kernel.
+
+`compiled.campaign` compiles each pair of strategies for itself: the fastest game, and the longest wait where
+every strategy meets every other. Here each strategy is compiled once, out of line, and a game says by number
+who flies. The games are the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any, NamedTuple
+
+from onboard.core.game.advance import (
+    Conditions,
+    Decisions,
+    EvaderStrategy,
+    Field,
+    Game,
+    PursuerStrategy,
+    decide_one,
+    moved_on,
+    still_view,
+)
+from onboard.core.game.planning import planned, steps_between, unplanned
+from onboard.core.game.referee import GameResult
+from onboard.core.game.views import PursuerView, sighted
+from onboard.core.math.each import each
+from onboard.core.math.states import Vehicle
+from onboard.core.math.vectors import scale
+from onboard.core.strategy.knowledge import Decision
+from onboard.core.strategy.team.flying import pursuer_team
+from onboard.core.strategy.team.plan_types import Plan
+from sim_bridge.campaign import compiled as pairs
+from sim_bridge.campaign.compiled import Ends, Starts
+from sim_bridge.campaign.kernel_cache import kernel
+from sim_bridge.campaign.machine import among
+
+
+class Meeting(NamedTuple):
+    """Who meets whom: numbers into the strategies of a kernel; whether the pursuers fly by a plan."""
+
+    evader: int
+    pursuers: int
+    planning: bool
+
+
+class Asked(NamedTuple):
+    """The pursuers' strategies, and which of them is asked (for `each`)."""
+
+    decide: Callable[[PursuerView, int], Decision]
+    number: int
+
+
+def the_view(view: PursuerView) -> PursuerView:
+    """In place of a decision: what it would be made of."""
+    return view
+
+
+def asked_of(view: PursuerView, _index: int, asked: Asked) -> Decision:
+    """A pursuer's decision (for `each`)."""
+    return asked.decide(view, asked.number)
+
+
+def no_plan_made(_game: Game, _conditions: Conditions, previous: Plan) -> Plan:
+    """In place of the planner where no strategy flies by its plan."""
+    return previous
+
+
+@cache
+def _player(
+    evaders: tuple[EvaderStrategy, ...], pursuers: tuple[PursuerStrategy, ...], count: int, compiled: bool
+) -> Callable[[Starts, Conditions, Ends, Meeting], None]:
+    """Plays all games of the starts into the ends."""
+    evade, pursue = among(evaders), among(pursuers)
+    plan_by: Any = planned if pursuer_team in pursuers else no_plan_made
+    view_of: Any = the_view
+    team = tuple(range(1, count + 1))
+
+    def play(starts: Starts, conditions: Conditions, ends: Ends, meeting: Meeting) -> None:
+        every = steps_between(conditions.control.dt)
+        for number in range(starts.speeds.shape[0]):
+            mine = pairs._aimed(conditions, starts.targets[number])
+            start = pairs._begin(pairs._Table(starts, number), team)
+            game = start
+            plan = unplanned(game)
+            steps = 0
+            while game.score.verdict == GameResult.RUNNING:
+                if meeting.planning and steps % every == 0:
+                    plan = plan_by(game, mine, plan)
+                own = evade(still_view(game, mine), meeting.evader)
+                turned = Vehicle(game.evader.position, scale(own.direction, own.speed), game.evader.speed)
+                seen = sighted(turned, own.direction, mine.control.lookahead)
+                field = Field(game, seen, mine, view_of, plan.assignments)
+                views: Any = each(decide_one, game.pursuers, field)
+                decided = Decisions(own, each(asked_of, views, Asked(pursue, meeting.pursuers)))
+                now = moved_on(game, mine, decided)
+                game = Game(
+                    now.time, now.evader, now.pursuers, start.evader_limits, start.pursuer_limits, now.score
+                )
+                steps += 1
+            pairs._close(ends, number, game, steps)
+
+    if not compiled:
+        return play
+    pairs.register((*pairs.KERNELS, pairs.__name__, __name__))
+    pairs.register_strategies((*evaders, *pursuers, evade, pursue))
+    return kernel(play)
+
+
+def matrix(
+    evaders: tuple[EvaderStrategy, ...], pursuers: tuple[PursuerStrategy, ...], count: int,
+    compiled: bool = True,
+) -> Callable[[Starts, Conditions, int, int], Ends]:
+    """The play of many games of `count` pursuers under any two of the strategies.
+
+    Returns `play(starts, conditions, evader, pursuer) -> Ends`, the strategies by their numbers. Compiles at
+    the first call, once for all of them; `compiled=False` runs the same functions interpreted.
+    """  # fmt: skip
+
+    def play(starts: Starts, conditions: Conditions, evader: int, pursuer: int) -> Ends:
+        ends = pairs._blank(starts, 0)
+        both = (evaders, pursuers)
+        if compiled:
+            both = pairs.in_arrays(evaders), pairs.in_arrays(pursuers)
+        run = _player(*both, count, compiled)
+        run(starts, conditions, ends, Meeting(evader, pursuer, pursuers[pursuer] is pursuer_team))
+        return ends
+
+    return play
