@@ -40,7 +40,7 @@ EVADING = ("paper", "evasive")
 PURSUING = "constant-bearing"
 HELD_OUT = 4  # every so-manieth game judges, the others fit
 RIDGE = 1.0  # of the standardised weights
-SIZES = {"plane": (3, 4, 5, 6, 7), "space": (4, 5, 6, 7)}
+SIZES = {"plane": (3, 4, 5, 6, 7), "space": (4, 5, 6)}
 PLANE = Rules(R=2.0, rho=4.0, horizon=300.0, planar=True)
 
 Array = NDArray[np.float64]
@@ -143,11 +143,12 @@ def _placed(scenario: Scenario, spec: VehicleSpec, places: list[Vec]) -> Scenari
     return msgspec.structs.replace(scenario, pursuers=tuple(pursuers))
 
 
-def space_part(games: int, count: int) -> Part:
-    """Games of aircraft in wind, with noise, delay and gusts, against `count` pursuers."""
+def space_part(games: int, count: int, before: int = 0) -> Part:
+    """Games of aircraft in wind, with noise, delay and gusts, against `count` pursuers; of the seeds that
+    follow on `before`."""
     play = kernel_of(tuple(EVADERS[name].decide for name in EVADING), (PURSUERS[PURSUING].decide,), True)
     rows, ends = [], []
-    for seed in range(1, games + 1):
+    for seed in range(before + 1, before + games + 1):
         scenario = space_scenario(seed, count)
         verdicts = []
         for number in range(len(EVADING)):

@@ -120,7 +120,7 @@ def test_rings_in_space_are_a_go_and_open_starts_none() -> None:
 def test_in_space_it_says_which_games_it_has_not_seen() -> None:
     s = shipped("ring-5")
     two = s._replace(team=s.team[:2])
-    assert "pursuers: found 2, the table's games have 4 to 7" in odds(two).beyond
+    assert "pursuers: found 2, the table's games have 4 to 6" in odds(two).beyond
     nimble = s._replace(evader_limits=s.evader_limits._replace(turn_rate=4.0 * s.evader_limits.turn_rate))
     assert odds(nimble).beyond.startswith("the evader's turn: found 1.8")
     steep = s._replace(evader_limits=s.evader_limits._replace(pitch_max=1.0))
