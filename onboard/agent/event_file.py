@@ -106,10 +106,11 @@ def recorded(effects: Sequence[AnyEffect]) -> tuple[AnyRecorded, ...]:
     """The effects as they are recorded."""
     kept: list[AnyRecorded] = []  # in a loop: most events have one effect, or none
     for effect in effects:
-        if isinstance(effect, Think):
-            kept.append(Asked(effect.number, effect.side, effect.strategy))
-        elif not isinstance(effect, Keep):
-            kept.append(effect)
+        kind = type(effect)
+        if kind is Think:
+            kept.append(Asked(effect.number, effect.side, effect.strategy))  # type: ignore[union-attr]
+        elif kind is not Keep:
+            kept.append(effect)  # type: ignore[arg-type]
     return tuple(kept)
 
 

@@ -167,11 +167,15 @@ class Track:
         north = east = 0.0
         for sample in reversed(samples):
             dt = after.at - sample.at
-            north += 0.5 * (sample.velocity.x + after.velocity.x) * dt
-            east += 0.5 * (sample.velocity.y + after.velocity.y) * dt
+            v, u = sample.velocity, after.velocity
+            north += 0.5 * (v.x + u.x) * dt
+            east += 0.5 * (v.y + u.y) * dt
             after = sample
             if last.at - sample.at < LEAST:
                 continue
+            dn, de = last.north - sample.north, last.east - sample.east
+            if dn * dn + de * de > 2.0 * STILL * STILL * (north * north + east * east):
+                continue  # it has moved by more than that, whatever the rounding
             covered = hypot(north, east)
             if covered >= MOVED:
                 moved = hypot(last.north - sample.north, last.east - sample.east)

@@ -160,8 +160,10 @@ class TrackFilter:
         return along(scale(before.position, 1.0 - share), after.position, share)
 
     def _add(self, t: float, position: Vec, velocity: Vec | None, variance: Variance) -> Fate:
-        numbers = (t, *position, *variance, *(velocity or ()))
-        if not all(-BOUND < number < BOUND for number in numbers) or min(variance[:3]) < 0.0:
+        for number in (t, *position, *variance, *(velocity or ())):
+            if not -BOUND < number < BOUND:
+                return Fate.NOT_FINITE
+        if min(variance[:3]) < 0.0:
             return Fate.NOT_FINITE
         place = Vec(*map(float, position))
         speed = ZERO if velocity is None else Vec(*map(float, velocity))

@@ -191,7 +191,8 @@ class Table:
         if topic.names_vehicle and message.id != id:
             drops["wrong_id"] += 1
             return None
-        return Heard(topic, id, message)
+        heard: Heard = tuple.__new__(Heard, (topic, id, message))  # twice as fast as `Heard(…)`
+        return heard
 
     def _parse(self, key: str) -> Place | None:
         root, _, below = key.partition("/")

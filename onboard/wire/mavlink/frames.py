@@ -85,7 +85,7 @@ class Framer:
 
         Never raises: what is bad is counted in `causes`.
         """
-        if not self._rest and self.size_at(data, 0) == len(data) > 0:  # most often: one frame, and good
+        if not self._rest and _is_frame(data):  # most often: one frame, and good
             packet, cause = self._open(data, wall_ns)
             if packet is not None:
                 return [packet]
@@ -212,6 +212,15 @@ def first_number(data: bytes) -> int:
 
 
 _WHOLE = frozenset({*SIGNATURES, "setup_signing"})
+
+
+def _is_frame(data: bytes) -> bool:
+    """Whether a datagram is one whole frame by its header."""
+    size = len(data)
+    plain = size >= HEADER_2 + 2 and data[0] == MAGIC_2 and not data[2]
+    if plain and (data[7] | data[8] << 8 | data[9] << 16) in KNOWN:
+        return HEADER_2 + data[1] + 2 == size
+    return size > 0 and Framer.size_at(data, 0) == size
 
 
 def marked_signed(raw: bytes) -> bool:

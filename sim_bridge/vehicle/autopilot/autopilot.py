@@ -23,7 +23,7 @@ from sim_bridge.vehicle.autopilot.company import Company
 from sim_bridge.vehicle.autopilot.generations import REMOVED
 from sim_bridge.vehicle.autopilot.health import Fault, pack_voltage
 from sim_bridge.vehicle.autopilot.microservices import SERVICES
-from sim_bridge.vehicle.autopilot.resting import AWAKE
+from sim_bridge.vehicle.autopilot.resting import AWAKE, DELAYED, SETPOINTS
 from sim_bridge.vehicle.autopilot.setup import Setup
 from sim_bridge.vehicle.autopilot.state import COMPONENT, AutopilotState
 from sim_bridge.vehicle.motion import Air, Demand, Motion
@@ -32,13 +32,6 @@ HEARTBEAT_NS = NS_PER_S
 PEERS_MAX = 16  # framing states kept, least recently heard forgotten first
 PARAMETERS_A_STEP = 5
 LATE_MOST = 256  # commands that wait for their delay; beyond them they are lost, and counted
-DELAYED = frozenset(
-    (
-        dialect.MAVLINK_MSG_ID_COMMAND_LONG,
-        dialect.MAVLINK_MSG_ID_COMMAND_INT,
-        dialect.MAVLINK_MSG_ID_SET_MODE,
-    )
-)
 FORCE = 21196  # param2 of 400: arm or disarm whatever the checks say
 
 
@@ -67,7 +60,6 @@ class Autopilot(AutopilotState):
 
     def receive(self, now_ns: int, data: bytes, peer: Hashable) -> None:
         """Take one datagram. Never raises: what is bad or meant for others is counted and dropped."""
-        self._rest_ns = AWAKE
         for packet in self._framers.feed(peer, data, self.setup.options.epoch_ns + now_ns):
             self._take(now_ns, dialect_packet(packet.raw))
 
@@ -80,7 +72,7 @@ class Autopilot(AutopilotState):
         self.wind_filter.step(now_ns, self.motion, air, self.landed)
         self.health.drain(dt, self.armed and not self.landed)
         if now_ns < self._rest_ns and self.parameters.changes == self._rest_values:
-            return self.guide(now_ns, dt) if self._steady is None else self._steady
+            return self._steady or self._steered(now_ns, dt)
         self._rest_ns, self._place = AWAKE, None
         if not self.home_known and self.positioned(now_ns):
             self.home_known = True
@@ -97,6 +89,12 @@ class Autopilot(AutopilotState):
             self._rest_ns = min(due_ns, self.watched_until(now_ns)) if due_ns > now_ns else AWAKE
             self._rest_values = self.parameters.changes
             self._steady = demand if self.steady_until(now_ns) >= self._rest_ns else None
+        return demand
+
+    def _steered(self, now_ns: int, dt: float) -> Demand:
+        """What `guide` says now, kept where it will say the same until the end of the rest."""
+        demand = self.guide(now_ns, dt)
+        self._steady = demand if self.steady_until(now_ns) >= self._rest_ns else None
         return demand
 
     def wake(self) -> None:
@@ -280,6 +278,9 @@ class Autopilot(AutopilotState):
         if handler is None:
             self.counters["not_handled"] += 1
             return
+        self._steady = None
+        if message.get_msgId() not in SETPOINTS:  # which change what it demands, and nothing that is watched
+            self._rest_ns = AWAKE
         most = self.setup.options.answer_delay_s[1]
         if most > 0.0 and message.get_msgId() in DELAYED:
             self._wait(now_ns, packet)

@@ -8,6 +8,7 @@ same, byte for byte, as if it had looked at every step.
 from __future__ import annotations
 
 from onboard.core.math.constants import NS_PER_S
+from onboard.wire.mavlink.dialect import dialect
 from sim_bridge.vehicle.autopilot.health import CELL_EMPTY, CELL_FULL, CELLS, Health
 from sim_bridge.vehicle.autopilot.parameters import Parameters
 
@@ -17,6 +18,20 @@ EARLY_NS = 2_000_000  # of waking, so that rounding never makes anything late
 CHARGE = 1e-6  # share of a battery's charge, likewise
 BATTERY_LEVELS = ((1, "BATT_LOW_VOLT", "BATT_LOW_MAH"), (2, "BATT_CRT_VOLT", "BATT_CRT_MAH"))
 PX4_LEVELS = ("BAT_LOW_THR", "BAT_CRIT_THR", "BAT_EMERGEN_THR")
+DELAYED = frozenset(  # commands: they may be executed some time after they came
+    (
+        dialect.MAVLINK_MSG_ID_COMMAND_LONG,
+        dialect.MAVLINK_MSG_ID_COMMAND_INT,
+        dialect.MAVLINK_MSG_ID_SET_MODE,
+    )
+)
+SETPOINTS = frozenset(  # they change what is demanded, and nothing that is watched
+    (
+        dialect.MAVLINK_MSG_ID_SET_POSITION_TARGET_LOCAL_NED,
+        dialect.MAVLINK_MSG_ID_SET_POSITION_TARGET_GLOBAL_INT,
+        dialect.MAVLINK_MSG_ID_SET_ATTITUDE_TARGET,
+    )
+)
 
 
 def until(now_ns: int, left_s: float) -> int:

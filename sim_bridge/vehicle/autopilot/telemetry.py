@@ -18,7 +18,8 @@ UNKNOWN_U16 = 65535
 
 
 def _i16(value: float) -> int:
-    return int(clamp(round(value), -32768, 32767))
+    whole = round(value)
+    return whole if -32768 <= whole <= 32767 else int(clamp(whole, -32768, 32767))
 
 
 def _u16(value: float) -> int:
@@ -26,7 +27,8 @@ def _u16(value: float) -> int:
 
 
 def _i32(value: float) -> int:
-    return int(clamp(round(value), -(2**31), 2**31 - 1))
+    whole = round(value)
+    return whole if -(2**31) <= whole < 2**31 else int(clamp(whole, -(2**31), 2**31 - 1))
 
 
 def _e7(angle_deg: float) -> int:
