@@ -49,11 +49,12 @@ def rows(plan: Plan, shard: Shard, tell: Tell = silent) -> Iterator[Row]:
 
 
 def turned(shard: Shard) -> list[int]:
-    """The cells in the order in which they are played: each shard begins elsewhere, so that workers who begin
-    together do not all wait for the same kernels."""
+    """The cells in the order in which they are played: each shard begins elsewhere, every second one with the
+    last cells, so that workers who begin together do not all wait for the same kernels."""
     cells = list(shard.cells)
-    first = round(len(cells) * (shard.number * GOLDEN % 1.0)) % len(cells)
-    return cells[first:] + cells[:first]
+    first = round(len(cells) * (shard.number // 2 * GOLDEN % 1.0)) % len(cells)
+    order = cells[first:] + cells[:first]
+    return order[::-1] if shard.number % 2 else order
 
 
 def _games(plan: Plan, cell: Cell, seeds: range) -> Iterable[Row]:
