@@ -96,7 +96,7 @@ class Fleet:
             self.drops["foreign"] += 1
             return None
         drops = self._now_dropped
-        heard = HEARD_HERE.heard(key, payload, drops)
+        heard = HEARD_HERE.told(place, payload, drops)
         if heard is not None and not plausible(heard.message):
             drops["implausible"] += 1
             heard = None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from enum import Enum
 from operator import attrgetter
 from typing import Any, get_args, get_origin
 
@@ -46,19 +47,24 @@ def finite_check(kind: type[msgspec.Struct]) -> Callable[[Any], bool]:
             numbers.append(field.name)
         elif get_origin(field.type) is tuple and parts and all(part is float for part in parts):
             rows.append(field.name)
-        elif field.type not in _WITHOUT:
+        elif field.type not in _WITHOUT and not _is_enum(field.type):
             others.append(field.name)
     of_numbers, of_rows, of_others = _several(numbers), _several(rows), _several(others)
 
     def finite(message: Any) -> bool:
-        total = sum(of_numbers(message))
+        total = sum(of_numbers(message)) if numbers else 0.0
         for row in of_rows(message):
-            total += sum(row)
+            if row:
+                total = sum(row, total)
         if total - total != 0.0:
             return all_finite(msgspec.structs.astuple(message))
         return not others or all_finite(of_others(message))
 
     return finite
+
+
+def _is_enum(kind: object) -> bool:
+    return isinstance(kind, type) and issubclass(kind, Enum)
 
 
 def _several(names: list[str]) -> Callable[[Any], tuple[Any, ...]]:

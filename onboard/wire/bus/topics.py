@@ -184,6 +184,10 @@ class Table:
         if place is None:
             drops["foreign"] += 1
             return None
+        return self.told(place, payload, drops)
+
+    def told(self, place: Place, payload: bytes, drops: Counter[str]) -> Heard | None:
+        """As `heard`, of a key that was found already."""
         topic, _, id = place
         message = topic.codec.decode(payload, drops)
         if message is None:
