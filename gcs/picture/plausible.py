@@ -17,7 +17,8 @@ def plausible(message: Message) -> bool:
 
 
 def _state(state: State) -> bool:
-    return _sane(*state.position, *state.velocity, *state.wind)
+    values = (*state.position, *state.velocity, *state.wind)
+    return min(values) > -FARTHEST and max(values) < FARTHEST
 
 
 def _track(track: Track) -> bool:

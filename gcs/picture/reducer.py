@@ -44,7 +44,8 @@ class PictureReducer:
 
     def apply(self, key: str, payload: bytes, now_ns: int) -> Heard | None:
         """Take in one message of the bus or of the journal; what was heard, None for a bad one."""
-        self.tick(now_ns)
+        if self._next_ns is None or self._next_ns <= now_ns:
+            self.tick(now_ns)
         heard = self.fleet.apply(key, payload, now_ns)
         take = _TAKERS.get(heard.topic) if heard is not None else None
         if heard is not None and take is not None:

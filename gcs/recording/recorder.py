@@ -96,7 +96,7 @@ class Recorder:
             self.tick(stamp_ns)
         elif stamp_ns > self._last_ns:
             self._last_ns = stamp_ns
-        if self._closed or self._full:
+        if self._closed or (self._file.waiting_bytes > self._most_waiting and self._full):
             self._lost += 1
             return
         self._recorded += 1

@@ -104,7 +104,11 @@ class Views:
             return None
         topic = place.topic
         if topic is topics.STATE or topic is topics.DECISION:  # decoded when they are drawn
-            self._note_vehicle(place, payload, stamp_ns)
+            drawn = self._vehicles.get(place.id or 0) or self._new(place.id)
+            if topic is topics.DECISION:
+                drawn.decision = payload
+            else:
+                drawn.state, drawn.heard_ns = payload, stamp_ns
             return None
         take = _TAKERS.get(topic)
         if take is None:
@@ -116,16 +120,12 @@ class Views:
         log = fox.Log(fox.time_of(stamp_ns), line.level, line.text, line.name)
         return View("/log", LOG, self._encode(log))
 
-    def _note_vehicle(self, place: topics.Place, payload: bytes, stamp_ns: int) -> None:
-        if place.id is None or place.id > MOST_DRAWN:
-            return
-        drawn = self._vehicles.get(place.id)
-        if drawn is None:
-            drawn = self._vehicles[place.id] = _Drawn()
-        if place.topic is topics.STATE:
-            drawn.state, drawn.heard_ns = payload, stamp_ns
-        else:
-            drawn.decision = payload
+    def _new(self, id: int | None) -> _Drawn:
+        """Of a vehicle that was not heard before; one that is not drawn is kept nowhere."""
+        drawn = _Drawn()
+        if id is not None and id <= MOST_DRAWN:
+            self._vehicles[id] = drawn
+        return drawn
 
     def _on_setup(self, setup: Setup) -> None:
         self._setup, self._changed = setup, True

@@ -29,7 +29,7 @@ tell({{"{row}": game.cpu_s / game.virtual_s}}, game.outcome)
 """
 STATION = """
 from tests.benchmarks import bench_recorder
-from tests.support.chase_messages import chase
+chase = bench_recorder.chase  # of its own state
 keep = {every}  # one message of so many
 vehicles, seconds = {vehicles}, {seconds}
 
