@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from onboard.core.guidance.plane import (
     ALTITUDE_STEP,
+    CREEP,
     LOOK_AHEAD,
     SPEED_STEP,
     Reference,
@@ -106,7 +107,10 @@ def ordered(aboard: Aboard, wanted: Vec, at: Instant, policy: Policy, mates: tup
     ground = add(air, at.wind)
     bank = aboard.bank
     if ground.x * ground.x + ground.y * ground.y >= 1e-6:
-        yaw = atan2(at.velocity.y, at.velocity.x)  # heard in flight; here the course of one that always moves
+        yaw = 0.0  # not asked for, where there is a course
+        vx, vy = at.velocity.x, at.velocity.y
+        if vx * vx + vy * vy <= 1.01 * CREEP * CREEP:
+            yaw = atan2(vy, vx)  # heard in flight; here the course of one that always moves
         bank = bank_for(atan2(ground.y, ground.x), at.velocity, yaw, BANK_MAX)
     anew = begins(aboard.reference, at.now)
     reference = followed(aboard.reference, at.now, -at.position.z, -ground.z)

@@ -320,7 +320,7 @@ def _ready(
         return play
     register((*KERNELS, __name__))
     register_strategies(strategies)
-    return kernel(play)
+    return kernel(play, True, "numpy")
 
 
 def campaign(

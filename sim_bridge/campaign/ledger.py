@@ -1,8 +1,8 @@
 """What agents know and what they decided, as rows of arrays, one a player, evader first. Kernel style.
 
 `states` (players, 9): position [m; NED], velocity over ground and wind as estimated [m/s], course through
-the air [rad] of the last decision. `decided` (players, 8): course and pitch [rad], the sample (of the evader
-alone), rule, aim [m; NED] and time until then [s].
+the air [rad] of the last decision. `decided` (players, 6): course [rad], rule, aim [m; NED] and time until
+then [s].
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from onboard.core.game.views import Held
 from onboard.core.math.states import Vehicle
-from onboard.core.math.vectors import TINY, Vec, clamp, pitch_of, yaw_of
+from onboard.core.math.vectors import TINY, Vec, clamp, yaw_of
 from onboard.core.strategy.choosing import held_after
 from onboard.core.strategy.knowledge import Decision
 from sim_bridge.campaign.plane_in_wind import Flown
@@ -22,7 +22,7 @@ from sim_bridge.vehicle.wind.estimate import Estimate
 
 Array = NDArray[np.float64]
 KNOWS = 9  # numbers of a row of `states`
-DECIDES = 8  # numbers of a row of `decided`
+DECIDES = 6  # numbers of a row of `decided`
 
 
 def known(states: Array, index: int) -> Vehicle:
@@ -63,16 +63,15 @@ def note_wind(states: Array, index: int, wind: Estimate) -> None:
 def held_by(decided: Array, index: int, since: float, wind: Vec) -> Held:
     """What player `index` decided `since` [s] ago leaves to its next decision."""
     i, d = index, decided
-    aim = Vec(d[i, 4], d[i, 5], d[i, 6])
-    return held_after(int(d[i, 3]), aim, d[i, 7], since, wind)
+    aim = Vec(d[i, 2], d[i, 3], d[i, 4])
+    return held_after(int(d[i, 1]), aim, d[i, 5], since, wind)
 
 
 def write_down(decided: Array, index: int, decision: Decision) -> None:
     """Keep what player `index` decided: see `decide_all`."""
     decided[index, 0] = yaw_of(decision.direction)
-    decided[index, 1] = pitch_of(decision.direction)
-    decided[index, 3] = decision.rule * 1  # a number, which an IntEnum is not to numba
-    decided[index, 4] = decision.aim.x
-    decided[index, 5] = decision.aim.y
-    decided[index, 6] = decision.aim.z
-    decided[index, 7] = decision.time
+    decided[index, 1] = decision.rule * 1  # a number, which an IntEnum is not to numba
+    decided[index, 2] = decision.aim.x
+    decided[index, 3] = decision.aim.y
+    decided[index, 4] = decision.aim.z
+    decided[index, 5] = decision.time

@@ -10,10 +10,10 @@ from onboard.core.game.advance import EvaderStrategy, PursuerStrategy
 from onboard.core.strategy.knowledge import Decision
 from onboard.core.strategy.team.flying import pursuer_team
 from onboard.core.strategy.team.planner import engaged
-from sim_bridge.campaign.spatial_game import Array, Chosen, SpatialPlay, Start, Ways
-from sim_bridge.campaign.spatial_lanes import InLanes, moved_in_lanes
-from sim_bridge.campaign.spatial_play import approach, moved_one_by_one, play
-from sim_bridge.campaign.team_play import stand_by
+from sim_bridge.campaign.spatial_game import Array, Chosen, SpatialPlay, Start, Ways, planned_by
+from sim_bridge.campaign.spatial_lanes import moved_in_lanes
+from sim_bridge.campaign.spatial_play import Flying, approach, moved_one_by_one, play
+from sim_bridge.campaign.team_play import SILENT, Messages
 
 FEW = 2  # strategies of a side that are worth a copy for each of its players
 
@@ -59,21 +59,23 @@ def _either(
 def machine(
     evaders: tuple[EvaderStrategy, ...], pursuers: tuple[PursuerStrategy, ...], in_lanes: bool
 ) -> Callable[..., SpatialPlay]:
-    """The game of these strategies: `play` of a start, `Chosen`, a sky and a log.
+    """The game of these strategies: `play` of a start, `Chosen`, who flies (`Flying`) and a log.
 
     One compiled kernel holds all of them, so that a matrix of strategies is compiled once. `in_lanes`: the
     sky is `InLanes`, for a kernel that is compiled, else `OneByOne`.
     """
     evade, pursue = among(evaders), among(pursuers)
-    planner = engaged if pursuer_team in pursuers else stand_by
+    messages = planned_by(engaged) if pursuer_team in pursuers else SILENT
+    begin, exchange, part = messages
     motion = moved_in_lanes if in_lanes else moved_one_by_one
 
-    def played(start: Start, chosen: Chosen, sky: Any, log: Array) -> SpatialPlay:
-        return play(start, Ways(evade, pursue, chosen, planner), motion(), sky, log)
+    def played(start: Start, chosen: Chosen, flying: Flying, log: Array) -> SpatialPlay:
+        ways = Ways(evade, pursue, chosen, Messages(begin, exchange, part))
+        return play(start, ways, motion(), flying, log)
 
     return played
 
 
-def approach_in_lanes(start: Start, sky: InLanes) -> None:
+def approach_in_lanes(start: Start, flying: Flying) -> None:
     """`approach` for a kernel that is compiled."""
-    approach(start, moved_in_lanes(), sky)
+    approach(start, moved_in_lanes(), flying)

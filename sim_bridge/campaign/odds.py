@@ -33,7 +33,7 @@ from onboard.game.odds import NAMES, Outcome, Sheet, Table, engagement, features
 from onboard.game.scenario import Scenario, VehicleSpec
 from sim_bridge.campaign.compiled import campaign, starts_of
 from sim_bridge.campaign.plane_in_wind import drawn_wind
-from sim_bridge.campaign.spatial_draw import KERNELS, draw, kernel_of, sky_of, spatial
+from sim_bridge.campaign.spatial_draw import KERNELS, draw, kernel_of, log_of, sky_of, spatial
 from sim_bridge.campaign.spatial_game import Chosen
 
 EVADING = ("paper", "evasive")
@@ -153,8 +153,7 @@ def space_part(games: int, count: int, before: int = 0) -> Part:
         verdicts = []
         for number in range(len(EVADING)):
             d = draw(scenario, 0)
-            log = np.zeros((d.steps, count + 1, 5))
-            verdicts.append(play(d.start, Chosen(number, (0,) * count), sky_of(d, True), log))
+            verdicts.append(play(d.start, Chosen(number, (0,) * count), sky_of(d, True), log_of(d)))
         rows.append(features(engagement_of(scenario)))
         ends.append([int(found.game.score.verdict) for found in verdicts])
     return Part(np.array(rows), np.array(ends), sources())

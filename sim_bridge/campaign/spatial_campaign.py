@@ -19,7 +19,7 @@ from onboard.game.scenario import Scenario
 from onboard.runtime.progress import Tell, over, part, silent
 from onboard.runtime.run_folder import made
 from onboard.runtime.whole_files import write_whole
-from sim_bridge.campaign.spatial_draw import T0, Draw, compiled_kernel, draw, kernel_of, sky_of
+from sim_bridge.campaign.spatial_draw import T0, Draw, compiled_kernel, draw, kernel_of, log_of, sky_of
 from sim_bridge.campaign.spatial_game import Evasion, SpatialPlay
 
 REVERSAL = radians(10.0)  # a turn one way, then the other
@@ -49,7 +49,7 @@ def play_seed(
 
 def play_drawn(d: Draw, evasion: int, compiled: bool = True) -> Played:
     """Play a drawn game out. It uses up the draw's tracks; `evasion`: the evader's way among its sides."""
-    log = np.zeros((d.steps, len(d.players), 6))
+    log = log_of(d)
     sides = d.sides
     chosen = sides.chosen._replace(evader=int(evasion))
     found = kernel_of(sides.evaders, sides.pursuers, compiled)(d.start, chosen, sky_of(d, compiled), log)

@@ -13,12 +13,14 @@ from math import radians
 from typing import Any, NamedTuple, TypeVar, cast
 
 import msgspec
+import numpy as np
 
 from onboard.config.strict import ConfigError, FieldError
 from onboard.core.game.advance import EvaderStrategy, PursuerStrategy
 from onboard.core.math.vectors import Vec, sub, yaw_of
 from onboard.core.safety.policy import Fence
-from onboard.core.strategy.registry import EVADERS, pursuer_named
+from onboard.core.strategy.registry import EVADERS, PURSUERS, pursuer_named
+from onboard.core.strategy.team.flying import pursuer_team
 from onboard.core.strategy.team.planner import EVERY
 from onboard.game.plugins import evader_strategy, pursuer_strategy
 from onboard.game.scenario import AirframeKind, Kind, Scenario, VehicleSpec, load
@@ -33,9 +35,25 @@ from sim_bridge.campaign.kernel_cache import kernel
 from sim_bridge.campaign.lanes import twins
 from sim_bridge.campaign.machine import approach_in_lanes, machine
 from sim_bridge.campaign.plane_in_wind import Flown, climate_of, drawn_wind, launched, wind_at
-from sim_bridge.campaign.spatial_game import Chosen, Fleet, Pace, Start, load_aboard
+from sim_bridge.campaign.spatial_game import (
+    Array,
+    Chosen,
+    Fleet,
+    Pace,
+    SpatialPlay,
+    Start,
+    load_aboard,
+)
 from sim_bridge.campaign.spatial_lanes import InLanes, in_lanes_of, players_of, tracks_of, winds_of
-from sim_bridge.campaign.spatial_play import OneByOne, approach, moved_one_by_one, one_by_one
+from sim_bridge.campaign.spatial_play import (
+    LOGGED,
+    Flying,
+    OneByOne,
+    approach,
+    desk_of,
+    moved_one_by_one,
+    one_by_one,
+)
 from sim_bridge.campaign.team_play import Planning
 from sim_bridge.campaign.tracks import Eye, Tracks, no_tracks
 from sim_bridge.draws import Purpose, Stream, key_of
@@ -107,6 +125,11 @@ class Draw(NamedTuple):
     tracks: Tracks
     steps: int  # control steps at most
     sides: Sides
+
+
+def log_of(d: Draw) -> Array:
+    """Room for a drawn game's log, (steps, players, LOGGED)."""
+    return np.zeros((d.steps, len(d.players), LOGGED))
 
 
 def spatial(name: str) -> Scenario:
@@ -197,11 +220,11 @@ def draw(scenario: Scenario, seed: int, t0: float = T0, compiled: bool = True) -
     crew = crew_of(players, start, specs, winds)
     if compiled:
         lanes = in_lanes_of(start, players, level, crew, tracks)
-        compiled_kernel(approach_in_lanes)(start, lanes)
+        compiled_kernel(approach_in_lanes, False)(start, Flying(lanes, desk_of(len(players))))
         flown, tracks, winds = players_of(lanes), tracks_of(lanes), winds_of(lanes)
     else:
         sky = one_by_one(players, level, crew, tracks)
-        approach(start, moved_one_by_one(), sky)
+        approach(start, moved_one_by_one(), Flying(sky, desk_of(len(players))))
         flown, winds = sky.players, [load_aboard(sky.crew, i, 0).wind for i in range(len(players))]
     crew = crew_of(flown, start, specs, winds)
     steps = int(conditions.rules.horizon / (control * dt)) + 8
@@ -315,22 +338,42 @@ def crew_of(
 
 
 @cache
-def compiled_kernel(function: Callable[..., Any]) -> Callable[..., Any]:
-    """A kernel of the game compiled; once for each number of pursuers."""
+def compiled_kernel(function: Callable[..., Any], counted: bool = True) -> Callable[..., Any]:
+    """A kernel of the game compiled (`kernel`); once for each number of pursuers."""
     register(KERNELS)
     register_strategies(twins())
     for cell in function.__closure__ or ():
         register_strategies((cell.cell_contents,))
-    return kernel(function, error_model="numpy")
+    return kernel(function, counted, "numpy")
 
 
 @cache
 def kernel_of(
     evaders: tuple[EvaderStrategy, ...], pursuers: tuple[PursuerStrategy, ...], compiled: bool
 ) -> Callable[..., Any]:
-    """The whole game of these strategies (`machine`), compiled or not; once for each number of pursuers."""
-    if not compiled:
-        return machine(evaders, pursuers, in_lanes=False)
+    """The whole game of these strategies: `play(start, chosen, sky, log)`; compiled, once for each number of
+    pursuers.
+
+    `log` (control steps, players, LOGGED) as `spatial_play.play` writes it; ValueError for another shape.
+    """
+    game = _compiled_game(evaders, pursuers) if compiled else machine(evaders, pursuers, in_lanes=False)
+
+    def play(start: Start, chosen: Chosen, sky: InLanes | OneByOne, log: Array) -> SpatialPlay:
+        players = len(start.policies)
+        if log.ndim != 3 or log.shape[1:] != (players, LOGGED):
+            raise ValueError(f"log: shape {log.shape}, expected (steps, {players}, {LOGGED})")
+        found: SpatialPlay = game(start, chosen, Flying(sky, desk_of(players)), log)
+        return found
+
+    return play
+
+
+def _compiled_game(
+    evaders: tuple[EvaderStrategy, ...], pursuers: tuple[PursuerStrategy, ...]
+) -> Callable[..., Any]:
+    # A team keeps its plans in lists, a plug-in may make some; others play without counting references.
+    known = {*(one.decide for one in (*EVADERS.values(), *PURSUERS.values()))} - {pursuer_team}
+    counted = not known.issuperset((*evaders, *pursuers))
     evaders, pursuers = in_arrays(evaders), in_arrays(pursuers)
     register_strategies((*evaders, *pursuers))
-    return compiled_kernel(machine(evaders, pursuers, in_lanes=True))
+    return compiled_kernel(machine(evaders, pursuers, in_lanes=True), counted)

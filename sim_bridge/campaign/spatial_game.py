@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from enum import IntEnum
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,13 +34,14 @@ from onboard.core.math.states import Mate, Vehicle
 from onboard.core.math.vectors import Vec, scale
 from onboard.core.safety.policy import Policy
 from onboard.core.strategy.knowledge import Decision
-from onboard.core.strategy.team.plan_types import Plan, Situation
+from onboard.core.strategy.team.plan_types import Assignment, Plan, Situation
+from onboard.core.strategy.team.planner import no_plan
 from sim_bridge.campaign.aboard import NOBODY, Aboard, Autopilot, Instant, aware, commanded, ordered
 from sim_bridge.campaign.envelope import Envelope
 from sim_bridge.campaign.lanes import packing
 from sim_bridge.campaign.ledger import held_by, known, known_nose, known_wind, write_down
 from sim_bridge.campaign.plane_in_wind import Climate, Flown, blown, fly, gust_at, gust_tick, wind_at
-from sim_bridge.campaign.team_play import Planning, Talk, arrived, posted, seat, stand_by
+from sim_bridge.campaign.team_play import SILENT, Messages, Planning, Talk, arrived, opened, posted, seat
 from sim_bridge.campaign.tracks import Eye, Tracks, track_of
 from sim_bridge.draws import Key
 from sim_bridge.vehicle.flight.plane import Command, PlaneModel, nose_yaw, true_airspeed
@@ -74,7 +75,7 @@ class Ways(NamedTuple):
     evader: Callable[[EvaderView, int], Decision]
     pursuer: Callable[[PursuerView, int], Decision]
     chosen: Chosen
-    planner: Callable[[Situation, Plan], Plan] = stand_by  # of the pursuers' team
+    messages: Messages = SILENT  # of the pursuers' team
 
 
 class Fleet(NamedTuple):
@@ -130,7 +131,7 @@ class Deciding(NamedTuple):
     now: int  # sample
     ways: Ways
     decided: Array  # as `decide_all` has it
-    talk: Talk
+    talk: Any  # what `Messages.begin` gave
 
 
 def in_air(vehicle: Vehicle, wind: Vec, speed: float) -> Vehicle:
@@ -196,7 +197,7 @@ def decide_pursuer(vehicle: Vehicle, index: int, side: Side) -> Decision:
         mate = nearest_mate(own.position, positions(members), index)
     me = in_air(own, wind, vehicle.speed)
     held = held_by(team.decided, index + 1, control.dt, wind)
-    part = team.talk.parts[index]
+    part = team.ways.messages.part(team.talk, index)
     nose = known_nose(team.states, index + 1, vehicle.speed)
     mine = Team(mate, members, index, told(start.conditions.target, rules), held, part, nose)
     view = pursuer_view(me, game.pursuer_limits[index], sighting, mine, control, rules)
@@ -240,6 +241,26 @@ def situation(team: Deciding) -> Situation:
     )  # fmt: skip
 
 
+def part_heard(talk: Talk, index: int) -> Assignment:
+    """`Messages.part` of a team that plans."""
+    return talk.parts[index]
+
+
+def planned_by(planner: Callable[[Situation, Plan], Plan]) -> Messages:
+    """The messages of a team that plans."""
+
+    def talk_of(pursuers: tuple[Vehicle, ...], planning: Planning) -> Talk:
+        return opened(no_plan(each(seat, pursuers, planning), 0.0))
+
+    def exchanged(team: Deciding, step: int) -> None:
+        planning = team.start.planning
+        if step % planning.every == 0:
+            posted(team.talk, planning, planner(situation(team), team.talk.made[0]), step)
+        arrived(team.talk, planning, step)
+
+    return Messages(talk_of, exchanged, part_heard)
+
+
 def evader_sees(team: Deciding) -> EvaderView:
     """The situation as the evader sees it."""
     start, states = team.start, team.states
@@ -252,14 +273,10 @@ def evader_sees(team: Deciding) -> EvaderView:
 
 
 def decide_all(team: Deciding, crew: Array, step: int) -> None:
-    """Everybody's decision into `crew`, evader first, and into the team's `decided` (players, 8): course and
-    pitch [rad], the sample (of the evader), rule, aim [m; NED] and time until then [s]."""
+    """Everybody's decision into `crew`, evader first, and into the team's `decided`: see `ledger`."""
     start, ways, states, now = team.start, team.ways, team.states, team.now
-    game, planning, decided = start.game, start.planning, team.decided
-    decided[0, 2] = now
-    if step % planning.every == 0:
-        posted(team.talk, planning, ways.planner(situation(team), team.talk.made[0]), step)
-    arrived(team.talk, planning, step)
+    game, decided = start.game, team.decided
+    ways.messages.exchange(team, step)
     decision = ways.evader(evader_sees(team), ways.chosen.evader)
     alone = each(nobody, game.pursuers, 0.0)  # nobody is the evader's mate
     store_aboard(crew, 0, 0, order(start, alone, decision, states, (0, now), load_aboard(crew, 0, 0)))

@@ -16,7 +16,6 @@ from onboard.core.game.advance import begin, judged
 from onboard.core.game.referee import GameResult
 from onboard.core.math.each import each
 from onboard.core.math.vectors import ZERO, Vec
-from onboard.core.strategy.team.planner import no_plan
 from sim_bridge.campaign.envelope import UNMOVED, Envelope, widened
 from sim_bridge.campaign.ledger import DECIDES, KNOWS, known, note, note_wind
 from sim_bridge.campaign.plane_in_wind import Flown
@@ -37,9 +36,10 @@ from sim_bridge.campaign.spatial_game import (
     store_aboard,
     weathered,
 )
-from sim_bridge.campaign.team_play import opened, seat
 from sim_bridge.campaign.tracks import Tracks, watched
 from sim_bridge.vehicle.flight.plane import Command, placed
+
+LOGGED = 6  # numbers of a player in a row of a game's log
 
 
 class Motion(NamedTuple):
@@ -70,15 +70,35 @@ class OneByOne(NamedTuple):
     reach: list[Envelope]  # one, of all of them
 
 
-def approach(start: Start, motion: Motion, sky: Any) -> None:
+class Desk(NamedTuple):
+    """Room for what is known and decided: compiled games make no arrays."""
+
+    here: Array  # (players, 9) now: see `ledger`
+    before: Array  # (players, 9) a sample ago
+    decided: Array  # (players, 6)
+
+
+def desk_of(players: int) -> Desk:
+    """The desk of a game."""
+    return Desk(np.zeros((players, KNOWS)), np.zeros((players, KNOWS)), np.zeros((players, DECIDES)))
+
+
+class Flying(NamedTuple):
+    """Whatever holds the vehicles' states, and the desk of who flies them."""
+
+    sky: Any
+    desk: Desk
+
+
+def approach(start: Start, motion: Motion, flying: Flying) -> None:
     """Fly on the start's heading until t₀ and be at the start's place then.
 
     What gusts make of an aircraft in that time is so what they make of it in flight before t₀, and neither
     tracks nor estimates of the wind are new.
     """
-    here = np.zeros((len(start.game.pursuers) + 1, KNOWS))
+    sky, (here, places, _decided) = flying.sky, flying.desk
     motion.note(sky, here)
-    places = here.copy()
+    keep(places, here)
     for sample in range(start.pace.t0):
         motion.watch(sky, start, sample, here)
         if sample % WIND_EVERY == 0:
@@ -87,21 +107,20 @@ def approach(start: Start, motion: Motion, sky: Any) -> None:
     motion.put(sky, here, places)
 
 
-def play(start: Start, ways: Ways, motion: Motion, sky: Any, log: Array) -> SpatialPlay:
+def play(start: Start, ways: Ways, motion: Motion, flying: Flying, log: Array) -> SpatialPlay:
     """Play a game out from t₀.
 
     `log` (steps, players, 6): position [m; NED], flown and decided course [rad], rule; evader first.
     """
     first, pace = start.game, start.pace
+    sky, (here, before, decided) = flying.sky, flying.desk
     # A score of its own: that of the start holds plain numbers, and a judged one a member of `GameResult`.
     game = begin(first.evader, first.pursuers, first.evader_limits, first.pursuer_limits)
     count = len(start.game.pursuers) + 1
-    here = np.zeros((count, KNOWS))
-    decided = np.zeros((count, DECIDES))
     motion.note(sky, here)
     head(motion, sky, here)
-    before = here.copy()
-    talk = opened(no_plan(each(seat, game.pursuers, start.planning), 0.0))
+    keep(before, here)
+    talk = ways.messages.begin(game.pursuers, start.planning)
     steps = 0
     sample = pace.t0
     while game.score.verdict == GameResult.RUNNING:
@@ -116,12 +135,12 @@ def play(start: Start, ways: Ways, motion: Motion, sky: Any, log: Array) -> Spat
                     log[steps, i, 2] = here[i, 2]
                     log[steps, i, 3] = motion.course(sky, i)
                     log[steps, i, 4] = decided[i, 0]
-                    log[steps, i, 5] = decided[i, 3]
+                    log[steps, i, 5] = decided[i, 1]
             if sample % WIND_EVERY == 0:
                 motion.estimate(sky, start, here)
             if (sample + 1) % pace.control == pace.decides:
                 head(motion, sky, here)
-            before[:] = here
+            keep(before, here)
             motion.move(sky, start, sample, here)
             sample += 1
         motion.widen(sky, start)
@@ -133,6 +152,13 @@ def play(start: Start, ways: Ways, motion: Motion, sky: Any, log: Array) -> Spat
         )
         steps += 1
     return SpatialPlay(game, steps, sample - pace.t0, motion.reach(sky))
+
+
+def keep(before: Array, here: Array) -> None:
+    """Copy what is known (a copy in one would count who refers to its array)."""
+    for i in range(here.shape[0]):
+        for k in range(here.shape[1]):
+            before[i, k] = here[i, k]
 
 
 def head(motion: Motion, sky: Any, here: Array) -> None:

@@ -8,7 +8,8 @@ pursuer by a message of its own, after a delay, or is lost; who has heard nothin
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +22,6 @@ from onboard.core.strategy.team.plan_types import (
     Margin,
     Member,
     Plan,
-    Situation,
 )
 from sim_bridge.draws import WORD, Key, threefry, uniform
 
@@ -52,16 +52,36 @@ class Talk(NamedTuple):
     lost: Array  # 1 where the message that is under way is lost
 
 
+class Messages(NamedTuple):
+    """What passes between the pursuers of a game."""
+
+    begin: Callable[[tuple[Vehicle, ...], Planning], Any]  # what is kept of it
+    exchange: Callable[[Any, int], None]  # at a control step, of everybody who decides
+    part: Callable[[Any, int], Assignment]  # of a pursuer
+
+
+def nothing_kept(_pursuers: tuple[Vehicle, ...], _planning: Planning) -> int:
+    """`Messages.begin` of pursuers that fly each for itself."""
+    return 0
+
+
+def nothing_said(_team: Any, _step: int) -> None:
+    """`Messages.exchange` of pursuers that fly each for itself."""
+
+
+def no_part(_talk: int, _index: int) -> Assignment:
+    """`Messages.part` of pursuers that fly each for itself."""
+    return IDLE
+
+
+SILENT = Messages(nothing_kept, nothing_said, no_part)
+
+
 def opened(first: Plan) -> Talk:
     """Before the first plan: nobody has a part."""
     count = len(first.assignments)
     nothing = [first.assignments[i] for i in range(count)]
     return Talk([first], nothing, nothing.copy(), np.full(count, -1.0), np.zeros(count))
-
-
-def stand_by(_situation: Situation, previous: Plan) -> Plan:
-    """A planner that plans nothing: for teams that fly each for itself."""
-    return previous
 
 
 def seat(vehicle: Vehicle, index: int, planning: Planning) -> Member:

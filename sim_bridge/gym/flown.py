@@ -20,7 +20,6 @@ from onboard.core.math.states import Vehicle
 from onboard.core.math.vectors import ZERO, Vec
 from onboard.core.strategy.features import Form, Turn, answer, evader_features, pursuer_features
 from onboard.core.strategy.knowledge import Decision
-from onboard.core.strategy.team.planner import no_plan
 from sim_bridge.campaign.ledger import known
 from sim_bridge.campaign.spatial_game import (
     WIND_EVERY,
@@ -36,7 +35,7 @@ from sim_bridge.campaign.spatial_game import (
 )
 from sim_bridge.campaign.spatial_lanes import InLanes
 from sim_bridge.campaign.spatial_play import Motion, head
-from sim_bridge.campaign.team_play import opened, seat, stand_by
+from sim_bridge.campaign.team_play import Messages, no_part, nothing_kept, nothing_said
 from sim_bridge.campaign.tracks import Tracks
 from sim_bridge.gym.exchange import Exchange
 from sim_bridge.gym.simple import Run, idle_evader, idle_pursuer, note_end, reward
@@ -105,7 +104,7 @@ def sky_in_lanes(skies: InLanes, game: int) -> InLanes:
 
 def ways_of(evader: Any, pursuer: Any, chair: Any, chairs: Any) -> Ways:
     """Everybody asked by a function of a view and a chair, and no plan for the team."""
-    return Ways(evader, pursuer, Chosen(chair, chairs), stand_by)
+    return Ways(evader, pursuer, Chosen(chair, chairs), Messages(nothing_kept, nothing_said, no_part))
 
 
 def chair_of(_vehicle: Vehicle, index: int, seats: Seats) -> Chair:
@@ -194,8 +193,7 @@ def judge_now(here: Here, start: Start, states: Array, exchange: Exchange) -> No
 
 def team_at(g: int, start: Start, skies: Skies, ways: Ways, sky: Any) -> Deciding:
     """Everybody in game `g` before a decision; the team has no plan."""
-    talk = opened(no_plan(each(seat, start.game.pursuers, start.planning), 0.0))
-    return Deciding(start, skies.before[g], sky.seen, skies.samples[g], ways, skies.decided[g], talk)
+    return Deciding(start, skies.before[g], sky.seen, skies.samples[g], ways, skies.decided[g], 0)
 
 
 def glide(here: Here, start: Start, skies: Skies, exchange: Exchange, craft: Craft, decided: bool) -> None:

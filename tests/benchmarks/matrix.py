@@ -28,7 +28,7 @@ from onboard.game.scenario import Scenario
 from sim_bridge.campaign import encircled
 from sim_bridge.campaign.compiled import campaign, starts_of
 from sim_bridge.campaign.plane_in_wind import drawn_wind
-from sim_bridge.campaign.spatial_draw import draw, kernel_of, sky_of, spatial
+from sim_bridge.campaign.spatial_draw import draw, kernel_of, log_of, sky_of, spatial
 from sim_bridge.campaign.spatial_game import Chosen
 from tests.support import benchmark_record
 
@@ -82,9 +82,8 @@ def in_space(_kind: str, games: int, pairs: list[Pair]) -> Iterator[tuple[Pair, 
         verdicts = []
         for seed in range(1, games + 1):
             d = draw(ring(seed), 0)
-            log = np.zeros((d.steps, COUNT + 1, 5))
             chosen = Chosen(evading.index(e), (pursuing.index(p),) * COUNT)
-            verdicts.append(int(play(d.start, chosen, sky_of(d, True), log).game.score.verdict))
+            verdicts.append(int(play(d.start, chosen, sky_of(d, True), log_of(d)).game.score.verdict))
         yield (e, p), verdicts
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from enum import IntEnum
-from math import sqrt
+from math import inf, sqrt
 from typing import NamedTuple
 
 from onboard.core.game.rules import Rules, Target
@@ -21,6 +21,9 @@ class GameResult(IntEnum):
     DENIED = 4  # neither captured nor arrived at the horizon, when a pursuer can be at the target first
 
 
+NEARLY = 1.0 + 1e-9  # a square within this share of another may count as no larger: a root tells
+
+
 class Passage(NamedTuple):
     """Two straight segments flown in the same step."""
 
@@ -30,8 +33,18 @@ class Passage(NamedTuple):
     entry: float  # share of the step at which it does, 0…1
 
 
-def passage(a0: Vec, a1: Vec, b0: Vec, b1: Vec, radius: float) -> Passage:
-    """Closest approach of a (a0 → a1) and b (b0 → b1) [m], and when they come within `radius` [m]."""
+class Closest(NamedTuple):
+    """The squares behind a passage."""
+
+    cc: float  # of the distance at the beginning [m²]
+    bb: float  # its product with the way relative to each other
+    aa: float  # of that way
+    when: float  # share of the step at the closest approach, 0…1
+    square: float  # of the smallest distance
+
+
+def closest(a0: Vec, a1: Vec, b0: Vec, b1: Vec) -> Closest:
+    """Closest approach of a (a0 → a1) and b (b0 → b1), without a root; a division only where it lies within."""
     r0 = sub(a0, b0)
     x = a1.x - b1.x - r0.x
     y = a1.y - b1.y - r0.y
@@ -40,9 +53,15 @@ def passage(a0: Vec, a1: Vec, b0: Vec, b1: Vec, radius: float) -> Passage:
     aa = x * x + y * y + z * z
     bb = r0.x * x + r0.y * y + r0.z * z
     when = 0.0
-    if aa > TINY * TINY:
-        when = min(1.0, max(0.0, -bb / aa))
-    smallest = sqrt(max(0.0, cc + when * (2.0 * bb + when * aa)))
+    if aa > TINY * TINY and bb < 0.0:
+        when = 1.0 if -bb >= aa else -bb / aa
+    return Closest(cc, bb, aa, when, max(0.0, cc + when * (2.0 * bb + when * aa)))
+
+
+def passage(a0: Vec, a1: Vec, b0: Vec, b1: Vec, radius: float) -> Passage:
+    """Closest approach of a (a0 → a1) and b (b0 → b1) [m], and when they come within `radius` [m]."""
+    cc, bb, aa, when, square = closest(a0, a1, b0, b1)
+    smallest = sqrt(square)
     if cc <= radius * radius:
         return Passage(smallest, when, True, 0.0)
     if smallest > radius or aa <= TINY * TINY:
@@ -95,17 +114,20 @@ def judge(score: Score, step: Step, rules: Rules, target: Target) -> Score:
     if score.verdict != GameResult.RUNNING:
         return score
     start, dt, e0, e1, before, after, _speed, _speeds = step
-    smallest = score.smallest
-    near = False
+    least = inf
     captor = -1
     capture = 2.0
     for index in range(len(before)):
-        seen = passage(before[index], after[index], e0, e1, rules.R)
-        smallest = min(smallest, seen.smallest)
-        near = near or seen.smallest < rules.rho
-        if seen.enters and seen.entry < capture:
-            capture = seen.entry
-            captor = index
+        square = closest(before[index], after[index], e0, e1).square
+        least = min(least, square)
+        if square <= NEARLY * rules.R * rules.R:
+            seen = passage(before[index], after[index], e0, e1, rules.R)
+            if seen.enters and seen.entry < capture:
+                capture = seen.entry
+                captor = index
+    nearest = sqrt(least)  # as the smallest of the roots is the root of the smallest
+    smallest = min(score.smallest, nearest)
+    near = nearest < rules.rho
     unsafe = score.unsafe + dt if near else score.unsafe
     share = (rules.horizon - start) / dt
     if captor >= 0 and capture <= share:
@@ -113,7 +135,8 @@ def judge(score: Score, step: Step, rules: Rules, target: Target) -> Score:
         if not target.exists or not arrival.enters or capture <= arrival.entry:
             smallest = min(score.smallest, _nearest(capture, e0, e1, before, after))
             return Score(GameResult.CAPTURED, start + capture * dt, captor, smallest, unsafe)
-    if target.exists:
+    reach = rules.epsilon_min
+    if target.exists and closest(target.position, target.position, e0, e1).square <= NEARLY * reach * reach:
         arrival = passage(target.position, target.position, e0, e1, rules.epsilon_min)
         if arrival.enters and arrival.entry <= share:
             smallest = min(score.smallest, _nearest(arrival.entry, e0, e1, before, after))

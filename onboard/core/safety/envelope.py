@@ -86,14 +86,17 @@ def slewed(v: Vec, before: Vec, dt: float, e: Envelope) -> Clipped:
         return Clipped(Vec(before.x + x * k, before.y + y * k, before.z + z * k), Cause.ACCELERATION)
     cause = Cause.NONE
     level = sqrt(v.x * v.x + v.y * v.y)
-    course = atan2(v.y, v.x)
+    flat = Vec(v.x / level, v.y / level, 0.0) if level > TINY else Vec(1.0, 0.0, 0.0)
     if e.turn_rate > 0.0 and level > TINY and before.x * before.x + before.y * before.y > TINY:
-        old = atan2(before.y, before.x)
-        turn = wrap(course - old)
+        ahead = before.x * v.x + before.y * v.y
+        across = before.x * v.y - before.y * v.x
         most = e.turn_rate * dt
-        if abs(turn) > most * (1.0 + TOLERANCE):
-            course = old + clamp(turn, -most, most)
-            cause = Cause.TURN
+        if abs(across) > most * ahead:  # else tan of the turn is at most `most`, and so is the turn
+            turn = wrap(atan2(across, ahead))
+            if abs(turn) > most * (1.0 + TOLERANCE):
+                course = atan2(before.y, before.x) + clamp(turn, -most, most)
+                flat = Vec(cos(course), sin(course), 0.0)
+                cause = Cause.TURN
     speed = sqrt(level * level + v.z * v.z)
     z = v.z
     if e.acceleration > 0.0:
@@ -106,7 +109,7 @@ def slewed(v: Vec, before: Vec, dt: float, e: Envelope) -> Clipped:
                 speed = held
         z = clamp(z, before.z - most, before.z + most)
     level = sqrt(max(0.0, speed * speed - z * z))
-    return Clipped(Vec(level * cos(course), level * sin(course), z), cause)
+    return Clipped(Vec(level * flat.x, level * flat.y, z), cause)
 
 
 def _flat(v: Vec) -> Vec:

@@ -12,6 +12,7 @@ from math import atan2, cos, pi, sin, sqrt
 from typing import NamedTuple
 
 from onboard.core.math.angles import wrap
+from onboard.core.math.each import each
 from onboard.core.math.vectors import TINY, Vec, clamp
 from onboard.core.safety.policy import Cause, Envelope, Fence, Policy
 
@@ -114,11 +115,46 @@ def keep_height(v: Vec, position: Vec, fence: Fence, margin: float, reaction: fl
     return Fenced(Vec(v.x, v.y, -climb), cause)
 
 
+class _Braking(NamedTuple):
+    """Who brakes before walls (for `each`)."""
+
+    position: Vec
+    policy: Policy
+
+
+class _Wall(NamedTuple):
+    """A wall's direction, and how fast it may be approached [m/s]."""
+
+    x: float
+    y: float
+    most: float
+
+
+class _Fencing(NamedTuple):
+    """A fence, and who brakes before it (for `each`)."""
+
+    fence: Fence
+    braking: _Braking
+
+
+def _walls(fence: Fence, _index: int, braking: _Braking) -> tuple[_Wall, ...]:
+    """All walls of a fence (for `each`)."""
+    return each(_wall, fence.polygon, _Fencing(fence, braking))
+
+
+def _wall(corner: tuple[float, float], index: int, fencing: _Fencing) -> _Wall:
+    """The wall that ends in a corner of a fence (for `each`)."""
+    (fence, (position, policy)) = fencing
+    px, py = fence.polygon[(index if index > 0 else len(fence.polygon)) - 1]
+    wall = nearest_on(position.x, position.y, px, py, corner[0], corner[1])
+    reaction = policy.reaction + policy.coast
+    most = stopping_speed(wall.distance - policy.fence_margin, policy.envelope.deceleration, reaction)
+    return _Wall((wall.x - position.x) / wall.distance, (wall.y - position.y) / wall.distance, most)
+
+
 def brake(v: Vec, position: Vec, policy: Policy) -> Fenced:
     """A multicopter's velocity, slowed towards every wall it could not stop before; outside, the way back."""
     fences, margin, e = policy.fences, policy.fence_margin, policy.envelope
-    reaction = policy.reaction + policy.coast
-    walls: list[tuple[float, float, float]] = []  # direction to the wall, and how fast it may be approached
     for fence in fences:
         if not inside(position.x, position.y, fence.polygon):
             home = nearest(position.x, position.y, fence.polygon)
@@ -130,24 +166,24 @@ def brake(v: Vec, position: Vec, policy: Policy) -> Fenced:
             px, py = qx, qy
             if wall.distance <= TINY:
                 return Fenced(Vec(0.0, 0.0, v.z), Cause.FENCE_AHEAD)
-            ux = (wall.x - position.x) / wall.distance
-            uy = (wall.y - position.y) / wall.distance
-            walls.append((ux, uy, stopping_speed(wall.distance - margin, e.deceleration, reaction)))
+    every = each(_walls, fences, _Braking(position, policy))
     x = v.x
     y = v.y
     changed = False
     for _ in range(PASSES):
-        for ux, uy, most in walls:
-            excess = x * ux + y * uy - most
-            if excess > 0.0:
-                x -= excess * ux
-                y -= excess * uy
-                changed = changed or excess > 1e-6
+        for walls in every:
+            for ux, uy, most in walls:
+                excess = x * ux + y * uy - most
+                if excess > 0.0:
+                    x -= excess * ux
+                    y -= excess * uy
+                    changed = changed or excess > 1e-6
     k = 1.0  # zero velocity keeps every bound, so scaling always ends well
-    for ux, uy, most in walls:
-        towards = x * ux + y * uy
-        if towards * k > most:
-            k = most / towards
+    for walls in every:
+        for ux, uy, most in walls:
+            towards = x * ux + y * uy
+            if towards * k > most:
+                k = most / towards
     return Fenced(Vec(x * k, y * k, v.z), Cause.FENCE_AHEAD if changed else Cause.NONE)
 
 
