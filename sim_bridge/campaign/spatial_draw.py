@@ -7,38 +7,31 @@ and the tracks' noise are those of `fly` with the seed of `drawn_scenario`.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from enum import IntEnum
 from functools import cache
-from math import radians
-from typing import Any, NamedTuple, TypeVar, cast
+from typing import Any, NamedTuple
 
 import msgspec
 import numpy as np
 
 from onboard.config.strict import ConfigError, FieldError
-from onboard.core.game.advance import EvaderStrategy, PursuerStrategy
+from onboard.core.game.advance import EvaderStrategy, PursuerStrategy, begin
 from onboard.core.math.vectors import Vec, sub, yaw_of
-from onboard.core.safety.policy import Fence
-from onboard.core.strategy.registry import EVADERS, PURSUERS, pursuer_named
+from onboard.core.strategy.registry import EVADERS, PURSUERS
 from onboard.core.strategy.team.flying import pursuer_team
-from onboard.core.strategy.team.planner import EVERY
-from onboard.game.plugins import evader_strategy, pursuer_strategy
-from onboard.game.scenario import AirframeKind, Kind, Scenario, VehicleSpec, load
+from onboard.game.scenario import Scenario, VehicleSpec, load
 from onboard.game.staging import places_of, start_headings
-from onboard.pilot.kalman import Learning
-from onboard.pilot.track_filter import FilterSettings
 from onboard.runtime.resources import configs
-from sim_bridge.campaign.aboard import Aboard, autopilot_of, boarded, policy_of
+from sim_bridge.campaign.aboard import Aboard, boarded
 from sim_bridge.campaign.compiled import KERNELS as CORE
 from sim_bridge.campaign.compiled import in_arrays, register, register_strategies
 from sim_bridge.campaign.kernel_cache import kernel
 from sim_bridge.campaign.lanes import twins
 from sim_bridge.campaign.machine import approach_in_lanes, machine
 from sim_bridge.campaign.plane_in_wind import Flown, climate_of, drawn_wind, launched, wind_at
+from sim_bridge.campaign.spatial_fixed import Sides, demand_spatial, fixed_of, plain
 from sim_bridge.campaign.spatial_game import (
     Array,
     Chosen,
-    Fleet,
     Pace,
     SpatialPlay,
     Start,
@@ -54,19 +47,12 @@ from sim_bridge.campaign.spatial_play import (
     moved_one_by_one,
     one_by_one,
 )
-from sim_bridge.campaign.team_play import Planning
-from sim_bridge.campaign.tracks import Eye, Tracks, no_tracks
-from sim_bridge.draws import Purpose, Stream, key_of
+from sim_bridge.campaign.tracks import Tracks, no_tracks
+from sim_bridge.draws import Purpose, key_of, normal, threefry
 from sim_bridge.plane_game.setup import (
-    conditions_of,
-    game_of,
-    heights_of,
-    margin_of,
-    nearest_of,
-    turn_rate_of,
+    vehicles_of,
 )
 from sim_bridge.vehicle.flight import KERNELS as FLIGHT
-from sim_bridge.vehicle.flight.aircraft import named, within
 from sim_bridge.vehicle.flight.plane import Command, Steer, start_state, trimmed
 from sim_bridge.vehicle.wind import KERNELS as WIND
 from sim_bridge.vehicle.wind.dryden import gust_noise
@@ -101,19 +87,7 @@ T0 = 6.5  # [s] from the beginning of the world to that of the game, as `fly --f
 DECIDES = 2  # samples after a multiple of 50 ms at which positions come and everybody decides
 PLACE_SIGMA = 300.0  # [m] by which a seed moves each pursuer's start, level
 HEIGHT_SIGMA = 60.0  # [m] and in height
-PLAN_LATE = 0.05  # [s] until a plan is heard over an undisturbed bus
-PLAN_PATIENCE = 5.0  # [s] without a plan after which a pursuer flies alone
 TURNS = 100  # draws of places within a fence
-
-T = TypeVar("T")
-
-
-class Sides(NamedTuple):
-    """The strategies of a game: those that its kernel holds, and who flies by which."""
-
-    evaders: tuple[EvaderStrategy, ...]
-    pursuers: tuple[PursuerStrategy, ...]
-    chosen: Chosen
 
 
 class Draw(NamedTuple):
@@ -154,15 +128,16 @@ def drawn_scenario(scenario: Scenario, seed: int, spread: Spread = Spread()) -> 
         return scenario
     replace = msgspec.structs.replace
     world = scenario.seed + seed
-    streams = [Stream(key_of(world, id, Purpose.PLACE), 4, block=1) for id in scenario.ids[1:]]
+    keys = [key_of(world, id, Purpose.PLACE) for id in scenario.ids[1:]]
     wind = replace(scenario.flight.wind, from_deg=drawn_wind(world))
     flight = replace(scenario.flight, wind=wind)
     fault: FieldError | None = None
     for turn in range(TURNS):
         pursuers = []
-        for spec, stream in zip(scenario.pursuers, streams, strict=True):
-            x, y, z, _spare = stream.at(turn)
-            moves = (spread.level * x, spread.level * y, spread.height * z)
+        for spec, key in zip(scenario.pursuers, keys, strict=True):
+            a, b = threefry(key.a, key.b, turn, 0)
+            c, _spare = threefry(key.a, key.b, turn, 1)
+            moves = (spread.level * normal(a), spread.level * normal(b), spread.height * normal(c))
             place = tuple(a + move for a, move in zip(spec.position, moves, strict=False))
             pursuers.append(replace(spec, position=place))
         try:
@@ -178,32 +153,27 @@ def draw(scenario: Scenario, seed: int, t0: float = T0, compiled: bool = True) -
     Raises ConfigError for a scenario that is not the compiled game's: see `demand_spatial`.
     """
     demand_spatial(scenario)
+    fixed = fixed_of(scenario)
     scenario = drawn_scenario(scenario, seed)
-    conditions = conditions_of(scenario)
     climate = climate_of(scenario.flight.wind)
     places = places_of(scenario)
-    aircraft = named(scenario.flight.airframe.value).model
-    fleet = Fleet(*(within(aircraft, spec.limits()) for spec in scenario.vehicles[:2]))
-    dt = fleet.evader.dt
-    control = round(1.0 / (scenario.flight.control_rate_hz * dt))
-    specs = scenario.vehicles
-    fence = scenario.flight.fence
-    fences = () if fence is None else (Fence(fence.polygon, fence.height_min, fence.height_max),)
-    keys = tuple(key_of(scenario.seed, id, Purpose.GUST) for id in scenario.ids)
+    fleet, dt, specs, world = fixed.fleet, fixed.fleet.evader.dt, scenario.vehicles, scenario.seed
+    keys = tuple(key_of(world, id, Purpose.GUST) for id in scenario.ids)
+    evader, *pursuers = vehicles_of(scenario, places)
+    game = begin(evader, tuple(pursuers), fixed.limits[0], fixed.limits[1:])
     start = Start(
-        game_of(scenario),
-        conditions._replace(control=conditions.control._replace(dt=control * dt)),
+        game._replace(score=plain(game.score)),
+        fixed.conditions,
         fleet,
         climate,
-        eye_of(scenario, dt),
-        Pace(round(t0 / dt), control, DECIDES % control),
-        tuple(policy_of(spec.limits(), fences, conditions.rules.separation) for spec in specs),
-        tuple(autopilot_of(spec.limits(), spec.speed, radians(spec.turn_rate_deg)) for spec in specs),
+        fixed.eye._replace(keys=tuple(key_of(world, id, Purpose.SENSOR) for id in scenario.ids)),
+        Pace(round(t0 / dt), fixed.control, DECIDES % fixed.control),
+        fixed.policies,
+        fixed.autopilots,
         keys,
-        tuple(drawn_errors(key_of(scenario.seed, id, Purpose.ESTIMATE)) for id in scenario.ids),
-        planning_of(scenario, control * dt),
+        tuple(drawn_errors(key_of(world, id, Purpose.ESTIMATE)) for id in scenario.ids),
+        fixed.planning._replace(key=key_of(world, 0, Purpose.PLAN)),
     )
-    start = plain(start)
     players: list[Flown] = []
     level: list[Command] = []
     headings = start_headings(scenario)
@@ -227,8 +197,7 @@ def draw(scenario: Scenario, seed: int, t0: float = T0, compiled: bool = True) -
         approach(start, moved_one_by_one(), Flying(sky, desk_of(len(players))))
         flown, winds = sky.players, [load_aboard(sky.crew, i, 0).wind for i in range(len(players))]
     crew = crew_of(flown, start, specs, winds)
-    steps = int(conditions.rules.horizon / (control * dt)) + 8
-    return Draw(start, flown, crew, tracks, steps, sides_of(scenario))
+    return Draw(start, flown, crew, tracks, fixed.steps, fixed.sides)
 
 
 def sky_of(d: Draw, compiled: bool) -> InLanes | OneByOne:
@@ -236,91 +205,6 @@ def sky_of(d: Draw, compiled: bool) -> InLanes | OneByOne:
     if compiled:
         return in_lanes_of(d.start, d.players, [], d.crew, d.tracks)
     return one_by_one(d.players, [], d.crew, d.tracks)
-
-
-def plain(value: T) -> T:
-    """A value of a NamedTuple with whole numbers in place of members of enumerations.
-
-    Numba tells the types of such a value at a glance, where it has to look at every member.
-    """
-    found: Any = value
-    if isinstance(value, tuple):
-        parts = [plain(part) for part in value]
-        found = type(value)(*parts) if hasattr(value, "_fields") else tuple(parts)
-    elif isinstance(value, IntEnum):
-        found = int(value)
-    return cast(T, found)
-
-
-def planning_of(scenario: Scenario, step: float) -> Planning:
-    """How the scenario's pursuers plan, as their agents do; `step` [s] is a control step.
-
-    The plan's messages are late and lost as those of the bus, where the scenario says so.
-    """
-    spec = scenario.flight.impairment
-    every = max(2, round(EVERY / step))
-    late = PLAN_LATE + (spec.delay_s + 0.5 * spec.jitter_s if spec.bus else 0.0)
-    limits = tuple(
-        one.limits()._replace(turn_rate=turn_rate_of(scenario, index))
-        for index, one in enumerate(scenario.vehicles)
-    )
-    return Planning(
-        every,
-        min(every - 1, max(1, round(late / step))),
-        spec.loss if spec.bus else 0.0,
-        round(PLAN_PATIENCE / step),
-        heights_of(scenario),
-        margin_of(scenario),
-        nearest_of(scenario),
-        limits,
-        key_of(scenario.seed, 0, Purpose.PLAN),
-    )
-
-
-def sides_of(scenario: Scenario) -> Sides:
-    """The scenario's strategies by name, and for the evader flying straight besides (number 1).
-
-    Raises ConfigError for an unknown name.
-    """
-    names = [pursuer_named(spec.strategy) for spec in scenario.pursuers]
-    different = list(dict.fromkeys(names))
-    return Sides(
-        (evader_strategy(scenario.evader.strategy), EVADERS["straight"].decide),
-        tuple(pursuer_strategy(name) for name in different),
-        Chosen(0, tuple(different.index(name) for name in names)),
-    )
-
-
-def demand_spatial(scenario: Scenario) -> None:
-    """Raise ConfigError for what the compiled game does not play."""
-    wind = scenario.flight.wind
-    spec = scenario.flight
-    faults = (
-        (wind.correlation_m > 0.0, "wind.correlation_m", f"{wind.correlation_m:g}", "0"),
-        (wind.recorded != "", "wind.recorded", wind.recorded, "a mean wind with gusts"),
-        (spec.airframe is AirframeKind.KINEMATIC, "airframe", "kinematic", "nose, slip or coordinated"),
-        (spec.autopilot is not Kind.ARDUPLANE, "autopilot", spec.autopilot.value, "arduplane"),
-    )
-    for wrong, key, found, expected in faults:
-        if wrong:
-            raise ConfigError(f"{scenario.name}: flight.{key}: found {found}, expected {expected}")
-
-
-def eye_of(scenario: Scenario, dt: float) -> Eye:
-    """The scenario's sensor, and the filters of its agents; `dt` [s] is a sample of the aircraft."""
-    spec = scenario.flight.sensor
-    f = FilterSettings()
-    return Eye(
-        max(1, round(1.0 / (spec.rate_hz * dt))),
-        round(spec.delay_s / dt),
-        spec.sigma,
-        spec.sigma_velocity,
-        spec.dropout,
-        f.sigma_min * f.sigma_min,
-        f.density,
-        Learning(f.density_min, f.density_max, f.adaptation),
-        tuple(key_of(scenario.seed, id, Purpose.SENSOR) for id in scenario.ids),
-    )
 
 
 def crew_of(
@@ -372,8 +256,8 @@ def _compiled_game(
     evaders: tuple[EvaderStrategy, ...], pursuers: tuple[PursuerStrategy, ...]
 ) -> Callable[..., Any]:
     # A team keeps its plans in lists, a plug-in may make some; others play without counting references.
-    known = {*(one.decide for one in (*EVADERS.values(), *PURSUERS.values()))} - {pursuer_team}
-    counted = not known.issuperset((*evaders, *pursuers))
+    own: set[Any] = {one.decide for one in EVADERS.values()} | {one.decide for one in PURSUERS.values()}
+    counted = not (own - {pursuer_team}).issuperset((*evaders, *pursuers))
     evaders, pursuers = in_arrays(evaders), in_arrays(pursuers)
     register_strategies((*evaders, *pursuers))
     return compiled_kernel(machine(evaders, pursuers, in_lanes=True), counted)

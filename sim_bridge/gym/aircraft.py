@@ -18,11 +18,11 @@ from sim_bridge.campaign.spatial_draw import (
     Draw,
     Spread,
     compiled_kernel,
-    demand_spatial,
     draw,
     drawn_scenario,
     sky_of,
 )
+from sim_bridge.campaign.spatial_fixed import demand_spatial
 from sim_bridge.campaign.spatial_lanes import InLanes, moved_in_lanes
 from sim_bridge.campaign.spatial_play import moved_one_by_one
 from sim_bridge.campaign.tracks import Tracks

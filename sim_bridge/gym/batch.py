@@ -21,7 +21,8 @@ from onboard.core.strategy.registry import EVADERS, PURSUERS
 from onboard.game.scenario import Scenario
 from sim_bridge.campaign.flight_lanes import WORD_BLOCK
 from sim_bridge.campaign.lanes import LANES, twins
-from sim_bridge.campaign.spatial_draw import KERNELS, eye_of
+from sim_bridge.campaign.spatial_draw import KERNELS
+from sim_bridge.campaign.spatial_fixed import eye_of
 from sim_bridge.campaign.tracks import WIDTH
 from sim_bridge.gym import simple
 from sim_bridge.gym.exchange import Exchange, demand_shapes, exchange

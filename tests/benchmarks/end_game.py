@@ -20,7 +20,8 @@ from onboard.core.strategy.registry import EVADERS, PURSUERS
 from onboard.game import palette
 from onboard.game.scenario import Scenario
 from sim_bridge.campaign.spatial_campaign import Played, play_drawn, share
-from sim_bridge.campaign.spatial_draw import Sides, draw
+from sim_bridge.campaign.spatial_draw import draw
+from sim_bridge.campaign.spatial_fixed import Sides
 from sim_bridge.campaign.spatial_game import Chosen, Evasion
 from tests.benchmarks.team import WAYS, apart
 from tests.benchmarks.team_cases import demand, game_of

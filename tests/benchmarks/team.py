@@ -31,7 +31,8 @@ from onboard.pilot.predictor_choice import Predicting
 from sim_bridge.campaign.fingerprint import fingerprint
 from sim_bridge.campaign.machine import machine
 from sim_bridge.campaign.spatial_campaign import Played, play_drawn
-from sim_bridge.campaign.spatial_draw import Sides, draw
+from sim_bridge.campaign.spatial_draw import draw
+from sim_bridge.campaign.spatial_fixed import Sides
 from sim_bridge.campaign.spatial_game import Chosen, Evasion
 from sim_bridge.programs.scenario_band import situation_of
 from tests.benchmarks.flown_computed import compute, fly

@@ -44,7 +44,7 @@ class Closest(NamedTuple):
 
 
 def closest(a0: Vec, a1: Vec, b0: Vec, b1: Vec) -> Closest:
-    """Closest approach of a (a0 → a1) and b (b0 → b1), without a root; a division only where it lies within."""
+    """Closest approach of a (a0 → a1) and b (b0 → b1), without a root, and a division only within."""
     r0 = sub(a0, b0)
     x = a1.x - b1.x - r0.x
     y = a1.y - b1.y - r0.y

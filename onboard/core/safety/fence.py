@@ -202,14 +202,17 @@ def turn(v: Vec, position: Vec, ground: Vec, wind: float, policy: Policy) -> Fen
             return Fenced(_towards(position, home, level, v.z), Cause.OUTSIDE_FENCE)
     radius = turning_radius(e, wind)
     now = sqrt(ground.x * ground.x + ground.y * ground.y)
-    course = atan2(ground.y, ground.x) if now > TINY else atan2(v.y, v.x)
     pace = max(now, level)
+    need = radius + margin
+    # No centre of a circle is farther off than this: where that much is left to every wall, any circle fits.
+    if _clearance(position.x, position.y, fences) >= pace * reaction + radius + need + 1e-3:
+        return Fenced(v, Cause.NONE)
+    course = atan2(ground.y, ground.x) if now > TINY else atan2(v.y, v.x)
     # Where the vehicle is, and how it heads, when an answer to the next decision begins to show.
     rate = pace / radius if radius > TINY else pi
     later = course + clamp(wrap(atan2(v.y, v.x) - course), -rate * reaction, rate * reaction)
     x = position.x + pace * reaction * cos(later)
     y = position.y + pace * reaction * sin(later)
-    need = radius + margin
     if _room(x, y, later, radius, 1.0, fences) >= need or _room(x, y, later, radius, -1.0, fences) >= need:
         return Fenced(v, Cause.NONE)
     right = _room(position.x, position.y, course, radius, 1.0, fences)
@@ -246,11 +249,14 @@ def deepest(fence: Fence) -> float:
 
 def _room(x: float, y: float, course: float, radius: float, side: float, fences: tuple[Fence, ...]) -> float:
     """Depth inside all fences of the centre of the circle to the right (1) or left (−1) [m]."""
-    cx = x - side * radius * sin(course)
-    cy = y + side * radius * cos(course)
+    return _clearance(x - side * radius * sin(course), y + side * radius * cos(course), fences)
+
+
+def _clearance(x: float, y: float, fences: tuple[Fence, ...]) -> float:
+    """Depth of a place inside all fences [m]."""
     least = 1e18
     for fence in fences:
-        least = min(least, depth(cx, cy, fence.polygon))
+        least = min(least, depth(x, y, fence.polygon))
     return least
 
 

@@ -17,7 +17,8 @@ from onboard.config import strict
 from onboard.config.strict import ConfigError, FieldError
 from onboard.config.undecodable import UNDECODABLE
 from onboard.game.scenario import Scenario
-from sim_bridge.campaign.spatial_draw import Spread, demand_spatial
+from sim_bridge.campaign.spatial_draw import Spread
+from sim_bridge.campaign.spatial_fixed import demand_spatial
 from sim_bridge.programs.campaigns.fingerprint import Fingerprint
 from sim_bridge.programs.campaigns.sweep import Point, put, steps_of
 

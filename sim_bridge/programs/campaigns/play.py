@@ -16,7 +16,8 @@ from onboard.runtime.progress import Tell, silent
 from sim_bridge.campaign.compiled import campaign, starts_of
 from sim_bridge.campaign.matrix import matrix
 from sim_bridge.campaign.spatial_campaign import Played, play_drawn
-from sim_bridge.campaign.spatial_draw import Sides, draw, drawn_scenario
+from sim_bridge.campaign.spatial_draw import draw, drawn_scenario
+from sim_bridge.campaign.spatial_fixed import Sides
 from sim_bridge.campaign.spatial_game import Chosen
 from sim_bridge.plane_game.setup import conditions_of, game_of
 from sim_bridge.programs.campaigns.plan import Cell, Plan, Shard, is_spatial, spread_of

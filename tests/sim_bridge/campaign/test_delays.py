@@ -16,7 +16,8 @@ import pytest
 from onboard.core.math.vectors import Vec, distance
 from onboard.wire.bus.messages import Phase
 from onboard.wire.bus.topics import TRACK
-from sim_bridge.campaign.spatial_draw import DECIDES, drawn_scenario, eye_of, spatial
+from sim_bridge.campaign.spatial_draw import DECIDES, drawn_scenario, spatial
+from sim_bridge.campaign.spatial_fixed import eye_of
 from tests.support.virtual_time import virtual
 from tests.support.whole_games import WholeGame, autopilot, game_of
 

@@ -17,7 +17,8 @@ from sim_bridge.campaign import lane_math
 from sim_bridge.campaign.lanes import in_lanes, lane_normal, packing, twins
 from sim_bridge.campaign.plane_in_wind import Flown, fly
 from sim_bridge.campaign.spatial_campaign import play_drawn
-from sim_bridge.campaign.spatial_draw import draw, plain, spatial
+from sim_bridge.campaign.spatial_draw import draw, spatial
+from sim_bridge.campaign.spatial_fixed import plain
 from sim_bridge.campaign.spatial_game import Evasion
 from sim_bridge.draws import normal
 from sim_bridge.vehicle.wind.dryden import power12
