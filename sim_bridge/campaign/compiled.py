@@ -36,7 +36,7 @@ from onboard.core.game.planning import planned, steps_between, unplanned
 from onboard.core.game.referee import GameResult
 from onboard.core.game.rules import Target
 from onboard.core.math import each as each_module
-from onboard.core.math.each import each
+from onboard.core.math.each import each, each_pair
 from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import Vec
 from onboard.core.strategy.team.flying import pursuer_team
@@ -235,6 +235,11 @@ def _blank(starts: Starts, keep: int) -> Ends:
     )  # fmt: skip
 
 
+def _as_fast(now: Vehicle, start: Vehicle, _shared: float) -> Vehicle:
+    """A pursuer with the speed that it started with (for `each_pair`)."""
+    return Vehicle(now.position, now.velocity, start.speed)
+
+
 Campaign = Callable[..., Ends]
 
 
@@ -258,9 +263,14 @@ def _player(
                 _note(game, ends.trace[number, 0])
             while game.score.verdict == GameResult.RUNNING:
                 now = advance(game, mine, decide_evader, decide_pursuer)
-                # Limits never change: taken from the start, they stay out of the compiled loop (14 % faster).
+                # Limits and speeds never change: taken from the start, they stay out of the compiled loop.
                 game = Game(
-                    now.time, now.evader, now.pursuers, start.evader_limits, start.pursuer_limits, now.score
+                    now.time,
+                    Vehicle(now.evader.position, now.evader.velocity, start.evader.speed),
+                    each_pair(_as_fast, now.pursuers, start.pursuers, 0.0),
+                    start.evader_limits,
+                    start.pursuer_limits,
+                    now.score,
                 )
                 steps += 1
                 if steps < kept:

@@ -56,14 +56,16 @@ def blocked_cone(pursuer: Vehicle, _index: int, seen: Seen) -> Cone:
     x = px - ex
     y = py - ey
     z = pz - ez
-    d = sqrt(x * x + y * y + z * z)
+    square = x * x + y * y + z * z
+    d = sqrt(square)
     if speed >= evader_speed or d <= TINY:
         return EVERYTHING
     sa = speed / evader_speed  # γ
     ca = sqrt(1.0 - sa * sa)
-    sb = rho / d if rho < d else 1.0
-    cb = sqrt(1.0 - sb * sb)
-    return Cone(Vec(x / d, y / d, z / d), ca * cb - sa * sb, sa * cb + ca * sb)
+    k = 1.0 / d
+    sb = rho * k if rho < d else 1.0
+    cb = sqrt(max(0.0, square - rho * rho)) * k
+    return Cone(Vec(x * k, y * k, z * k), ca * cb - sa * sb, sa * cb + ca * sb)
 
 
 def blocked_cones(evader: Vehicle, pursuers: tuple[Vehicle, ...], rho: float) -> tuple[Cone, ...]:

@@ -78,7 +78,8 @@ def unit(a: Vec, otherwise: Vec) -> Vec:
     n = sqrt(a.x * a.x + a.y * a.y + a.z * a.z)
     if n <= TINY:
         return otherwise
-    return Vec(a.x / n, a.y / n, a.z / n)
+    k = 1.0 / n
+    return Vec(a.x * k, a.y * k, a.z * k)
 
 
 def clamp(value: float, low: float, high: float) -> float:

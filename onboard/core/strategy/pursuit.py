@@ -27,7 +27,8 @@ def heading_for(view: PursuerView, aim: Vec, rule: RuleId, time: float, miss: fl
     y = aim.y - y
     z = aim.z - z
     far = sqrt(x * x + y * y + z * z)
-    ahead = view.heading if far <= TINY else Vec(x / far, y / far, z / far)
+    k = 1.0 / far if far > TINY else 0.0
+    ahead = view.heading if far <= TINY else Vec(x * k, y * k, z * k)
     return Decision(True, within(ahead, view.limits, view.rules.planar), speed, rule, aim, time, miss)
 
 
