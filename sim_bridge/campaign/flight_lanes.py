@@ -127,18 +127,46 @@ def limited(model: PlaneModel, limits: Limits) -> PlaneModel:
     )  # fmt: skip
 
 
-def draw_words(words: Words, block: int, counter: int, pairs: int) -> None:
-    """Draw so many pairs of words a lane of a block at a `counter`, by the keys there."""
-    for pair in range(pairs):
-        for i in range(LANES):
-            a, b = threefry(words[block, i], words[block, i + LANES], counter & WORD, pair)
-            words[block, i + AT_WORDS + 2 * pair * LANES] = a
-            words[block, i + AT_WORDS + (2 * pair + 1) * LANES] = b
+def draw_six(words: Words, block: int, counter: int) -> None:
+    """Draw six words a lane of a block at a `counter`, by the keys there.
+
+    Pair beside pair in one loop: each is a long chain, of which a processor runs several at once.
+    """
+    for i in range(LANES):
+        first = words[block, i]
+        second = words[block, i + LANES]
+        a, b = threefry(first, second, counter & WORD, 0)
+        c, d = threefry(first, second, counter & WORD, 1)
+        e, f = threefry(first, second, counter & WORD, 2)
+        words[block, i + AT_WORDS] = a
+        words[block, i + AT_WORDS + LANES] = b
+        words[block, i + AT_WORDS + 2 * LANES] = c
+        words[block, i + AT_WORDS + 3 * LANES] = d
+        words[block, i + AT_WORDS + 4 * LANES] = e
+        words[block, i + AT_WORDS + 5 * LANES] = f
+
+
+def draw_seven(words: Words, block: int, counter: int) -> None:
+    """Draw seven words a lane of a block at a `counter`, by the keys there."""
+    for i in range(LANES):
+        first = words[block, i]
+        second = words[block, i + LANES]
+        a, b = threefry(first, second, counter & WORD, 0)
+        c, d = threefry(first, second, counter & WORD, 1)
+        e, f = threefry(first, second, counter & WORD, 2)
+        g, _spare = threefry(first, second, counter & WORD, 3)
+        words[block, i + AT_WORDS] = a
+        words[block, i + AT_WORDS + LANES] = b
+        words[block, i + AT_WORDS + 2 * LANES] = c
+        words[block, i + AT_WORDS + 3 * LANES] = d
+        words[block, i + AT_WORDS + 4 * LANES] = e
+        words[block, i + AT_WORDS + 5 * LANES] = f
+        words[block, i + AT_WORDS + 6 * LANES] = g
 
 
 def blow(air: Array, words: Words, b: int, tick: int, model: PlaneModel, climate: Climate) -> None:
     """The gusts of a block's aircraft after a tick of their grid; `words` are of the gusts."""
-    draw_words(words, b, tick, (GUST_WORDS + 1) // 2)
+    draw_six(words, b, tick)
     for i in range(GUST_WORDS * LANES):
         air[b, i + AT_NOISE] = lane_normal(words[b, i + AT_WORDS])
     for i in range(LANES):
@@ -186,7 +214,7 @@ def weather(air: Array, b: int, model: PlaneModel, climate: Climate) -> None:
 def measure(sky: Sensing, slot: int, b: int, eye: Eye, number: int) -> None:
     """Measurement `number` of a block's aircraft into a slot of what waits."""
     air, words, waiting = sky
-    draw_words(words, b, number, 4)
+    draw_seven(words, b, number)
     for i in range(6 * LANES):
         air[b, i + AT_NOISE] = lane_normal(words[b, i + AT_WORDS + LANES])
     for i in range(3 * LANES):

@@ -140,7 +140,7 @@ def play(start: Start, ways: Ways, motion: Motion, flying: Flying, log: Array) -
                 motion.estimate(sky, start, here)
             if (sample + 1) % pace.control == pace.decides:
                 head(motion, sky, here)
-            keep(before, here)
+                keep(before, here)
             motion.move(sky, start, sample, here)
             sample += 1
         motion.widen(sky, start)
