@@ -2,7 +2,7 @@
 
 A demand is free while the way that it leads on, turn included, stays clear of every mate that flies straight
 on, for as long as a way out takes. Else the first way out that is clear is flown, and where none is, the one
-that leaves most room. Kernel style but for a local list.
+that leaves most room. Kernel style.
 """
 
 from __future__ import annotations
@@ -11,8 +11,9 @@ from math import atan2, cos, pi, sin, sqrt
 from typing import NamedTuple
 
 from onboard.core.math.angles import wrap
+from onboard.core.math.each import each
 from onboard.core.math.states import Mate
-from onboard.core.math.vectors import TINY, Vec, clamp
+from onboard.core.math.vectors import TINY, ZERO, Vec, clamp
 from onboard.core.safety.envelope import believable
 from onboard.core.safety.policy import Envelope, Policy
 
@@ -34,7 +35,7 @@ class Passing(NamedTuple):
     line: Vec  # from the own place to it [m]
     velocity: Vec  # [m/s; ground]
     keep: float  # distance [m]
-    time: float  # [s] for which it is looked at
+    time: float  # [s] for which it is looked at; below 0 not at all
     first: bool  # it has the lower id
 
 
@@ -66,29 +67,50 @@ def ahead(keep: float, policy: Policy) -> float:
     return min(LONGEST, EARLY * (policy.reaction + sqrt(2.0 * keep / across)))
 
 
-def met(position: Vec, own_id: int, mates: tuple[Mate, ...], policy: Policy) -> list[Passing]:
-    """The mates that are near enough to be met."""
+class _Looking(NamedTuple):
+    """Who looks at its mates (for `each`)."""
+
+    position: Vec
+    id: int
+    policy: Policy
+
+
+def met(position: Vec, own_id: int, mates: tuple[Mate, ...], policy: Policy) -> tuple[Passing, ...]:
+    """The mates as they may be met; of those that are not near enough the time is below 0."""
+    return each(_passing, mates, _Looking(position, own_id, policy))
+
+
+def _passing(mate: Mate, _index: int, looking: _Looking) -> Passing:
+    """A mate that may be met (for `each`)."""
+    (position, own_id, policy) = looking
     e = policy.envelope
-    found: list[Passing] = []
-    for mate in mates:
-        if mate.id == own_id or not mate.age <= policy.mate_forget:
-            continue
-        if not believable(mate.position, mate.velocity):
-            continue
-        quiet = mate.age > policy.mate_age
-        keep = policy.separation * (2.0 if quiet else 1.0)
-        time = ahead(keep, policy)
-        x = mate.position.x - position.x
-        y = mate.position.y - position.y
-        z = mate.position.z - position.z
-        w = mate.velocity
-        far = keep * (1.0 + SLACK) + (e.speed_max + STRAY + sqrt(w.x * w.x + w.y * w.y + w.z * w.z)) * time
-        if x * x + y * y + z * z < 2.0 * far * far:  # the wind carries both
-            found.append(Passing(Vec(x, y, z), w, keep, time, mate.id < own_id))
-    return found
+    unmet = Passing(ZERO, ZERO, 0.0, -1.0, False)
+    if mate.id == own_id or not mate.age <= policy.mate_forget:
+        return unmet
+    if not believable(mate.position, mate.velocity):
+        return unmet
+    quiet = mate.age > policy.mate_age
+    keep = policy.separation * (2.0 if quiet else 1.0)
+    time = ahead(keep, policy)
+    x = mate.position.x - position.x
+    y = mate.position.y - position.y
+    z = mate.position.z - position.z
+    w = mate.velocity
+    far = keep * (1.0 + SLACK) + (e.speed_max + STRAY + sqrt(w.x * w.x + w.y * w.y + w.z * w.z)) * time
+    if x * x + y * y + z * z < 2.0 * far * far:  # the wind carries both
+        return Passing(Vec(x, y, z), w, keep, time, mate.id < own_id)
+    return unmet
 
 
-def room(now: Moved, aim: Vec, near: list[Passing]) -> Room:
+def anybody(near: tuple[Passing, ...]) -> bool:
+    """Whether any mate may be met."""
+    for one in near:  # noqa: SIM110 (a loop compiles)
+        if one.time >= 0.0:
+            return True
+    return False
+
+
+def room(now: Moved, aim: Vec, near: tuple[Passing, ...]) -> Room:
     """The room on the way to a velocity `aim` [m/s; ground], turn and climb as the plane makes them."""
     longest = 0.0
     for one in near:
@@ -131,7 +153,7 @@ def room(now: Moved, aim: Vec, near: list[Passing]) -> Room:
     return best
 
 
-def pass_clear(v: Vec, now: Moved, position: Vec, near: list[Passing], policy: Policy) -> Vec:
+def pass_clear(v: Vec, now: Moved, position: Vec, near: tuple[Passing, ...], policy: Policy) -> Vec:
     """The velocity with which a plane passes its mates: `v` [m/s; ground] while it leaves a way out.
 
     It is free where its own way is clear, and where it can be flown for a while longer and a way out is clear
@@ -156,7 +178,7 @@ class Found(NamedTuple):
     room: Room
 
 
-def best_way(v: Vec, now: Moved, position: Vec, near: list[Passing], one: Passing, policy: Policy) -> Found:
+def best_way(v: Vec, now: Moved, position: Vec, near: tuple[Passing, ...], one: Passing, policy: Policy) -> Found:
     """The first way out that is clear, else that with most room; `one` is the mate in the way."""
     side = side_of(v, one)
     up = rises(one)

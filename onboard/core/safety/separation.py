@@ -13,7 +13,7 @@ from onboard.core.math.states import Mate
 from onboard.core.math.vectors import TINY, Vec
 from onboard.core.safety.envelope import believable
 from onboard.core.safety.fence import stopping_speed
-from onboard.core.safety.passing import Moved, met, pass_clear, turning
+from onboard.core.safety.passing import Moved, anybody, met, pass_clear, turning
 from onboard.core.safety.policy import Policy
 
 
@@ -31,7 +31,7 @@ def kept_apart(
     if policy.envelope.hovers:
         return keep_apart(v, position, own_id, mates, policy)
     near = met(position, own_id, mates, policy)
-    if len(near) == 0:
+    if not anybody(near):
         return Separated(v, False)
     moving = velocity if velocity.x * velocity.x + velocity.y * velocity.y > 1.0 else v
     now = Moved(moving, turning(policy.envelope), policy.reaction)
