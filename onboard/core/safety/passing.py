@@ -178,7 +178,9 @@ class Found(NamedTuple):
     room: Room
 
 
-def best_way(v: Vec, now: Moved, position: Vec, near: tuple[Passing, ...], one: Passing, policy: Policy) -> Found:
+def best_way(
+    v: Vec, now: Moved, position: Vec, near: tuple[Passing, ...], one: Passing, policy: Policy
+) -> Found:
     """The first way out that is clear, else that with most room; `one` is the mate in the way."""
     side = side_of(v, one)
     up = rises(one)
