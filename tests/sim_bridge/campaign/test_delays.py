@@ -57,10 +57,10 @@ class Watch:
                 self.told.append((self.step, frame.ned_from_geodetic(lat / 1e7, lon / 1e7, alt / 1e3)))
             send(data)
 
-        def moved(vehicle: Any) -> None:
+        def moved(vehicle: Any, now_ns: int, now_s: float) -> None:
             if vehicle.id == id:
                 self.truth[self.step - 1] = vehicle.airframe.motion.position  # before this step
-            move(vehicle)
+            move(vehicle, now_ns, now_s)
 
         pilot.receive, link.send, world._move = received, sent, moved  # type: ignore[method-assign]
 

@@ -24,9 +24,18 @@ from onboard.wire.bus.messages import Role
 from sim_bridge.campaign.figures import draw_stages
 from sim_bridge.campaign.sil_crosscheck import drawn
 from sim_bridge.campaign.spatial_campaign import Played, mcnemar, play_seed, reversals, share
-from sim_bridge.campaign.spatial_draw import draw, drawn_scenario, spatial
+from sim_bridge.campaign.spatial_draw import (
+    PLACE_SIGMA,
+    draw,
+    drawn_scenario,
+    kernel_of,
+    log_of,
+    sky_of,
+    spatial,
+)
 from sim_bridge.campaign.spatial_game import Evasion
 from sim_bridge.campaign.tracks import track_of
+from sim_bridge.draws import Purpose, Stream, key_of
 from sim_bridge.vehicle.autopilot.arduplane import ArduPlane
 from sim_bridge.vehicle.autopilot.make import autopilot_for
 from sim_bridge.world.staging import calm, frame_of, starts
@@ -217,3 +226,32 @@ def test_a_seed_s_draw_can_be_flown_whole(tmp_path: Path) -> None:
     assert found.flight.wind.from_deg != base.flight.wind.from_deg
     assert found.pursuers[0].position != base.pursuers[0].position
     assert drawn_scenario(base, 0) == base
+
+
+def test_a_log_of_another_width_is_refused_and_not_written_beyond(five: Scenario) -> None:
+    d = draw(five, 1, 0.2, compiled=False)
+    play = kernel_of(d.sides.evaders, d.sides.pursuers, False)
+    log = log_of(d)
+    for wrong in (log[:, :, :5], log[:, :4], log[:, :, 0]):
+        with pytest.raises(ValueError, match=r"log: shape .*, expected \(steps, 6, 6\)"):
+            play(d.start, d.sides.chosen, sky_of(d, False), wrong)
+
+
+def test_a_scenario_draws_as_a_stream_does_and_each_its_own(five: Scenario) -> None:
+    found = drawn_scenario(five, 3)
+    for spec, old, id in zip(found.pursuers, five.pursuers, five.ids[1:], strict=True):
+        x, y, _z, _spare = Stream(key_of(five.seed + 3, id, Purpose.PLACE), 4).at(0)
+        assert spec.position[0] == old.position[0] + PLACE_SIGMA * x
+        assert spec.position[1] == old.position[1] + PLACE_SIGMA * y
+    # What is kept of a scenario from seed to seed is that scenario's alone.
+    rules = msgspec.structs.replace(five.parameters, horizon=77.0)
+    other = msgspec.structs.replace(five, parameters=rules)
+    for scenario, horizon in (
+        (five, five.parameters.horizon),
+        (other, 77.0),
+        (five, five.parameters.horizon),
+    ):
+        d = draw(scenario, 2, 0.2, compiled=False)
+        assert d.start.conditions.rules.horizon == horizon
+        assert d.start.gusts[1] == key_of(scenario.seed + 2, scenario.ids[1], Purpose.GUST)
+        assert d.start.eye.keys[1] == key_of(scenario.seed + 2, scenario.ids[1], Purpose.SENSOR)

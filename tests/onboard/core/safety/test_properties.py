@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from onboard.core.math.states import Mate
 from onboard.core.math.vectors import Vec
-from onboard.core.safety.fence import fits, inside, outside_by
+from onboard.core.safety.envelope import slewed
+from onboard.core.safety.fence import depth, fits, inside, outside_by, turn, turning_radius
 from onboard.core.safety.health import HealthAction
 from onboard.core.safety.policy import Action, Cause, Envelope, Fence, Policy, SupervisorInput
 from onboard.core.safety.supervisor import SupervisorState, advance, handed_back, supervise
@@ -154,3 +155,54 @@ def test_near_a_fence_and_in_wind_the_speed_limit_is_the_last_word(
         x, y, z = verdict.air
         assert (x * x + y * y + z * z) ** 0.5 <= envelope.speed_max * (1.0 + 1e-6)
         assert -envelope.climb_max - 1e-6 <= z <= envelope.sink_max + 1e-6
+
+
+@given(
+    course=st.floats(-pi, pi),
+    change=st.floats(-pi, pi),
+    level=st.floats(5.0, 60.0),
+    climb=st.floats(-20.0, 20.0),
+    dt=st.floats(0.01, 1.0),
+)
+def test_a_turn_is_cut_at_its_rate_and_another_left_as_it_is(
+    course: float, change: float, level: float, climb: float, dt: float
+) -> None:
+    e = PLANE.envelope._replace(turn_rate=0.4, acceleration=0.0)
+    before = Vec(level * cos(course), level * sin(course), 0.0)
+    wanted = Vec(level * cos(course + change), level * sin(course + change), climb)
+    found = slewed(wanted, before, dt, e)
+    kept = max(-e.turn_rate * dt, min(e.turn_rate * dt, change))
+    if abs(change) < pi - 1e-6:
+        expected = (level * cos(course + kept), level * sin(course + kept), climb)
+        assert max(abs(a - b) for a, b in zip(found.velocity, expected, strict=True)) < 1e-4
+    assert (found.cause == Cause.TURN) == (abs(change) > e.turn_rate * dt * (1.0 + 1e-6)) or (
+        abs(abs(change) - e.turn_rate * dt) < 1e-5 * e.turn_rate * dt + 1e-9
+    )
+
+
+@given(
+    x=st.floats(-2900.0, 2900.0),
+    y=st.floats(-2900.0, 2900.0),
+    course=st.floats(-pi, pi),
+    wanted=st.floats(-pi, pi),
+)
+def test_a_plane_is_turned_where_no_circle_fits_and_only_there(
+    x: float, y: float, course: float, wanted: float
+) -> None:
+    square = ((-3000.0, -3000.0), (3000.0, -3000.0), (3000.0, 3000.0), (-3000.0, 3000.0))
+    policy = PLANE._replace(fences=(Fence(square, 5.0, 900.0),))
+    speed = policy.envelope.speed_max
+    now, asked = (Vec(speed * cos(a), speed * sin(a), 0.0) for a in (course, wanted))
+    found = turn(asked, Vec(x, y, -300.0), now, 3.0, policy)
+    radius = turning_radius(policy.envelope, 3.0)
+    gone = max(-1.0, min(1.0, speed / radius * policy.reaction / max(1e-12, abs(_turn(wanted - course)))))
+    later = course + gone * _turn(wanted - course)
+    px, py = x + speed * policy.reaction * cos(later), y + speed * policy.reaction * sin(later)
+    sides = (radius, -radius)
+    room = max(depth(px - r * sin(later), py + r * cos(later), square) for r in sides)
+    if abs(room - radius - policy.fence_margin) > 1e-6:
+        assert (found.cause == Cause.NONE) == (room >= radius + policy.fence_margin)
+
+
+def _turn(angle: float) -> float:
+    return atan2(sin(angle), cos(angle))
