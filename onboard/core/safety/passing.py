@@ -122,11 +122,16 @@ def room(now: Moved, aim: Vec, near: tuple[Passing, ...]) -> Room:
     x, y, z = 0.0, 0.0, 0.0
     t = 0.0
     best = Room(1e18, -1)
+    held = course  # of the velocity vx, vy
+    vx = level * cos(held)
+    vy = level * sin(held)
     for _ in range(STEPS):
         most = now.rate * clamp(t + dt - now.reaction, 0.0, dt)
         turned = clamp(left, -most, most)
-        vx = level * cos(course + 0.5 * turned)
-        vy = level * sin(course + 0.5 * turned)
+        if course + 0.5 * turned != held:
+            held = course + 0.5 * turned
+            vx = level * cos(held)
+            vy = level * sin(held)
         late = clamp(CLIMB_LAG + now.reaction - t, 0.0, dt)
         vz = (now.velocity.z * late + aim.z * (dt - late)) / dt
         for k in range(len(near)):
@@ -139,13 +144,17 @@ def room(now: Moved, aim: Vec, near: tuple[Passing, ...]) -> Room:
             wx, wy, wz = one.velocity.x - vx, one.velocity.y - vy, one.velocity.z - vz
             inside = t <= 0.0 and ax * ax + ay * ay + az * az <= one.keep * one.keep
             square = wx * wx + wy * wy + wz * wz
-            u = clamp(-(ax * wx + ay * wy + az * wz) / max(square, TINY), 0.0, dt)
-            if inside:
-                u = dt  # how fast it comes out counts
+            closing = -(ax * wx + ay * wy + az * wz)
+            u = 0.0
+            if inside or closing >= dt * max(square, TINY):
+                u = dt  # inside, how fast it comes out counts
+            elif closing > 0.0:
+                u = closing / max(square, TINY)
             ax, ay, az = ax + wx * u, ay + wy * u, az + wz * u
-            least = sqrt(ax * ax + ay * ay + az * az) - one.keep * (1.0 + SLACK) - STRAY * (t + u)
-            if least < best.least:
-                best = Room(least, k)
+            gone = one.keep * (1.0 + SLACK) + STRAY * (t + u)
+            distance = ax * ax + ay * ay + az * az
+            if best.least + gone > 0.0 and distance < (best.least + gone) * (best.least + gone):
+                best = Room(sqrt(distance) - gone, k)
         x, y, z = x + vx * dt, y + vy * dt, z + vz * dt
         left -= turned
         course += turned
