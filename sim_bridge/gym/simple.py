@@ -45,7 +45,7 @@ from onboard.core.math.vectors import NORTH, Vec, along, distance, norm, scale
 from onboard.core.strategy.features import Turn, answer, evader_features, pursuer_features
 from onboard.core.strategy.knowledge import Decision, RuleId
 from onboard.core.strategy.team.plan_types import IDLE
-from sim_bridge.campaign.flight_lanes import AT_WORDS, draw_words
+from sim_bridge.campaign.flight_lanes import AT_WORDS, draw_seven
 from sim_bridge.campaign.lanes import LANES, lane_normal
 from sim_bridge.campaign.spatial_game import in_air
 from sim_bridge.campaign.tracks import Tracks, hear, track_of
@@ -79,7 +79,7 @@ def sense(here: Here, number: int) -> None:
         words[i // LANES, i % LANES] = t.keys[g, i, 0]
         words[i // LANES, i % LANES + LANES] = t.keys[g, i, 1]
     for b in range(words.shape[0]):
-        draw_words(words, b, number)
+        draw_seven(words, b, number)
         for i in range(6 * LANES):
             noise[b, i] = lane_normal(words[b, i + AT_WORDS + LANES])
     for i in range(states.shape[0]):
