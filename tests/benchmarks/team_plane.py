@@ -37,7 +37,7 @@ TEAM = 5
 EVADER = Vehicle(ZERO, scale(NORTH, 5.0), 5.0)
 NEAR, FAR = 10.0 * RULES.rho, 120.0  # [m] from the evader
 STAGING = 60.0  # [s]
-WAYS = ("paper", "parallel-pursuit", "goalkeeper")
+WAYS = ("paper", "parallel-pursuit", "goalkeeper", "team")
 
 
 class Drawn(NamedTuple):
