@@ -85,7 +85,7 @@ class Grid:
         return np.array(tuple(self._rows)).reshape(-1, 9)[:, 6:]
 
     def window(self, track: TrackFilter, points: int) -> list[list[float]] | None:
-        """Positions (points, 3) [m] at the newest sample and each `step` before it, oldest first; None where
+        """Places (points, 3) [m] at the newest sample and each `step` before it, oldest first; None where
         the grid is too short. Cubic between the grid's points; the two newest come from the filter."""
         newest = track.newest
         u = newest / self.step - self._last  # of the newest sample past the newest point, in steps

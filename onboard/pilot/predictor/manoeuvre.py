@@ -134,8 +134,8 @@ class ManoeuvreFilter:
     def _sound(self, score: Array) -> bool:
         """Whether numbers are finite and variances positive: digits run out between samples good to a
         millimetre and such good to a thousand kilometres."""
-        variances = self._p[:, range(STATES), range(STATES)]
-        return bool(np.isfinite(score).all() and np.isfinite(self._x).all() and variances.min() >= 0.0)
+        variances = self._p.reshape(2, -1)[:, :: STATES + 1]
+        return isfinite(score.sum()) and isfinite(self._x.sum()) and bool(variances.min() >= 0.0)
 
 
 def _straight(dt: float) -> Array:

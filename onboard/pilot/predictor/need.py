@@ -3,8 +3,8 @@
 A training states how far its model was off where it was held out. As long as predictions at grid points are
 about so far off, another training would find the same model. It asks for one when
 
-- there is no model yet, or the grid has half as many points again as the last one learnt from, or began
-  anew;
+- there is no model yet, the grid has twice the points that the last one learnt from, or enough for another
+  method, or it began anew;
 - in a fading memory of its last predictions the error of some horizon exceeds the stated one (RISING): the
   target does what it did not do before. It goes on asking until no horizon exceeds FALLING;
 - the errors of all horizons are far below the stated ones (CALM): a motion that ended is held against it.
@@ -16,7 +16,7 @@ from collections.abc import Sequence
 
 from onboard.pilot.predictor.calibration import Off
 
-GROWTH = 1.5  # times the points of the last training
+GROWTH = 2.0  # times the points of the last training
 RISING, FALLING = 1.6, 1.2  # root mean square errors, in stated ones
 CALM = 0.4
 SHORTEST = 12.0  # memory [grid points] of the shortest horizons
@@ -26,7 +26,9 @@ OVERLAP = 2.0  # memory of a horizon, in times itself: predictions that overlap 
 class Need:
     """Follows how far one model's predictions are off."""
 
-    def __init__(self, horizons: tuple[int, ...]) -> None:
+    def __init__(self, horizons: tuple[int, ...], ladder: tuple[int, ...]) -> None:
+        """`ladder`: numbers of points from which on another method learns."""
+        self._ladder = ladder
         self._fade = [1.0 - 1.0 / max(SHORTEST, OVERLAP * h) for h in horizons]
         self._square = [0.0] * len(horizons)  # faded sums of squares, in stated errors
         self._count = [0.0] * len(horizons)  # and of their numbers
@@ -67,5 +69,6 @@ class Need:
     def asks(self, points: int, capacity: int) -> bool:
         """Whether a grid of so many points, at most `capacity`, should be learnt from."""
         learnt = self._learnt
-        other = not learnt or points < learnt or points >= min(GROWTH * learnt, capacity) > learnt
-        return other or self.rising or self.calm
+        grown = points >= min(GROWTH * learnt, capacity) > learnt
+        other = points < learnt or any(learnt < step <= points for step in self._ladder)
+        return not learnt or grown or other or self.rising or self.calm

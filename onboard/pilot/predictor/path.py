@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from math import isfinite, isnan
+from math import hypot, isfinite, isnan
 from typing import NamedTuple
 
-from onboard.core.math.vectors import Vec, along, norm
+from onboard.core.math.vectors import Vec, along
 from onboard.pilot.predictor.forecast import Answer
 from onboard.pilot.predictor.prediction import Prediction, PredictorKind
 from onboard.pilot.track_filter import Estimate
@@ -40,25 +40,25 @@ class Path(NamedTuple):
 
 def path(start: Estimate, said: Answer, horizons: tuple[int, ...], step: float) -> Path:
     """The path of a forecast, from a track's estimate; horizons are counted in steps of `step` [s]."""
-    t, position, velocity, sigma, _sigma_velocity = start
+    t, position, (vx, vy, vz), sigma, _sigma_velocity = start
     means = zip(said.velocities, horizons, strict=True)
-    moves: list[Row] = [(0.0, 0.0, 0.0), *((x * h, y * h, z * h) for (x, y, z), h in means)]
-    slopes = _slopes((0, *horizons), moves, tuple(v * step for v in velocity))
+    moves: list[Row] = [(0.0, 0.0, 0.0), *[(x * h, y * h, z * h) for (x, y, z), h in means]]
+    slopes = _slopes((0, *horizons), moves, (vx * step, vy * step, vz * step))
     kinds = (said.kinds[0], *said.kinds)
     errors = (0.0, *said.sigma)
     knots = [
-        Knot(h * step, Vec(*move), Vec(*(v / step for v in slope)), error, kind)
-        for h, move, slope, error, kind in zip((0, *horizons), moves, slopes, errors, kinds, strict=True)
+        Knot(h * step, Vec(*move), Vec(x / step, y / step, z / step), error, kind)
+        for h, move, (x, y, z), error, kind in zip((0, *horizons), moves, slopes, errors, kinds, strict=True)
     ]
     return Path(t, position, sigma, tuple(knots))
 
 
 def sound(line: Path, speed: float) -> bool:
     """Whether every number is finite and no mean velocity exceeds twice the given speed [m/s]."""
-    for knot in line.knots:
-        if not all(map(isfinite, (*knot.move, *knot.velocity))):
+    for time, (x, y, z), (vx, vy, vz), _sigma, _kind in line.knots:
+        if not isfinite(x + y + z + vx + vy + vz):
             return False
-        if norm(knot.move) > (2.0 * speed + 1.0) * knot.time:
+        if hypot(x, y, z) > (2.0 * speed + 1.0) * time:
             return False
     return True
 
@@ -79,14 +79,22 @@ def at(line: Path, t: float, steady_sigma: float) -> Prediction:
     # Hermite's cubic and its derivative
     h, near, far = u * u * (3.0 - 2.0 * u), u * (1.0 - u) * (1.0 - u) * width, -u * u * (1.0 - u) * width
     dh, dnear, dfar = 6.0 * u * (1.0 - u) / width, (1.0 - u) * (1.0 - 3.0 * u), u * (3.0 * u - 2.0)
-    place, speed = [], []
-    for i in range(3):
-        rise = b.move[i] - a.move[i]
-        place.append(line.position[i] + a.move[i] + rise * h + a.velocity[i] * near + b.velocity[i] * far)
-        speed.append(rise * dh + a.velocity[i] * dnear + b.velocity[i] * dfar)
+    (x, y, z), (ax, ay, az), (bx, by, bz) = line.position, a.move, b.move
+    (avx, avy, avz), (bvx, bvy, bvz) = a.velocity, b.velocity
+    rx, ry, rz = bx - ax, by - ay, bz - az
+    place = Vec(
+        x + ax + rx * h + avx * near + bvx * far,
+        y + ay + ry * h + avy * near + bvy * far,
+        z + az + rz * h + avz * near + bvz * far,
+    )
+    speed = Vec(
+        rx * dh + avx * dnear + bvx * dfar,
+        ry * dh + avy * dnear + bvy * dfar,
+        rz * dh + avz * dnear + bvz * dfar,
+    )
     grown = a.sigma * (1.0 - u) + b.sigma * u
     sigma = steady_sigma if isnan(grown) else (line.sigma * line.sigma + grown * grown) ** 0.5
-    return Prediction(Vec(*place), Vec(*speed), sigma, b.kind, True)
+    return Prediction(place, speed, sigma, b.kind, True)
 
 
 def _beyond(line: Path, ahead: float, steady_sigma: float) -> Prediction:
@@ -102,11 +110,12 @@ def _slopes(ahead: tuple[int, ...], moves: list[Row], first: Row) -> list[Row]:
     """Velocities (k, 3) at the knots: given at the first, of the parabola through three neighbours between,
     and at the last half as far beyond the last stretch's mean as that is beyond the knot before."""
     stretches = []
-    for (t, a), (u, b) in pairwise(zip(ahead, moves, strict=True)):
+    for (t, (ax, ay, az)), (u, (bx, by, bz)) in pairwise(zip(ahead, moves, strict=True)):
         width = u - t
-        stretches.append((width, tuple((y - x) / width for x, y in zip(a, b, strict=True))))
+        stretches.append((width, (bx - ax) / width, (by - ay) / width, (bz - az) / width))
     out = [first]
-    for (w, a), (v, b) in pairwise(stretches):
-        out.append(tuple((w * y + v * x) / (w + v) for x, y in zip(a, b, strict=True)))
-    out.append(tuple(x + 0.5 * (x - y) for x, y in zip(stretches[-1][1], out[-1], strict=True)))
+    for (w, ax, ay, az), (v, bx, by, bz) in pairwise(stretches):
+        both = w + v
+        out.append(((w * bx + v * ax) / both, (w * by + v * ay) / both, (w * bz + v * az) / both))
+    out.append(tuple(x + 0.5 * (x - y) for x, y in zip(stretches[-1][1:], out[-1], strict=True)))
     return out

@@ -54,7 +54,7 @@ class TrackPredictor:
         self.model: Model | None = None
         self.trust = Trust(self.settings.model.horizons)
         self.calibration = Calibration(self.settings.model.horizons)
-        self.need = Need(self.settings.model.horizons)
+        self.need = Need(self.settings.model.horizons, self.settings.model.ladder)
         self.trainings = 0
         self.manoeuvre = ManoeuvreFilter()
         self._turned: dict[int, Places] = {}  # grid point → places (H, 2) [m] expected by `manoeuvre`
