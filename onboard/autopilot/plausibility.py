@@ -162,16 +162,16 @@ class Track:
 
     def _frozen(self) -> bool:
         """Whether the place has stood still in any window that ends now while velocity has covered a way."""
-        samples = self._samples
-        after = last = samples[-1]
+        last = self._samples[-1]
+        after, (vx, vy, _) = last.at, last.velocity
         north = east = 0.0
-        for sample in reversed(samples):
-            dt = after.at - sample.at
-            v, u = sample.velocity, after.velocity
-            north += 0.5 * (v.x + u.x) * dt
-            east += 0.5 * (v.y + u.y) * dt
-            after = sample
-            if last.at - sample.at < LEAST:
+        for sample in reversed(self._samples):
+            dt = after - sample.at
+            after, (ux, uy, _) = sample.at, sample.velocity
+            north += 0.5 * (ux + vx) * dt
+            east += 0.5 * (uy + vy) * dt
+            vx, vy = ux, uy
+            if last.at - after < LEAST:
                 continue
             dn, de = last.north - sample.north, last.east - sample.east
             if dn * dn + de * de > 2.0 * STILL * STILL * (north * north + east * east):

@@ -13,7 +13,6 @@ from typing import NamedTuple
 import numpy as np
 
 from onboard.config.strict import ConfigError
-from sim_bridge.vehicle.flight import control_toolbox as linear
 from sim_bridge.vehicle.flight.axis import AxisModel
 from sim_bridge.vehicle.flight.control_toolbox import Array
 
@@ -122,6 +121,20 @@ def matrices(transfer: AxisTransfer) -> tuple[Array, Array, Array, Array]:
     return np.array([[-a1, 1.0], [-a0, 0.0]]), b, np.array([[1.0, 0.0]]), d
 
 
+def held(a: Array, b: Array, dt: float) -> tuple[Array, Array]:
+    """The exact transition over `dt` [s] of x' = A x + B u, and what an input held over it adds: (A, B).
+
+    What python-control finds too (`control_toolbox.hold`), whose import takes longer than many a flight.
+    """
+    from scipy.linalg import expm
+
+    n = len(a)
+    wide = np.zeros((n + b.shape[1], n + b.shape[1]))
+    wide[:n, :n], wide[:n, n:] = a, b
+    found = np.asarray(expm(dt * wide), dtype=float)
+    return found[:n, :n], found[:n, n:]
+
+
 def sampled(transfer: AxisTransfer, dt: float) -> AxisModel:
     """The exact model for inputs held over `dt` [s], in radians: rate, and its integral, the angle."""
     a, b, c, d = matrices(transfer)
@@ -130,8 +143,7 @@ def sampled(transfer: AxisTransfer, dt: float) -> AxisModel:
     wide = np.zeros((3, 3))
     wide[:2, :2] = a
     wide[2, :2] = c[0]
-    system = linear.state_space(wide, np.vstack([b, d]), np.eye(3), np.zeros((3, 3)))
-    ad, bd, _, _ = linear.hold(system, dt)
+    ad, bd = held(wide, np.vstack([b, d]), dt)
     values = (
         ad[0, 0], ad[0, 1], ad[1, 0], ad[1, 1],
         bd[0, 0], bd[1, 0], bd[0, 1], bd[1, 1], bd[0, 2], bd[1, 2],

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from math import pi
 
 import control
@@ -19,7 +21,7 @@ from sim_bridge.vehicle.flight.derivatives import (
     short_period,
     yaw,
 )
-from sim_bridge.vehicle.flight.transfer import AxisTransfer, matrices, sampled
+from sim_bridge.vehicle.flight.transfer import AxisTransfer, held, matrices, sampled
 
 OPEN = AxisLaw(0.0, 1.0, 0.0, 0.0, 0.0, 1e9, 1.0, 1e9)  # no controller, a servo that follows at once
 AXES = ["pitch", "yaw"]
@@ -32,6 +34,26 @@ def aircraft() -> Aircraft:
 
 def transfer_of(aircraft: Aircraft, axis: str) -> AxisTransfer:
     return aircraft.pitch if axis == "pitch" else aircraft.yaw
+
+
+@pytest.mark.parametrize("name", ["nose", "slip", "coordinated"])
+@pytest.mark.parametrize("dt", [0.01, 0.025, 0.05])
+def test_the_hold_is_that_of_python_control(name: str, dt: float) -> None:
+    for axis in AXES:
+        a, b, _, _ = matrices(transfer_of(named(name), axis))
+        ours = held(a, b, dt)
+        theirs = control.sample_system(control.ss(a, b, np.eye(2), np.zeros((2, 3))), dt, "zoh")
+        np.testing.assert_allclose(ours[0], theirs.A, rtol=1e-13)
+        np.testing.assert_allclose(ours[1], theirs.B, rtol=1e-13)
+
+
+def test_an_aircraft_is_loaded_without_python_control() -> None:
+    told = (
+        "import sys; from sim_bridge.vehicle.flight.aircraft import named; named('nose');"
+        "print([name for name in ('control', 'scipy.signal', 'matplotlib') if name in sys.modules])"
+    )
+    found = subprocess.run([sys.executable, "-c", told], check=True, capture_output=True, text=True)
+    assert found.stdout.strip() == "[]"
 
 
 @pytest.mark.parametrize("axis", AXES)
