@@ -67,7 +67,7 @@ def turns(states: list[State], one: Work, rounds: int) -> Iterator[State]:
             old, other = state is not states[-1] and state.python == sys.executable, "," in state.name
             if (one.newest and old) or (other and not one.other):
                 continue
-            if one.once and turn and state.name == RELEASE:
+            if one.once and (state.name == BEFORE or (turn and state.name == RELEASE)):
                 continue
             yield state
 
