@@ -182,7 +182,7 @@ app.add_typer(campaign_app, name="campaign")
 
 @app.command(
     epilog="Examples: sim-bridge bench --games 50 | sim-bridge bench --scenario five --evader paper"
-    " | sim-bridge bench --key organisers.key --out /tmp/bench",
+    " | sim-bridge bench --classic --games 50 | sim-bridge bench --key organisers.key --out /tmp/bench",
 )
 def bench(
     scenario: Annotated[
@@ -198,6 +198,10 @@ def bench(
     evader: Annotated[
         list[str] | None, typer.Option(help="Evader's strategy; may be repeated. Default: all.")
     ] = None,
+    classic: Annotated[
+        bool,
+        typer.Option("--classic", help="The classical problems that it can play, instead."),
+    ] = False,
     games: Annotated[int, options.value(Flights, "--games", words="Games of each kind.", unit="N")] = 20,
     key: Annotated[Path | None, typer.Option(help="File of a key that hides the seeds.")] = None,
     out: Annotated[Path, typer.Option(help="Folder of the leaderboard.")] = Path("runs/bench"),
@@ -210,6 +214,10 @@ def bench(
     from sim_bridge.programs.leaderboard.page import text
 
     strategies = tuple(evader or ()), tuple(pursuers or ())
+    if classic:
+        if scenario:
+            raise ConfigError("--classic: found with --scenario, expected one of the two")
+        scenario = room.classic_scenarios()
     told = room.Options(tuple(scenario or ()), *strategies, games, key, workers, out)
     made = room.bench(told, lambda line: typer.echo(f"sim-bridge: {line}", err=True))
     print(text(made.board))
@@ -240,6 +248,10 @@ def classic(
         int, options.value(Flights, "--starts", words="Games: the file's start and others near it.", unit="N")
     ] = 20,
     seed: Annotated[int, options.value(Seed, "--seed", words="Seed of the other starts.", unit="N")] = 1,
+    feints: Annotated[
+        bool,
+        typer.Option("--feints", help="Opponents also begin aside of optimal play."),
+    ] = False,
     json: Annotated[bool, typer.Option("--json", help="One JSON object a line, nothing else.")] = False,
     picture: Annotated[Path | None, typer.Option(help="Draw the problem (PNG, SVG or PDF).")] = None,
 ) -> None:
@@ -247,7 +259,7 @@ def classic(
     from sim_bridge.programs.classic import command as room
 
     own = None if file is None else shipped_file(file, SCENARIOS)
-    chosen = room.Options(own, tuple(strategy or ()), starts, seed, json, picture)
+    chosen = room.Options(own, tuple(strategy or ()), starts, seed, feints, json, picture)
     if not name:
         room.refuse_without_problem(chosen)
     print(room.classic(name, chosen) if name else room.listed(json))

@@ -121,6 +121,42 @@ class Planned:
         return tuple(velocities)
 
 
+class Aside(NamedTuple):
+    """How a player leaves a way of playing for a while at the start, to see what the other makes of it."""
+
+    angle: float  # by which its velocity is turned, right positive [rad]
+    until: float  # [s]
+
+
+ASIDES = (Aside(0.6, 4.0), Aside(-0.6, 4.0), Aside(1.5, 2.0), Aside(-1.5, 2.0))
+
+
+def turned(v: Vec, angle: float) -> Vec:
+    """A velocity turned to the right [rad] in the horizontal plane."""
+    return Vec(v.x * cos(angle) - v.y * sin(angle), v.x * sin(angle) + v.y * cos(angle), v.z)
+
+
+def evader_aside(plays: Evader, aside: Aside) -> Evader:
+    """The same evader, led aside at first."""
+
+    def fly(scene: Scene) -> Vec:
+        return turned(plays(scene), aside.angle) if scene.game.time < aside.until else plays(scene)
+
+    return fly
+
+
+def pursuers_aside(plays: Pursuers, aside: Aside) -> Pursuers:
+    """The same pursuers, led aside at first."""
+
+    def fly(scene: Scene) -> tuple[Vec, ...]:
+        wishes = plays(scene)
+        if scene.game.time >= aside.until:
+            return wishes
+        return tuple(turned(wish, aside.angle) for wish in wishes)
+
+    return fly
+
+
 def held_to(velocity: Vec, speed: float) -> Vec:
     """A velocity no faster than `speed` [m/s]."""
     fast = norm(velocity)

@@ -60,7 +60,7 @@ class Problem(NamedTuple):
     floor: float = -inf  # of the payoff
     teams: tuple[int, int] = (1, 1)  # least and most pursuers
     faster: bool = True  # the pursuers; else they are as fast as the evader
-    evaders: tuple[str, ...] = ("paper", "two-leg", "dodge", "evasive", "straight")
+    evaders: tuple[str, ...] = ("paper", "evasive", "straight")
     chasers: tuple[str, ...] = ("paper", "parallel-pursuit", "pure-pursuit")
 
     def expected(self, value: float) -> float:

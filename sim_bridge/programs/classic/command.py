@@ -11,7 +11,7 @@ import msgspec
 from onboard.config.strict import ConfigError
 from onboard.core.math.vectors import distance
 from onboard.runtime.progress import Progress
-from sim_bridge.classic.play import Scene
+from sim_bridge.classic.play import ASIDES, Scene
 from sim_bridge.classic.problem import Problem
 from sim_bridge.classic.problems import PROBLEMS, problem_named, start_of
 from sim_bridge.programs.classic.measure import Row, measured, starts_near
@@ -27,6 +27,7 @@ class Options(NamedTuple):
     strategies: tuple[str, ...] = ()  # none: the problem's
     starts: int = STARTS
     seed: int = 1
+    feints: bool = False  # opponents that begin aside of optimal play, too
     json: bool = False
     picture: Path | None = None
 
@@ -46,7 +47,7 @@ def listed(json: bool) -> str:
 def refuse_without_problem(options: Options) -> None:
     """Demand that what only one problem can use was not given without one. Raises ConfigError."""
     plain = Options(json=options.json)
-    for name in ("file", "strategies", "starts", "seed", "picture"):
+    for name in ("file", "strategies", "starts", "seed", "feints", "picture"):
         if getattr(options, name) != getattr(plain, name):
             option = "--strategy" if name == "strategies" else f"--{name}"
             raise ConfigError(f"{option}: found without a problem, expected one: {', '.join(PROBLEMS)}")
@@ -70,12 +71,16 @@ def classic(name: str, options: Options) -> str:
         picture.check(options.picture)
     with Progress("sim-bridge") as progress:
         starts = starts_near(problem, start, options.starts, options.seed)
-        rows = measured(problem, starts, options.strategies, progress.show)
+        rows = measured(problem, starts, options.strategies, options.feints, progress.show)
     if options.picture is not None:
         picture.draw(problem, start, options.picture)
     if options.json:
         return "\n".join(msgspec.json.encode(row).decode() for row in rows)
     lines = [*_head(problem, start), "", *table(problem, rows), "", f"Where ours fall short: {problem.why}."]
+    if options.feints:
+        lines.append(
+            f"The worst of {1 + len(ASIDES)} games a start: optimal opponents, and such that begin aside."
+        )
     if problem.left_out:
         lines.append(f"Not played by `bench`: {problem.left_out}.")
     if options.picture is not None:

@@ -7,7 +7,7 @@ starts; the two optimal sides against each other show what steps of time and a c
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import msgspec
 import numpy as np
@@ -18,11 +18,22 @@ from onboard.config.strict import ConfigError
 from onboard.core.strategy.registry import EVADERS, PURSUERS
 from onboard.game.plugins import evader_strategy, plugin_names, pursuer_strategy
 from onboard.runtime.progress import Tell, silent
-from sim_bridge.classic.play import Evader, Pursuers, Scene, ours, theirs
+from sim_bridge.classic.play import (
+    ASIDES,
+    Evader,
+    Pursuers,
+    Scene,
+    evader_aside,
+    ours,
+    pursuers_aside,
+    theirs,
+)
 from sim_bridge.classic.problem import Problem, drawn, play
 from sim_bridge.programs.campaigns.until import wilson
 
 OPTIMAL = "optimal"
+BOTH, PURSUERS_SIDE, EVADERS_SIDE = "both", "pursuers", "evader"
+T = TypeVar("T")
 BOOTSTRAPS = 500
 KNOWN = 0.95  # of the starts drawn again must hold something to have a share of
 Array = NDArray[np.float64]
@@ -34,6 +45,7 @@ class Row(msgspec.Struct, frozen=True):
     problem: str
     side: str  # pursuers, evader, or both for the optimal play of both
     strategy: str
+    opponents: int  # 1, or as many with those that begin aside: the worst game of each start counts
     starts: int
     games: int  # of those, theory gives the side's
     won: int  # of those, it won
@@ -64,21 +76,52 @@ def starts_near(problem: Problem, start: Scene, count: int, seed: int) -> list[S
     return [start] + [drawn(problem, start, rng) for _ in range(count - 1)]
 
 
+class Side(NamedTuple):
+    """Who is measured: a strategy on a side, and the opponents that it meets, each from every start."""
+
+    name: str  # as in Row
+    strategy: str
+    games: tuple[tuple[Callable[[], Evader], Callable[[], Pursuers]], ...]
+
+
 def measured(
-    problem: Problem, starts: Sequence[Scene], only: Sequence[str] = (), tell: Tell = silent
+    problem: Problem,
+    starts: Sequence[Scene],
+    only: Sequence[str] = (),
+    feints: bool = False,
+    tell: Tell = silent,
 ) -> list[Row]:
-    """A row for the optimal play, each pursuers' and each evader's strategy; `only` names those to take."""
+    """A row for the optimal play, each pursuers' and each evader's strategy; `only` names those to take.
+
+    With `feints` everybody also meets opponents that begin aside of optimal play (ASIDES), and the game that
+    was worst for it counts: optimal play itself loses nothing by them.
+    """
     chasers, evaders = chosen(problem, only)
-    sides: list[tuple[str, str, Callable[[], Evader], Callable[[], Pursuers]]] = [
-        ("both", OPTIMAL, lambda: problem.evader, lambda: problem.pursuers)
-    ]
-    sides += [("pursuers", name, lambda: problem.evader, ours(name)) for name in chasers]
-    sides += [("evader", name, theirs(name), lambda: problem.pursuers) for name in evaders]
+    e, p = problem.evader, problem.pursuers
+    asides = ASIDES if feints else ()
+    opponents = (e, *(evader_aside(e, one) for one in asides))
+    hunters = (p, *(pursuers_aside(p, one) for one in asides))
+    sides = [Side(BOTH, OPTIMAL, ((_always(e), _always(p)),))]
+    sides += [Side(PURSUERS_SIDE, n, tuple((_always(o), ours(n)) for o in opponents)) for n in chasers]
+    sides += [Side(EVADERS_SIDE, n, tuple((theirs(n), _always(h)) for h in hunters)) for n in evaders]
     rows = []
-    for number, (side, name, evader, pursuers) in enumerate(sides):
-        tell(number / len(sides), f"{side} {name}")
-        rows.append(row(problem, side, name, [_game(problem, one, evader(), pursuers()) for one in starts]))
+    for number, side in enumerate(sides):
+        tell(number / len(sides), f"{side.name} {side.strategy}")
+        rows.append(row(problem, side, [_worst(problem, one, side) for one in starts]))
     return rows
+
+
+def _always(plays: T) -> Callable[[], T]:
+    return lambda: plays
+
+
+def _worst(problem: Problem, start: Scene, side: Side) -> Game:
+    """The game of all against a side's opponents that is the worst for it."""
+    ends = [play(problem, start, evader(), pursuers()).end for evader, pursuers in side.games]
+    sign = -problem.pursuers_want if side.name == EVADERS_SIDE else problem.pursuers_want
+    worst = min(ends, key=lambda end: sign * end.payoff)
+    value = problem.value(start)
+    return Game(value, problem.won(start, value), worst.payoff, worst.won)
 
 
 def chosen(problem: Problem, only: Sequence[str]) -> tuple[list[str], list[str]]:
@@ -106,20 +149,16 @@ def _loads(load: Callable[[str], object], name: str) -> bool:
     return True
 
 
-def _game(problem: Problem, start: Scene, evader: Evader, pursuers: Pursuers) -> Game:
-    value, end = problem.value(start), play(problem, start, evader, pursuers).end
-    return Game(value, problem.won(start, value), end.payoff, end.won)
-
-
-def row(problem: Problem, side: str, name: str, games: Sequence[Game]) -> Row:
+def row(problem: Problem, who: Side, games: Sequence[Game]) -> Row:
     """The figures of one strategy's games."""
-    due = [g for g in games if side == "both" or g.theirs == (side == "pursuers")]
+    side, name = who.name, who.strategy
+    due = [g for g in games if side == BOTH or g.theirs == (side == PURSUERS_SIDE)]
     won = sum(g.won == g.theirs for g in due)
     low, high = wilson(won, len(due))
     expected = np.array([problem.expected(g.value) for g in games])
     payoff = np.array([g.payoff for g in games])
     again = np.random.default_rng(1).integers(0, len(games), (BOOTSTRAPS, len(games)))
-    upside_down = (problem.pursuers_want > 0) == (side == "evader")
+    upside_down = (problem.pursuers_want > 0) == (side == EVADERS_SIDE)
 
     def share(e: Array, p: Array) -> Any:
         top, bottom = (e, p) if upside_down else (p, e)
@@ -133,7 +172,7 @@ def row(problem: Problem, side: str, name: str, games: Sequence[Game]) -> Row:
     edges = np.percentile(finite, [2.5, 97.5]).tolist() if known else [None, None]
     least, most = np.percentile(gaps, [2.5, 97.5]).tolist()
     return Row(
-        problem.name, side, name, len(games), len(due), won, low, high, float(expected.mean()),
-        float(payoff.mean()), float((payoff - expected).mean()), least, most, total if known else None,
-        edges[0], edges[1],
+        problem.name, side, name, len(who.games), len(games), len(due), won, low, high,
+        float(expected.mean()), float(payoff.mean()), float((payoff - expected).mean()), least, most,
+        total if known else None, edges[0], edges[1],
     )  # fmt: skip

@@ -40,6 +40,13 @@ class Made(NamedTuple):
     data: Path
 
 
+def classic_scenarios() -> list[Path]:
+    """The classical problems that it can play: simple motion in the plane, a fixed target at most."""
+    from sim_bridge.classic.problems import played_by_bench
+
+    return [Path(name) for name in played_by_bench()]
+
+
 def bench(options: Options, say: Callable[[str], None]) -> Made:
     """Play what the leaderboard lacks and write its page. Raises ConfigError."""
     first, commitment = seeds_of(options.key)

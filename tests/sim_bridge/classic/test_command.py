@@ -11,7 +11,7 @@ from onboard.config.strict import ConfigError
 from onboard.runtime.resources import CLASSIC, named_files
 from sim_bridge.classic.problems import PROBLEMS, start_of
 from sim_bridge.programs.classic.command import Options, classic, listed, refuse_without_problem
-from sim_bridge.programs.classic.measure import Game, row
+from sim_bridge.programs.classic.measure import Game, Side, row
 from tests.support.paths import ROOT
 
 FOLDER = ROOT / "configs" / "scenarios" / "classic"
@@ -47,14 +47,14 @@ def test_a_problem_is_played_told_and_drawn(tmp_path: Path) -> None:
 def test_shares_and_intervals_are_those_of_the_games() -> None:
     """By hand: payoffs 10 and 30 of a value of 20 and 30 that pursuers want great."""
     games = [Game(20.0, True, 10.0, True), Game(30.0, True, 30.0, False), Game(-5.0, False, 0.0, False)]
-    found = row(PROBLEMS["convex-target"], "pursuers", "x", games)
+    found = row(PROBLEMS["convex-target"], Side("pursuers", "x", ()), games)
     assert (found.games, found.won) == (2, 1)
     assert (found.value, found.reached) == (pytest.approx(50 / 3), pytest.approx(40 / 3))
     assert found.share == pytest.approx(0.8)
-    other = row(PROBLEMS["two-cutters"], "pursuers", "x", [Game(20.0, True, 25.0, True)] * 2)
+    other = row(PROBLEMS["two-cutters"], Side("pursuers", "x", ()), [Game(20.0, True, 25.0, True)] * 2)
     assert other.share == pytest.approx(0.8)
     assert other.share_low == pytest.approx(0.8)
-    evader = row(PROBLEMS["two-cutters"], "evader", "x", [Game(20.0, True, 15.0, True)] * 2)
+    evader = row(PROBLEMS["two-cutters"], Side("evader", "x", ()), [Game(20.0, True, 15.0, True)] * 2)
     assert evader.share == pytest.approx(0.75)
     assert evader.games == 0
 
@@ -107,3 +107,20 @@ def test_what_needs_a_problem_is_refused_without_one() -> None:
         refuse_without_problem(Options(starts=3))
     with pytest.raises(ConfigError, match=r"found 'two-cutter', expected a problem: .*mean 'two-cutters'"):
         classic("two-cutter", Options())
+
+
+def test_a_feint_costs_optimal_pursuers_nothing_and_pure_pursuit_ground() -> None:
+    """The worst of five opponents is no better than the first, and theory's own pursuers keep the value."""
+    chosen = Options(strategies=("pure-pursuit", "parallel-pursuit"), starts=2, json=True)
+    plain, feinted = (
+        {
+            (r["side"], r["strategy"]): r
+            for r in map(msgspec.json.decode, classic("two-cutters", one).splitlines())
+        }
+        for one in (chosen, chosen._replace(feints=True))
+    )
+    for key in (("pursuers", "pure-pursuit"), ("pursuers", "parallel-pursuit")):
+        assert feinted[key]["opponents"] == 5
+        assert feinted[key]["reached"] >= plain[key]["reached"]
+    assert feinted["pursuers", "parallel-pursuit"]["share"] > 0.97
+    assert plain["pursuers", "pure-pursuit"]["share"] < 0.97
