@@ -94,7 +94,7 @@ CHAUFFEUR = Problem(
     "Isaacs 1965, 10.2; Merz 1971; Patsko and Turova 2001",
     "time to capture", "s", -1,
     _chauffeur_value, _in_time, _chauffeur_evader, _chauffeur_pursuer, _captured, _free,
-    "evaders that only run lose nothing far off; none of ours plans a capture's last turn, but 'evasive'",
+    "proportional navigation turns less than it can; 'evasive' and 'straight' fly on, not along the tangent",
     "the games of `bench` know no turning circle (simple motion)",
     move=cars(agile=True), admits=_well_ahead,
     chasers=("paper", "parallel-pursuit", "pure-pursuit", "proportional-navigation"),
@@ -163,7 +163,7 @@ CARS = Problem(
     "distance of the first pass", "m", -1,
     _cars_value, lambda start, payoff: payoff <= start.conditions.rules.R, _cars_evader, _cars_pursuer,
     _passed, _never_passed,
-    "our strategies aim by velocities that change at once; a car that follows them turns late",
+    "our evaders turn away as if they could at once, or not at all; 'evasive' does best",
     "the games of `bench` know no turning circle (simple motion)",
     move=cars(agile=False), admits=_passing, noted=_nearest, at_once=False, faster=False,
     chasers=("paper", "parallel-pursuit", "pure-pursuit", "proportional-navigation"),
@@ -200,7 +200,7 @@ CUTTERS = Problem(
     "Isaacs 1965, 6.8; Weintraub, Pachter and Garcia, arXiv 2003.05013",
     "time to capture", "s", -1,
     _cutters_value, _in_time, _cutters_evader, _cutters_pursuers, _captured, _free,
-    "each of our pursuers meets the course that the evader has, not the one that both will force on it",
+    "pure pursuit chases from behind; our evaders flee from the pursuers, not to where both come last",
     teams=(2, 2), chasers=("paper", "parallel-pursuit", "pure-pursuit", "team"),
 )  # fmt: skip
 
@@ -264,6 +264,6 @@ LIONS = Problem(
     "pursuers at the evader at once", "", +1,
     _deep, lambda start, payoff: payoff >= start.wanted, _lion_evader, _lions, _k_captured,
     lambda scene: End(scene.seen, scene.game.time, False),
-    "the paper's and pure pursuit do not keep the line of sight parallel, and so lose who is ahead",
+    "pure pursuit falls in behind; parallel pursuit may fly past an evader that it has reached",
     placed=_with_depth, admits=lambda scene: _deep(scene) >= 1.0, noted=_most, teams=(1, 20), faster=False,
 )  # fmt: skip

@@ -8,6 +8,10 @@ from sim_bridge.classic.play import End, Scene, touch
 from sim_bridge.classic.problem import Problem, aimed_at
 from sim_bridge.classic.values.regions import balls_of, lowest, nearest_to
 
+GIVES_GROUND = (
+    "pure pursuit gives ground; a faster pursuer blocks every heading, so that 'paper' and 'evasive' flee"
+    " and never attack"
+)
 SOUTH = Vec(-1.0, 0.0, 0.0)
 DEFENDERS = ("paper", "parallel-pursuit", "goalkeeper", "blocking-line", "team", "pure-pursuit")
 BEYOND_ZERO = 2.0  # capture radii: a value nearer to zero says neither side's game, as it is played
@@ -70,7 +74,7 @@ CONVEX = Problem(
     "distance from the target at capture", "m", +1,
     _disc_value, kept, lambda s: to_place(s.evader, _disc_point(s)), lambda s: all_to(s, _disc_point(s)),
     _disc_end, _disc_late,
-    "chasers meet the course of now, keepers wait at the target: nobody flies to where the attacker ends",
+    GIVES_GROUND,
     admits=lambda s: is_clear(_disc_value(s), s) and short_of_disc(s, s.evader.position) > 0.0,
     floor=0.0, chasers=DEFENDERS,
 )  # fmt: skip
@@ -129,7 +133,7 @@ HALF_SPACE = Problem(
     "height above the ground at capture", "m", +1,
     _border_value, kept, lambda s: to_place(s.evader, lowest_point(s)), lambda s: all_to(s, lowest_point(s)),
     _border_end, _border_late,
-    "ours chase each for itself; the goalkeeper guards the point below the attacker, not the ground",
+    GIVES_GROUND,
     "its target is a plane, and `bench` plays games in space with aircraft, not in simple motion",
     shown=_foot, admits=lambda s: is_clear(_border_value(s), s), floor=0.0, teams=(1, 2), chasers=DEFENDERS,
 )  # fmt: skip
@@ -139,6 +143,6 @@ BORDER = HALF_SPACE._replace(
     rule="Several faster pursuers meet an evader as far from a border as they can.",
     reference="Von Moll, Garcia, Casbeer, Suresh and Swar, J. Aerosp. Inf. Syst. 2020",
     payoff="distance from the border at capture",
-    why="ours chase each for itself; the goalkeeper guards the point straight ahead, not the border",
+    why=GIVES_GROUND,
     left_out="", teams=(1, 20),
 )  # fmt: skip

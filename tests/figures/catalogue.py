@@ -62,6 +62,12 @@ FIGURES = (
         ("configs/scenarios/spatial/six.toml", "tests/benchmarks/choice_in_pursuit.py"),
     ),
     Figure(
+        "classic.md",
+        ("-m", "tests.benchmarks.classic", "--starts", "20", "--feints", "5"),
+        ("sim_bridge.programs.classic",),
+        ("configs/scenarios/classic/*.toml", "tests/benchmarks/classic.py"),
+    ),
+    Figure(
         "team-planning.md",
         ("-m", "tests.benchmarks.team_planning"),
         ("onboard.core.strategy.team",),

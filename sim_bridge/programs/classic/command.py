@@ -128,5 +128,6 @@ def figures(problem: Problem, row: Row) -> tuple[str, str, str, str]:
     if row.share is not None and row.share_low is not None and row.share_high is not None:
         share = f"{100 * row.share:.0f} % ({100 * row.share_low:.0f}–{100 * row.share_high:.0f})"
     unit = f" {problem.unit}" if problem.unit else ""
-    gap = f"{row.difference:+.1f}{unit} ({row.difference_low:+.1f} … {row.difference_high:+.1f})"
-    return f"{row.value:.1f}{unit}", f"{row.reached:.1f}{unit}", gap, share
+    gap, low, high = (round(x, 1) + 0.0 for x in (row.difference, row.difference_low, row.difference_high))
+    gaps = f"{gap:+.1f}{unit} ({low:+.1f} … {high:+.1f})"
+    return f"{row.value:.1f}{unit}", f"{row.reached:.1f}{unit}", gaps, share
