@@ -8,7 +8,7 @@ and one odd sample decides nothing: see `plausibility`.
 from __future__ import annotations
 
 from collections import Counter
-from typing import TypeVar
+from typing import Any
 
 from onboard.autopilot.base import Telemetry
 from onboard.autopilot.batteries import Batteries, Gauged
@@ -52,8 +52,8 @@ BLANK: dict[type, Value] = {
     ExtendedState: ExtendedState(0, 0),
     RcChannels: RcChannels(()),
 }
+NOTHING: dict[type, tuple[float, int, Any]] = {kind: (NEVER, 0, value) for kind, value in BLANK.items()}
 _WEIGHED = {EkfStatus, GpsFix, Battery, SysStatus}  # of which the last few are judged together
-V = TypeVar("V")
 
 
 class Observer:
@@ -64,7 +64,7 @@ class Observer:
         self.component = component
         self.frame: Frame | None = None  # the game frame, when the setup is known
         self.home: Home | None = None
-        self._latest: dict[type, tuple[float, int, Value]] = {}  # kind → (arrival, sequence, value)
+        self._latest: dict[type, tuple[float, int, Any]] = {}  # kind → (arrival, sequence, value)
         self._link = 0
         self.odd: Counter[str] = Counter()  # samples that did not count, by cause
         self._reboots = 0
@@ -165,17 +165,18 @@ class Observer:
 
     def snapshot(self) -> Telemetry:
         """Return what is known now."""
-        heart_at, heart = self._of(Heartbeat)
-        place_at, place = self._of(GlobalPosition)
-        tilt_at, tilt = self._of(Attitude)
-        air_at, air = self._of(AirData)
-        wind_at, wind = self._of(Wind)
-        status_at, status = self._of(SysStatus)
+        heard = self._latest.get
+        heart_at, _, heart = heard(Heartbeat) or NOTHING[Heartbeat]
+        place_at, _, place = heard(GlobalPosition) or NOTHING[GlobalPosition]
+        tilt_at, _, tilt = heard(Attitude) or NOTHING[Attitude]
+        air_at, _, air = heard(AirData) or NOTHING[AirData]
+        wind_at, _, wind = heard(Wind) or NOTHING[Wind]
+        status_at, _, status = heard(SysStatus) or NOTHING[SysStatus]
         pack_at = self._latest[Battery][0] if Battery in self._latest else NEVER
-        gps_at, gps = self._of(GpsFix)
-        ekf_at = self._of(EkfStatus)[0]
-        landed_at, landed = self._of(ExtendedState)
-        sticks_at, sticks = self._of(RcChannels)
+        gps_at, _, gps = heard(GpsFix) or NOTHING[GpsFix]
+        ekf_at = (heard(EkfStatus) or NOTHING[EkfStatus])[0]
+        landed_at, _, landed = heard(ExtendedState) or NOTHING[ExtendedState]
+        sticks_at, _, sticks = heard(RcChannels) or NOTHING[RcChannels]
         where = (place.latitude_deg, place.longitude_deg, place.altitude_m)
         placed = self.frame is not None and place_at != NEVER
         return Telemetry(
@@ -220,10 +221,6 @@ class Observer:
             reboots=self._reboots,
             link_quality=self._quality,
         )
-
-    def _of(self, kind: type[V]) -> tuple[float, V]:
-        at, _, value = self._latest.get(kind) or (NEVER, 0, BLANK[kind])
-        return at, value  # type: ignore[return-value]  # of the kind that it is kept under
 
     def _count(self, now: float, sequence: int) -> None:
         """Keep the running share of frames that arrived, by the gaps in their numbers."""

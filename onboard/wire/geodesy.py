@@ -64,7 +64,9 @@ class Frame:
         y = r * sin(lam) - self._y0
         z = (n * (1.0 - E2) + altitude_m) * s - self._z0
         out = self._cl * x + self._sl * y  # away from the Earth's axis, in the origin's meridian
-        return Vec(self._cp * z - self._sp * out, self._cl * y - self._sl * x, self._h0 - altitude_m)
+        place = (self._cp * z - self._sp * out, self._cl * y - self._sl * x, self._h0 - altitude_m)
+        found: Vec = tuple.__new__(Vec, place)  # twice as fast as `Vec(…)`
+        return found
 
     def geodetic_from_ned(self, position: Vec) -> Geodetic:
         """Geodetic position of one in this frame [m; NED]; the inverse of `ned_from_geodetic`."""

@@ -25,6 +25,8 @@ from sim_bridge.vehicle.flight.plane import (
 )
 from sim_bridge.vehicle.motion import Air, Demand, Lateral, Motion
 
+_new = tuple.__new__  # twice as fast as a call of the class
+
 
 def course_through_air(course: float, speed: float, air: Vec) -> float:
     """Wind triangle: the course through the air [rad] that holds a course over ground."""
@@ -104,20 +106,16 @@ class Plane:
         position = state.position
         left = self._due
         if left > 1e-9:
-            v = state.velocity
-            position = Vec(position.x + left * v.x, position.y + left * v.y, position.z + left * v.z)
+            (x, y, z), (vx, vy, vz) = position, state.velocity
+            position = _new(Vec, (x + left * vx, y + left * vy, z + left * vz))
         turning = state.yaw.rate
         if model.path == PathModel.COORDINATED:
             turning += STANDARD_GRAVITY * tan(state.bank) / max(state.speed, SLOW)
-        return Motion(
-            position,
-            state.velocity,
-            true_airspeed(state, air.wind, air.gust),
-            state.bank,
-            state.pitch.angle,
-            wrap(nose_yaw(state, model)),
-            Vec(state.bank_rate, state.pitch.rate, turning),
-        )
+        rates = _new(Vec, (state.bank_rate, state.pitch.rate, turning))
+        airspeed, yaw = true_airspeed(state, air.wind, air.gust), wrap(nose_yaw(state, model))
+        moved = (position, state.velocity, airspeed, state.bank, state.pitch.angle, yaw, rates)
+        motion: Motion = _new(Motion, moved)
+        return motion
 
 
 def fixed_wing(

@@ -32,6 +32,7 @@ from sim_bridge.vehicle.wind.recorded import RecordedWind, read
 from sim_bridge.vehicle.wind.shear import ROUGHNESS, mean_wind
 
 TICK = 0.02  # [s] of the gusts' grid
+_new = tuple.__new__  # twice as fast as a call of the class
 REMIX = 25  # ticks after which the correlation is computed anew from the distances
 
 
@@ -78,11 +79,14 @@ class WindField:
             return CALM if wind == ZERO else Air(wind, ZERO)
         self._places[vehicle] = position
         self._advance(vehicle, int(time / TICK + 1e-6), motion.airspeed)
-        axes = GustAxes(*self._axis, motion.yaw, motion.pitch, height)
-        return Air(wind, gust_of(self._states[vehicle], self._sigma, axes))
+        axes: GustAxes = _new(GustAxes, (*self._axis, motion.yaw, motion.pitch, height))
+        air: Air = _new(Air, (wind, gust_of(self._states[vehicle], self._sigma, axes)))
+        return air
 
     def _advance(self, vehicle: int, tick: int, airspeed: float) -> None:
         """One vehicle's gusts up to a tick."""
+        if tick == self._ticks[vehicle]:
+            return
         state, height = self._states[vehicle], -self._places[vehicle].z
         for number in range(self._ticks[vehicle] + 1, tick + 1):
             noise = GustNoise(*self._noise(vehicle, number))
