@@ -106,7 +106,7 @@ def regular(x: float, y: float, found: Miss) -> bool:
 
 @pytest.mark.parametrize(
     ("cells", "headings", "h", "tolerance"),
-    [(33, 28, 0.15, 0.15), pytest.param(61, 48, 0.1, 0.06, marks=LONG)],
+    [(29, 24, 0.16, 0.15), pytest.param(61, 48, 0.1, 0.06, marks=LONG)],
 )
 def test_identical_cars_pass_as_near_as_the_grid_says(
     cells: int, headings: int, h: float, tolerance: float
@@ -117,7 +117,7 @@ def test_identical_cars_pass_as_near_as_the_grid_says(
     around = np.concatenate([grid, grid[:, :, :1]], axis=2)
     rng = np.random.default_rng(2)
     inside, outside = [], []
-    while len(inside) < 30:
+    while len(inside) < 20:
         x, y, t = float(rng.uniform(-1.6, 1.6)), float(rng.uniform(0, 1.6)), float(rng.uniform(0, 2 * pi))
         found = two_cars(x, y, t)
         per_m = (grid.shape[0] - 1) / (2 * half)
