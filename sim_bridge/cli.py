@@ -234,7 +234,7 @@ def classic(
         str,
         typer.Argument(
             help="Problem; none: all of them with their values.",
-            metavar="[NAME]",
+            metavar="NAME",
             autocompletion=options.shipped(CLASSIC),
         ),
     ] = "",

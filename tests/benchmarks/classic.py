@@ -37,7 +37,9 @@ class Kept(msgspec.Struct):
 
 def played_by(name: str) -> str:
     """A hash of what decides these games; words do not."""
-    files = [*ROOT.glob("sim_bridge/classic/**/*.py"), ROOT / "sim_bridge/programs/classic/measure.py"]
+    rooms = ("sim_bridge/classic", "onboard/core")
+    files = [path for room in rooms for path in ROOT.glob(f"{room}/**/*.py")]
+    files.append(ROOT / "sim_bridge" / "programs" / "classic" / "measure.py")
     found = hashlib.sha256()
     for path in sorted(files):
         tree = ast.parse(path.read_text(encoding="utf-8"))
