@@ -85,8 +85,8 @@ def _counted(count: int, word: str) -> str:
 
 def _told(one: Chosen) -> str:
     """A scenario in words: its short name and what it is."""
-    data = one.data
-    return f"{one.label}: {data.get('description') or data['name']}"
+    words: str = one.data.get("description") or one.data["name"]
+    return words if words.startswith(f"{one.label}:") else f"{one.label}: {words}"
 
 
 def _words(known: Mapping[str, NamedPursuer | NamedEvader], plan: Plan) -> dict[str, str]:
