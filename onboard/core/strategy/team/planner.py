@@ -28,7 +28,7 @@ from onboard.core.strategy.team.plan_types import (
 from onboard.core.strategy.team.ring import closing, staged
 
 EVERY = 0.5  # [s] between two plans
-KEEP = 0.09  # [rad] a ring that was closed counts as closed until it is open by this
+KEEP = 0.09  # [rad] a ring that was closed counts as closed until it is open by this, in space
 WIDE = 0.5  # [rad] in space a band open by less may close in the chase: nobody leaves it for the target
 
 
@@ -48,11 +48,12 @@ def engaged(s: Situation, previous: Plan) -> Plan:
     """What the team does once the evader has set out."""
     way = way_out(s)
     was = previous.band.closed and previous.time >= s.t0
-    if way.closed or (was and way.gap <= KEEP):
+    free = escapes(s)
+    if way.closed or (was and way.gap <= KEEP and not (free and s.rules.planar)):
         band = Band(True, way.gap, way.bearing, way.pitch, NOBODY, s.now)
         return Plan(s.now, each(_chase, s.team, _Shared(s, Reason.ENCLOSED)), band)
     band = closing(s, way)
-    if s.target.exists and way.gap > (0.0 if s.rules.planar else WIDE) and escapes(s):
+    if s.target.exists and way.gap > (0.0 if s.rules.planar else WIDE) and free:
         return Plan(s.now, guarded(s, previous), band)
     return Plan(s.now, each(_chase, s.team, _Shared(s, Reason.NO_GAP_IN_REACH)), band)
 
