@@ -72,9 +72,12 @@ class Memory:
         self._fastest[id] = (best, t)
         return best
 
-    def train(self, now: float, slices: int = 1) -> int:
-        """Advance the predictors' training by at most `slices` of about 1 ms; returns how many were done."""
+    def train(self, now: float, slices: int = 1, *, asked: bool = True) -> int:
+        """Advance the predictors' training by at most `slices` of about 1 ms; returns how many were done.
+
+        `asked`: predictions are asked for about now, and what the next one needs is reckoned."""
         done = self.trainer.advance(now, self.tracks, slices)
-        for predictor in self.tracks.values():
-            predictor.prepare()
+        if asked:
+            for predictor in self.tracks.values():
+                predictor.prepare()
         return done

@@ -32,6 +32,7 @@ from onboard.wire.bus.messages import Phase, PhaseChange, Role, Setup, Track
 from onboard.wire.geodesy import Frame
 
 OVERDUE_S = 1.0  # the word that the game runs comes within this after t₀
+SOON_S = 1.0  # before t₀, from which on the first predictions are made ready
 TRAINING_SLICES = 2  # of about 1 ms, after each control step
 
 
@@ -220,7 +221,9 @@ class GamePlayer:
             self._asked = None
             self._team.work(now, self.time(now.wall_ns), question)
         if self.flying is not None:
-            self._memory.train(self._seconds(wall_ns), TRAINING_SLICES)
+            left = self._to_start(wall_ns)
+            asked = self.state(wall_ns).on or (left is not None and left < SOON_S)
+            self._memory.train(self._seconds(wall_ns), TRAINING_SLICES, asked=asked)
 
     # ------------------------------------------------------------------ what the master says
 
