@@ -65,6 +65,7 @@ KERNELS = (
     "onboard.core.strategy.team.assignment",
     "onboard.core.strategy.team.closure",
     "onboard.core.strategy.team.flying",
+    "onboard.core.strategy.team.abreast",
     "onboard.core.strategy.team.guarding",
     "onboard.core.strategy.team.parts",
     "onboard.core.strategy.team.plan_types",

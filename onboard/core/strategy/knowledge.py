@@ -46,6 +46,7 @@ class RuleId(IntEnum):
     RING_SLOT = 40
     GUARD_TARGET = 41
     BLOCK_CORRIDOR = 42
+    ABREAST = 43
     CUSTOM = 100
 
 
@@ -58,7 +59,8 @@ class Level(IntEnum):
 
 
 STRATEGIC = (
-    RuleId.KEEP_GOAL, RuleId.HOLD_LINE, RuleId.RING_SLOT, RuleId.GUARD_TARGET, RuleId.BLOCK_CORRIDOR
+    RuleId.KEEP_GOAL, RuleId.HOLD_LINE, RuleId.RING_SLOT, RuleId.GUARD_TARGET, RuleId.BLOCK_CORRIDOR,
+    RuleId.ABREAST,
 )  # rules that place a pursuer for its team  # fmt: skip
 
 

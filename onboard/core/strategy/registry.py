@@ -70,6 +70,9 @@ PURSUERS: dict[str, NamedPursuer] = {
     "team": NamedPursuer(
         flying.pursuer_team, flying.TEAM, "its part of the team's plan: ring, goalkeeper, blocker, chase"
     ),
+    "abreast": NamedPursuer(
+        flying.pursuer_abreast, flying.ABREAST, "who come from one side fly as a wall: the answer to a dodge"
+    ),
     "proportional-navigation": NamedPursuer(
         pursuit.pursuer_navigation,
         pursuit.NAVIGATION,

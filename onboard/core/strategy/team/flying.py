@@ -10,6 +10,7 @@ from onboard.core.game.views import PursuerView
 from onboard.core.strategy.denial import at_post
 from onboard.core.strategy.knowledge import Decision, Module, Rule, RuleId, fold, silent
 from onboard.core.strategy.pursuit import PURSUER_PARALLEL
+from onboard.core.strategy.team.abreast import abreast
 from onboard.core.strategy.team.plan_types import Role
 
 
@@ -46,4 +47,18 @@ TEAM: tuple[Rule[PursuerView], ...] = (
     *PURSUER_PARALLEL[1:],
 )
 
+ABREAST: tuple[Rule[PursuerView], ...] = (
+    PURSUER_PARALLEL[0],
+    Rule(
+        RuleId.ABREAST,
+        "mates come from the same side, and it is not yet on it to go for the evader",
+        "to its place in their wall, a spacing beside the next",
+        "answer to a dodge: ½ (ω_e v_e − ω_p v_p) t² = R",
+        Module.INTELLIGENT,
+        abreast,
+    ),
+    *PURSUER_PARALLEL[1:],
+)
+
 pursuer_team = fold(TEAM)
+pursuer_abreast = fold(ABREAST)
