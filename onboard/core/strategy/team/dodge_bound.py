@@ -1,10 +1,10 @@
 """From how far a faster evader passes a wall of pursuers by one hard turn, whatever they do. Kernel style.
 
-The evader flies at the middle of pursuers abreast that come head on. At time 0, a distance d away, it turns as
-hard as it can: after t it is r_e sin ω_e t on and y_e = r_e (1 − cos ω_e t) across, r = v/ω. No pursuer is
-farther across than W + r_p (1 − cos ω_p t), W being half the wall's width, nor farther on than v_p t. So nobody
-captures it where at every t of a quarter turn more than R is left, of d − v_p t − r_e sin ω_e t on and what it
-has won across, y_e − W − r_p (1 − cos ω_p t). For small angles that is ½ (ω_e v_e − ω_p v_p) t² = W + R at
+The evader flies at the middle of pursuers abreast that come head on. At time 0, d away, it turns as hard as
+it can: after t it is r_e sin ω_e t on and y_e = r_e (1 − cos ω_e t) across, r = v/ω. No pursuer is farther
+across than W + r_p (1 − cos ω_p t), W being half the wall's width, nor farther on than v_p t. Nobody captures
+it where at every t of a quarter turn more than R is left, of d − v_p t − r_e sin ω_e t on and what it has won
+across, y_e − W − r_p (1 − cos ω_p t). For small angles that is ½ (ω_e v_e − ω_p v_p) t² = W + R at
 d = (v_e + v_p) t.
 """
 
