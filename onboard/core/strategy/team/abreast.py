@@ -2,9 +2,9 @@
 
 A faster evader that turns as fast as a pursuer passes it from `dodge_bound.dodge_always` on: beside it
 another must be. Each keeps its place in the wall, a spacing from the next. Who is nearest to the evader's
-course goes for it as early as its turn takes where that leads between two of them, and as late as COMMIT where
-the evader turns past all: till then the outermost waits where it would come. The others keep beside. Kernel
-style.
+course goes for it as early as its turn takes where that leads between two of them, and as late as COMMIT
+where the evader turns past all: till then the outermost waits where it would come. The others keep beside.
+Kernel style.
 """
 
 from __future__ import annotations
