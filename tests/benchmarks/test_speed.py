@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import subprocess
 import sys
 
 import pytest
@@ -64,3 +65,11 @@ def test_a_cost_is_judged_by_itself_and_what_was_not_measured_is_a_dash() -> Non
     each = {"now": Cost(70.0, "")}
     assert speed.judged(row, each) == "65: **missed**"
     assert f"| {row} | MB | – | 70 | 65: **missed** |" in list(speed.page([RELEASE, "now"], {row: each}))
+
+
+def test_an_old_state_that_fails_leaves_a_dash_and_the_newest_raises() -> None:
+    piece = speed_work.Work('tell({"a row": 1.0 / (Path.cwd().name == "here")})', 1)
+    tree = ROOT / "tests"
+    assert speed.costs([State(RELEASE, tree, sys.executable)], "", 1, [piece]) == {}
+    with pytest.raises(subprocess.CalledProcessError):
+        speed.costs([State("now", tree, sys.executable)], "", 1, [piece])
