@@ -73,7 +73,7 @@ def turns(states: list[State], one: Work, rounds: int) -> Iterator[State]:
 
 
 def costs(states: list[State], only: str, rounds: int, pieces: list[Work]) -> Found:
-    """The least cost of every row, for every state that was measured. Old ones may fail with today's libraries:
+    """The least cost of every row, for every state measured. Old ones may fail with today's libraries:
     they are left out. Raises what `measure` does where the newest fails."""
     found: Found = {}
     for one in pieces:
