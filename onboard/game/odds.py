@@ -241,12 +241,14 @@ def odds(s: Situation, *, changes: bool = True) -> Odds:
 
 def judgement(found: Odds, count: int) -> str:
     """Go, no-go or open, against the evader of the paper: by the interval of the chance of capture of `count`
-    pursuers; where the table says nothing by the bound, and by the band."""
+    pursuers; where the table says nothing by the bound, and by the band. Where the bound forbids a forced
+    capture no chance is a go."""
     if not found.chances:
         too_few = found.needed == 0 or found.needed > count
         return "go" if found.closed else "no-go" if too_few else "unknown"
     p = next(iter(found.chances.values())).captured
-    return "go" if p.low >= GO else "no-go" if p.high < GO else "open"
+    forced = found.closed or 0 < found.needed <= count
+    return "go" if p.low >= GO and forced else "no-go" if p.high < GO else "open"
 
 
 def headline(s: Situation, found: Odds) -> tuple[str, str]:
