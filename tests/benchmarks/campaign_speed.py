@@ -10,6 +10,7 @@ from __future__ import annotations
 import io
 import json
 import os
+import shlex
 import subprocess
 import sys
 import tarfile
@@ -26,7 +27,7 @@ from tests.support import benchmark_record
 from tests.support.paths import ROOT
 
 BEFORE = "82b7eea"  # kernels cached nowhere, aircraft one by one, reversals in Python
-COMMAND = "make bench-campaign"
+COMMAND = "make bench-campaign"  # with options: `python -m tests.benchmarks.campaign_speed` and these
 CHILD = "tests/benchmarks/campaign_games.py"
 HORIZON = 400.0  # [s] of the flown games of five
 SIMPLE = 4000  # games of simple motion a turn
@@ -188,6 +189,11 @@ def cpu_of_children() -> float:
     return spent.children_user + spent.children_system
 
 
+def told_command(options: list[str]) -> str:
+    """The command as it was given."""
+    return shlex.join(["python", "-m", "tests.benchmarks.campaign_speed", *options]) if options else COMMAND
+
+
 def paper_plan(games: float) -> str:
     """What 10⁹ games cost at so many games a CPU-second."""
     hours = 1e9 / games / 3600.0
@@ -237,7 +243,7 @@ def main(
     if short:
         print("\n".join(lines))
         return
-    benchmark_record.write("campaign.md", "What games of a campaign cost", COMMAND, lines)
+    benchmark_record.write("campaign.md", "What games of a campaign cost", told_command(sys.argv[1:]), lines)
 
 
 if __name__ == "__main__":
