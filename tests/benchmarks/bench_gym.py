@@ -133,9 +133,10 @@ def own() -> dict[str, Maker]:
     ))  # fmt: skip
 
 
-def contenders(only: str) -> list[Contender]:
-    """Everybody who is measured; `only`: of this project's those whose name has the word, and no others."""
-    chosen = [make() for name, make in own().items() if only in name]
+def contenders(only: str, without: str = "") -> list[Contender]:
+    """Everybody who is measured; `only`: of this project's those whose name has the word, and no others;
+    `without`: none whose name has this one."""
+    chosen = [make() for name, make in own().items() if only in name and not (without and without in name)]
     return chosen if only else [*chosen, pettingzoo(), vmas(), simple_tag(), *yardsticks()]
 
 
@@ -180,14 +181,16 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--rounds", type=int, default=15)
     parser.add_argument("--only", default="", help="print this project's whose name has the word; write none")
+    parser.add_argument("--without", default="", help="leave those out whose name has the word")
     told = parser.parse_args()
-    found = measured(contenders(told.only), told.rounds)
+    found = measured(contenders(told.only, told.without), told.rounds)
     if told.only:
         print("\n".join(f"{name}: {rate:,.0f} steps a CPU-second" for name, rate in found.items()))
         return
     lines = page(found, told.rounds)
     print("\n".join(lines))
-    write("gym.md", "Steps of learning environments", "make bench-gym", lines)
+    left_out = f" without `{told.without}`" if told.without else ""
+    write("gym.md", "Steps of learning environments", f"make bench-gym{left_out}", lines)
 
 
 if __name__ == "__main__":
