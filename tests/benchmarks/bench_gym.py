@@ -127,7 +127,7 @@ def own() -> dict[str, Maker]:
         games("plane, all six act by velocity", **plane, learn="all"),
         games("plane, all six act by heading", scenario="plane", actions="heading", learn="all"),
         games("plane, five act against the paper's evader", **plane),
-        games("plane, the evader acts against the paper's five", scenario="plane", learn="evader"),
+        games("plane, the evader acts against five in parallel pursuit", scenario="plane", learn="evader"),
         games("space in wind, all six act by velocity", 30, clear=True, **space, learn="all"),
         games("space in wind, known by tracks, all six act by velocity", 80, **tracked, learn="all"),
         games("space, known by tracks, five act against the paper's evader", 80, **tracked),
