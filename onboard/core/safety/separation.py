@@ -16,6 +16,9 @@ from onboard.core.safety.fence import stopping_speed
 from onboard.core.safety.passing import Moved, anybody, met, pass_clear, turning
 from onboard.core.safety.policy import Policy
 
+SLACK = 0.15  # of the distance, kept besides by who hovers
+DRIFT = 0.5  # [m/s] by which gusts push two together until they answer
+
 
 class Separated(NamedTuple):
     """The velocity that keeps apart, and whether that changed it."""
@@ -43,7 +46,8 @@ def keep_apart(v: Vec, position: Vec, own_id: int, mates: tuple[Mate, ...], poli
     """The velocity with its closing parts bounded by what still stops at the separation distance.
 
     Of an excess each of two vehicles takes half, and one whose mate has gone quiet takes it all and doubles
-    the distance. Inside the distance both move apart; where they are level, the lower id goes up.
+    the distance. Inside the distance both move apart, the higher one up; where they are level, the lower id.
+    The distance is the separation and what lag and gusts take of it.
     """
     changed = False
     e = policy.envelope
@@ -53,7 +57,7 @@ def keep_apart(v: Vec, position: Vec, own_id: int, mates: tuple[Mate, ...], poli
         if not believable(mate.position, mate.velocity):
             continue
         quiet = mate.age > policy.mate_age
-        keep = policy.separation * (2.0 if quiet else 1.0)
+        keep = policy.separation * (2.0 if quiet else 1.0) * (1.0 + SLACK) + DRIFT * policy.reaction
         x = mate.position.x - position.x
         y = mate.position.y - position.y
         z = mate.position.z - position.z
@@ -75,6 +79,7 @@ def keep_apart(v: Vec, position: Vec, own_id: int, mates: tuple[Mate, ...], poli
         share = excess if quiet else 0.5 * excess
         v = Vec(v.x - share * ux, v.y - share * uy, v.z - share * uz)
         if d < keep and abs(z) < 0.5 * keep:
-            rise = e.climb_max if own_id < mate.id else -e.sink_max
+            up = z > 0.0 if abs(z) > 0.05 * keep else own_id < mate.id
+            rise = e.climb_max if up else -e.sink_max
             v = Vec(v.x, v.y, -rise)
     return Separated(v, changed)

@@ -15,7 +15,7 @@ from onboard.core.safety.envelope import bounded
 from onboard.core.safety.fence import keep_height, turn
 from onboard.core.safety.field_profile import layers
 from onboard.core.safety.policy import Action, Cause, Envelope, Fence, Policy, SupervisorInput
-from onboard.core.safety.separation import keep_apart
+from onboard.core.safety.separation import DRIFT, SLACK, keep_apart
 from onboard.core.safety.supervisor import SupervisorState, supervise
 
 POLICY = Policy(envelope=Envelope(speed_max=10.0, deceleration=2.0), separation=10.0, reaction=0.5)
@@ -47,10 +47,11 @@ def test_a_mate_becomes_quiet_after_one_second_and_not_sooner() -> None:
 
 @pytest.mark.parametrize("gap", [0.5, 3.0, 8.0])
 def test_who_closes_in_can_still_stop_at_the_separation_distance(gap: float) -> None:
-    v = toward(10.0 + gap, 2.0 - 1.5)  # heard half a second ago: each takes half of the excess
+    kept = 10.0 * (1.0 + SLACK) + DRIFT * 0.5
+    v = toward(kept + gap, 2.0 - 1.5)  # heard half a second ago: each takes half of the excess
     most = 2.0 * (sqrt(0.25 + gap) - 0.5)  # v t + v²/2a = gap
     assert v == pytest.approx(10.0 - 0.5 * (10.0 - most))
-    quiet = toward(20.0 + gap, 5.0)  # twice the distance, and all of the excess
+    quiet = toward(kept + 10.0 * (1.0 + SLACK) + gap, 5.0)  # twice the distance, and all of the excess
     assert quiet == pytest.approx(most)
 
 
