@@ -222,7 +222,8 @@ class GamePlayer:
             self._team.work(now, self.time(now.wall_ns), question)
         if self.flying is not None:
             left = self._to_start(wall_ns)
-            asked = self.state(wall_ns).on or (left is not None and left < SOON_S)
+            soon = left is not None and left < SOON_S
+            asked = soon or self._participation.running(self._bus.phase, wall_ns)
             self._memory.train(self._seconds(wall_ns), TRAINING_SLICES, asked=asked)
 
     # ------------------------------------------------------------------ what the master says
