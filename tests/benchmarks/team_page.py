@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from math import degrees
 from statistics import median
 from typing import Any
@@ -57,8 +58,10 @@ def games_table(rows: list[Row]) -> list[str]:
 def honesty(rows: list[Row]) -> list[str]:
     """What must never be."""
     lines = [""]
-    by = sum(r["near"] for r in rows if not r["case"].startswith("shipped"))
-    lines.append(f"Rings and staged starts with a pursuer nearer than 1.5 km at t0: {by}.")
+    near = Counter(r["case"] for r in rows if r["near"] and not r["case"].startswith("shipped"))
+    by = ", ".join(f"{case} {count}" for case, count in sorted(near.items()))
+    said = f" ({by})" if by else ""
+    lines.append(f"Rings and staged starts with a pursuer nearer than 1.5 km at t0: {near.total()}{said}.")
     for way in ("team", "paper"):
         ours = [r for r in rows if r["way"] == way]
         if ours:
