@@ -29,6 +29,14 @@ from tests.support.benchmark_record import write
 from tests.support.paths import ROOT
 
 replace = msgspec.structs.replace
+WORDS = """
+Closed rings of five aircraft at 2 km, random phase, the paper's evader, the pursuers by the plan of their team.
+Each row takes one cause away, the same seeds; without the supervisor's separation (100 m) pursuers meet.
+
+![Courses wanted and flown](../../docs/pictures/end-game.png)
+
+The picture is the first game that the separation decides, if any does: who come to the evader together give way.
+"""
 TAKEN = ("nothing", "gusts", "sensor noise", "separation")
 
 
@@ -119,7 +127,7 @@ def main() -> None:
         "end-game.md",
         "What prevents capture",
         f"python -m tests.benchmarks.end_game --seeds {given.seeds}",
-        lines,
+        [*lines, *WORDS.rstrip().splitlines()],
     )
 
 
