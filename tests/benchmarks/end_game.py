@@ -30,12 +30,12 @@ from tests.support.paths import ROOT
 
 replace = msgspec.structs.replace
 WORDS = """
-Closed rings of five aircraft at 2 km, random phase, the paper's evader, the pursuers by the plan of their team.
+Closed rings of five aircraft at 2 km, random phase, the paper's evader, the pursuers by their team's plan.
 Each row takes one cause away, the same seeds; without the supervisor's separation (100 m) pursuers meet.
 
 ![Courses wanted and flown](../../docs/pictures/end-game.png)
 
-The picture is the first game that the separation decides, if any does: who come to the evader together give way.
+The picture is the first game that the separation decides, if any: who come to the evader together give way.
 """
 TAKEN = ("nothing", "gusts", "sensor noise", "separation")
 
