@@ -26,7 +26,7 @@ from onboard.game.scenario import Scenario
 from sim_bridge.campaign.plane_in_wind import drawn_wind
 from sim_bridge.campaign.spatial_campaign import mcnemar, play_drawn, share
 from sim_bridge.campaign.spatial_draw import Sides, draw, spatial
-from sim_bridge.campaign.spatial_game import Chosen, Evasion
+from sim_bridge.campaign.spatial_game import Chosen
 from tests.benchmarks.team import apart
 from tests.support.benchmark_record import write
 
@@ -58,7 +58,7 @@ def row_of(kind: str, seed: int, evader: int, pursuers: int) -> Row:
     evaders = tuple(EVADERS[name].decide for name in EVADING)
     chosen = Chosen(evader, (pursuers,) * (2 * PAIRS))
     sides = Sides(evaders, tuple(PURSUERS[name].decide for name in PURSUING), chosen)
-    played = play_drawn(draw(game_of(kind, seed), 0)._replace(sides=sides), Evasion.STRATEGY)
+    played = play_drawn(draw(game_of(kind, seed), 0)._replace(sides=sides), evader)
     return {
         "kind": kind, "seed": seed, "evader": EVADING[evader], "pursuers": PURSUING[pursuers],
         "verdict": played.verdict.name, "apart": apart(played),
