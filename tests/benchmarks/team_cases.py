@@ -105,8 +105,8 @@ def _staged(scenario: Scenario, seconds: float, seed: int) -> tuple[VehicleSpec,
         place = (north + PLACE_OFF * a, east + PLACE_OFF * b)
         yaw = wrap(there.heading + HEADING_OFF * c)
         found.append(replace(spec, position=(*place, -aim.z), heading_deg=degrees(yaw)))
-    # Who is late is on its way still: in flight the supervisor keeps it off its mates.
-    places = stacked([spec.start() for spec in found], scenario.parameters.separation, s.heights)
+    # Who is late is on its way, and flown it would have kept off its mates by now (they close by 80 m/s).
+    places = stacked([spec.start() for spec in found], 3.0 * scenario.parameters.separation, s.heights)
     return tuple(replace(p, position=(at.x, at.y, -at.z)) for p, at in zip(found, places, strict=True))
 
 
