@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import tracemalloc
 from collections.abc import Callable
 from time import perf_counter, thread_time
@@ -100,6 +101,8 @@ def load() -> Load:
     tracks = {number: TrackPredictor(number) for number in range(len(flights))}
     trainer = Trainer()
     steps, trainings = [], []
+    gc.collect()
+    gc.freeze()  # as an agent does: no collection walks through what this process imported besides
     for k in range(len(flights[0])):
         t = k / 20.0
         begun = thread_time()
