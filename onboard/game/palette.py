@@ -66,6 +66,7 @@ RULES = {
     "ring_slot": "#2f8f83",
     "guard_target": "#b8862b",
     "block_corridor": "#c0603a",
+    "abreast": "#3f7f5f",
     "waypoint_near": "#4478ab",
     "astray": "#ee6678",
     "still_astray": "#994456",

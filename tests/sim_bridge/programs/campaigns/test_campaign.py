@@ -181,8 +181,14 @@ def test_what_show_and_replay_tell_and_draw(
     assert kept is not None
     assert capsys.readouterr().out.startswith(f"{kept.verdict} ")
     cli.replay(reference.folder, "0:7", tmp_path / "game")  # every game's picture has a name of its own
-    names = [f"duel-{game}{ending}" for game in ("0-7", "1-7") for ending in (".png", ".svg")]
-    assert sorted(path.name for path in (tmp_path / "game").iterdir()) == names
+    names = {f"duel-{game}{ending}" for game in ("0-7", "1-7") for ending in (".png", ".svg")}
+    found = {path.name for path in (tmp_path / "game").iterdir()}
+    assert {name for name in found if "-why-not" not in name} == names
+    for cell in (0, 1):  # and who was not captured has a picture of why not
+        drawn = f"duel-{cell}-7-why-not.png" in found
+        row = again.game_of(reference.folder, f"{cell}:7").kept
+        assert row is not None
+        assert drawn == (row.verdict != "captured")
     for wrong in ("2:7", "0:61", "0:0", "7", "x:y", ""):
         with pytest.raises(ConfigError, match=r"CELL:SEED, a cell from 0 to 1 .* a seed from 1 to 60"):
             again.game_of(reference.folder, wrong)
