@@ -12,6 +12,7 @@ from types import FrameType
 
 INTERRUPTED = 130  # as a shell reports SIGINT
 _name = ""
+_program = False
 
 
 def one_line_interrupts(name: str, module: str) -> None:
@@ -20,11 +21,16 @@ def one_line_interrupts(name: str, module: str) -> None:
     `name` is the program's, `module` the caller's `__name__`. Does nothing where the module is only imported,
     or where whoever started the program has it ignore ctrl-C.
     """
-    global _name
-    started = module == "__main__" or os.path.basename(sys.argv[0]) == name
+    global _name, _program
+    _program = started = module == "__main__" or os.path.basename(sys.argv[0]) == name
     if started and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         _name = name
         signal.signal(signal.SIGINT, _end)
+
+
+def program() -> bool:
+    """Whether this process is one of the programs, not one that only imports them."""
+    return _program
 
 
 def take_over() -> None:

@@ -6,10 +6,12 @@ output who leaves (`| head`) ends the program quietly; output that cannot be wri
 
 from __future__ import annotations
 
+import atexit
 import contextlib
 import errno
 import os
 import sys
+import threading
 from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple, NoReturn, TextIO
 
@@ -35,6 +37,14 @@ def run(app: Callable[..., Any], name: str) -> NoReturn:
     `app` is a Typer application, or a function without arguments that gives the exit code (None: 0); `name`
     stands before every line on standard error. Never returns: raises SystemExit.
     """
+    try:
+        _run(app, name)
+    except SystemExit as end:
+        _leave(end.code)
+        raise
+
+
+def _run(app: Callable[..., Any], name: str) -> NoReturn:
     try:
         early.take_over()
         tolerate_characters(sys.stdout, sys.stderr)
@@ -96,6 +106,22 @@ def _called_by_typer(app: Callable[..., Any], name: str, typer: Any) -> Any:
         fail(name, f"{text} (see {context.command_path if context else name} --help)")
     except typer.Abort:
         raise KeyboardInterrupt from None
+
+
+def _leave(code: object) -> None:
+    """Leave a program whose libraries' threads still run, without taking the interpreter down under them.
+
+    A thread that comes back from foreign code (Zenoh's, in Rust) into an interpreter that is going down
+    aborts the process: "exception not rethrown", exit 134.
+    """
+    main = threading.main_thread()
+    if not early.program() or not any(one.daemon for one in threading.enumerate() if one is not main):
+        return
+    threading._shutdown()  # type: ignore[attr-defined]  # as the interpreter does first: the others end
+    atexit._run_exitfuncs()
+    _settle(sys.stderr)
+    _settle(sys.stdout)
+    os._exit(code if isinstance(code, int) else int(code is not None))
 
 
 class _End(NamedTuple):

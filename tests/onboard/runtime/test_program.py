@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.support.paths import ROOT
+
 BODY = """
 import sys
 from onboard.runtime.program import run
@@ -62,6 +64,49 @@ def test_every_end_has_its_code_and_at_most_one_line(
     imports: str, app: str, body: str, code: int, out: str, err: str
 ) -> None:
     assert ended(script(body, imports, app)) == (code, out, err)
+
+
+def test_a_session_that_is_being_opened_does_not_abort_the_end(tmp_path: Path) -> None:
+    """Threads that come back from Zenoh while the interpreter goes down: "exception not rethrown", 134."""
+    program = tmp_path / "prog.py"
+    program.write_text(
+        """
+import atexit, concurrent.futures, threading, time
+from onboard.runtime import early
+early.one_line_interrupts("prog", __name__)
+import zenoh
+from onboard.runtime.program import run
+
+def opens():
+    config = zenoh.Config()
+    config.insert_json5("mode", '"client"')
+    config.insert_json5("connect/endpoints", '["tcp/127.0.0.1:9"]')
+    config.insert_json5("scouting/multicast/enabled", "false")
+    config.insert_json5("connect/timeout_ms", "0")
+    while True:
+        try:
+            zenoh.open(config)
+        except zenoh.ZError:
+            pass
+
+def app():
+    print("begun")
+    atexit.register(print, "swept up")
+    concurrent.futures.ThreadPoolExecutor().submit(print, "pooled").result()  # its thread waits for more
+    for _ in range(8):
+        threading.Thread(target=opens, daemon=True).start()
+    time.sleep(0.3)
+    return 3
+
+run(app, "prog")
+""",
+        encoding="utf-8",
+    )
+    env = {**os.environ, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run(
+        [sys.executable, program], env=env, capture_output=True, text=True, timeout=60, check=False
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (3, "begun\npooled\nswept up\n", "")
 
 
 def test_a_mistake_found_within_tasks_is_told_like_any_other() -> None:
