@@ -40,7 +40,11 @@ def lines(s: Situation) -> list[str]:
         return [*said, f"  the table of odds says nothing here: {found.beyond}"]
     for name, chance in found.chances.items():
         said.append(f"  evader {name}: {ends(chance)}")
-    said.append(f"  (pursuers {table().pursuers}; 95 % intervals of the fit) What would change it:")
+    said.append(
+        f"  (pursuers {table().pursuers}; means over games from like starts, 95 % intervals; one may differ)"
+    )
+    if found.changes:
+        said.append("  What would change it:")
     said += [f"    {one.words}: captured {share(one.captured)}" for one in found.changes]
     return said
 

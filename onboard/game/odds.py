@@ -27,7 +27,7 @@ from onboard.core.strategy.team.ring import laid
 
 NAMES = (
     "one", "gap", "gap squared", "closed", "cover", "front", "facing", "spare", "spare squared", "near",
-    "far", "spread",
+    "far", "spread", "noses", "noses squared",
 )  # fmt: skip
 """What describes a start, in the order of the fit."""
 
@@ -59,7 +59,7 @@ class Sheet(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     high: tuple[float, ...]
     mean: tuple[float, ...]
     deviation: tuple[float, ...]
-    fits: dict[str, dict[str, Outcome]]  # by evader's strategy and outcome
+    fits: dict[str, dict[str, Outcome]]  # by evader's strategy and outcome; "arrived" of games not captured
 
 
 class Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -151,10 +151,24 @@ def features(s: Situation) -> tuple[float, ...]:
     spare = max(goal / e.speed - distance(one.position, target) / one.speed for one in team) * e.speed / goal
     spare = max(-3.0, min(1.0, spare))
     mean = exp(sum(log(d) for d in far) / len(far))
+    noses = sum(_off_course(member, s) for member in s.team if member.fit) / len(team)
     return (
         1.0, gap, gap * gap, 1.0 if way.closed else 0.0, cover, front, facing, spare, spare * spare,
-        log(min(far) / s.rules.rho), log(goal / mean), log(max(far) / min(far)),
+        log(min(far) / s.rules.rho), log(goal / mean), log(max(far) / min(far)), noses, noses * noses,
     )  # fmt: skip
+
+
+def _off_course(member: Member, s: Situation) -> float:
+    """How far a member's nose is from the heading of parallel pursuit [rad]; 0 for who turns at once."""
+    if member.limits.turn_rate <= 0.0:
+        return 0.0
+    own = member.vehicle
+    return abs(wrap(yaw_of(own.velocity) - _nose(own.position, own.speed, s)))
+
+
+def _nose(place: Vec, speed: float, s: Situation) -> float:
+    """The heading of parallel pursuit from a place [rad]."""
+    return yaw_of(lead(place, speed, s.evader.position, setting_out(s)))
 
 
 def sheet_of(s: Situation) -> Sheet | None:
@@ -204,9 +218,23 @@ def chances(s: Situation, evader: str) -> Chances | None:
     sheet = sheet_of(s)
     if sheet is None or not s.target.exists or outside(s, sheet):
         return None
+    return said_of(sheet, evader, features(s))
+
+
+def said_of(sheet: Sheet, evader: str, x: tuple[float, ...]) -> Chances:
+    """What a sheet says of a start with the features `x` against an evader's strategy."""
     fits = sheet.fits[evader]
-    x = features(s)
-    return Chances(estimate(sheet, fits["captured"], x), estimate(sheet, fits["arrived"], x))
+    captured, arrived = estimate(sheet, fits["captured"], x), estimate(sheet, fits["arrived"], x)
+    return Chances(captured, of_the_rest(captured, arrived))
+
+
+def of_the_rest(captured: Estimate, arrived: Estimate) -> Estimate:
+    """The chance of arrival, of that among games without a capture: both together are 1 at most."""
+    return Estimate(
+        (1.0 - captured.p) * arrived.p,
+        (1.0 - captured.high) * arrived.low,
+        (1.0 - captured.low) * arrived.high,
+    )
 
 
 def odds(s: Situation, *, changes: bool = True) -> Odds:
@@ -319,6 +347,6 @@ def _towards(member: Member, aim: Vec, time: float) -> Vec:
 def _moved(member: Member, s: Situation, place: Vec) -> Member:
     """A member at another place, its nose on parallel pursuit."""
     own = member.vehicle
-    yaw = yaw_of(lead(place, own.speed, s.evader.position, setting_out(s)))
+    yaw = _nose(place, own.speed, s)
     velocity = Vec(own.speed * cos(yaw), own.speed * sin(yaw), 0.0)
     return member._replace(vehicle=own._replace(position=place, velocity=velocity), fit=True)

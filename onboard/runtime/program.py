@@ -40,7 +40,10 @@ def run(app: Callable[..., Any], name: str) -> NoReturn:
     try:
         _run(app, name)
     except SystemExit as end:
-        _leave(end.code)
+        _leave(end.code, None)
+        raise
+    except BaseException as fault:
+        _leave(1, fault)
         raise
 
 
@@ -108,8 +111,9 @@ def _called_by_typer(app: Callable[..., Any], name: str, typer: Any) -> Any:
         raise KeyboardInterrupt from None
 
 
-def _leave(code: object) -> None:
-    """Leave a program whose libraries' threads still run, without taking the interpreter down under them.
+def _leave(code: object, fault: BaseException | None) -> None:
+    """Leave a program whose libraries' threads still run, without taking the interpreter down under them;
+    a fault of the program leaves its traceback.
 
     A thread that comes back from foreign code (Zenoh's, in Rust) into an interpreter that is going down
     aborts the process: "exception not rethrown", exit 134.
@@ -117,6 +121,8 @@ def _leave(code: object) -> None:
     main = threading.main_thread()
     if not early.program() or not any(one.daemon for one in threading.enumerate() if one is not main):
         return
+    if fault is not None:
+        sys.excepthook(type(fault), fault, fault.__traceback__)
     threading._shutdown()  # type: ignore[attr-defined]  # as the interpreter does first: the others end
     atexit._run_exitfuncs()
     _settle(sys.stderr)

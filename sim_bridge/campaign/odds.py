@@ -12,7 +12,7 @@ import os
 import platform
 from hashlib import sha256
 from importlib.util import find_spec
-from math import atan2, cos, degrees, pi, sin
+from math import atan2, cos, degrees, pi, radians, sin
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -24,20 +24,44 @@ from onboard.core.game.advance import Conditions, Game, begin
 from onboard.core.game.referee import GameResult
 from onboard.core.game.rules import Control, Rules, Target
 from onboard.core.geometry.lead import lead
+from onboard.core.math.angles import wrap
 from onboard.core.math.states import FREE, Vehicle
 from onboard.core.math.vectors import ZERO, Vec, scale, sub, unit
 from onboard.core.strategy.registry import EVADERS, PURSUERS
 from onboard.core.strategy.team.plan_types import Heights, Member
 from onboard.game.go_or_no_go import engagement_of
-from onboard.game.odds import NAMES, Outcome, Sheet, Table, engagement, features, manners, ringed, staged
+from onboard.game.odds import (
+    NAMES,
+    Outcome,
+    Sheet,
+    Table,
+    engagement,
+    features,
+    manners,
+    ringed,
+    said_of,
+    staged,
+)
 from onboard.game.scenario import Scenario, VehicleSpec
+from onboard.runtime.whole_files import write_whole
 from sim_bridge.campaign.compiled import campaign, starts_of
+from sim_bridge.campaign.odds_page import Judged, Shipped, page, reliability
 from sim_bridge.campaign.plane_in_wind import drawn_wind
-from sim_bridge.campaign.spatial_draw import KERNELS, draw, kernel_of, log_of, sky_of, spatial
+from sim_bridge.campaign.spatial_draw import (
+    KERNELS,
+    draw,
+    drawn_scenario,
+    kernel_of,
+    log_of,
+    sky_of,
+    spatial,
+)
 from sim_bridge.campaign.spatial_game import Chosen
 
 EVADING = ("paper", "evasive")
 PURSUING = "constant-bearing"
+SHIPPED = ("five", "six", "ring-4", "ring-5", "ring-6")  # that are compared with what is said of them
+OUTCOMES = (("captured", GameResult.CAPTURED), ("arrived", GameResult.ARRIVED))
 HELD_OUT = 4  # every so-manieth game judges, the others fit
 RIDGE = 1.0  # of the standardised weights
 SIZES = {"plane": (3, 4, 5, 6, 7), "space": (4, 5, 6)}
@@ -100,7 +124,8 @@ def plane_part(games: int, count: int) -> Part:
 def space_scenario(seed: int, count: int) -> Scenario:
     """A start of aircraft in space, in the world of `spatial/five`.
 
-    Places are drawn; every fourth time some staging from them follows, every eighth time it is an even ring.
+    Places and noses are drawn; every fourth time some staging from the places follows, every eighth time
+    it is an even ring: then all noses are on parallel pursuit.
     """
     rng = np.random.default_rng([2, count, seed])
     base = spatial("five")
@@ -127,8 +152,20 @@ def space_scenario(seed: int, count: int) -> Scenario:
     elif kind < 0.375:
         s = ringed(engagement_of(found), float(radius), float(phase) / count * (kind < 0.3125))
     else:
-        return found
+        return _turned(found, rng)
     return _placed(drawn, spec, [member.vehicle.position for member in s.team])
+
+
+def _turned(scenario: Scenario, rng: np.random.Generator) -> Scenario:
+    """A scenario with its pursuers' noses as drawn: a third on parallel pursuit, a third all about as far off
+    it, a third each anywhere."""
+    kind, all_off = rng.integers(3), rng.uniform(-pi, pi)
+    pursuers = []
+    for spec in scenario.pursuers:
+        off = (0.0, all_off + 0.3 * rng.standard_normal(), rng.uniform(-pi, pi))[kind]
+        nose = degrees(wrap(radians(spec.heading_deg or 0.0) + off))
+        pursuers.append(msgspec.structs.replace(spec, heading_deg=nose))
+    return msgspec.structs.replace(scenario, pursuers=tuple(pursuers))
 
 
 def _placed(scenario: Scenario, spec: VehicleSpec, places: list[Vec]) -> Scenario:
@@ -146,17 +183,34 @@ def _placed(scenario: Scenario, spec: VehicleSpec, places: list[Vec]) -> Scenari
 def space_part(games: int, count: int, before: int = 0) -> Part:
     """Games of aircraft in wind, with noise, delay and gusts, against `count` pursuers; of the seeds that
     follow on `before`."""
-    play = kernel_of(tuple(EVADERS[name].decide for name in EVADING), (PURSUERS[PURSUING].decide,), True)
     rows, ends = [], []
     for seed in range(before + 1, before + games + 1):
         scenario = space_scenario(seed, count)
-        verdicts = []
-        for number in range(len(EVADING)):
-            d = draw(scenario, 0)
-            verdicts.append(play(d.start, Chosen(number, (0,) * count), sky_of(d, True), log_of(d)))
         rows.append(features(engagement_of(scenario)))
-        ends.append([int(found.game.score.verdict) for found in verdicts])
+        ends.append([_end(scenario, number) for number in range(len(EVADING))])
     return Part(np.array(rows), np.array(ends), sources())
+
+
+def _end(scenario: Scenario, evader: int) -> int:
+    """The verdict of a game of aircraft against the evader of this number."""
+    play = kernel_of(tuple(EVADERS[name].decide for name in EVADING), (PURSUERS[PURSUING].decide,), True)
+    d = draw(scenario, 0)
+    chosen = Chosen(evader, (0,) * len(scenario.pursuers))
+    return int(play(d.start, chosen, sky_of(d, True), log_of(d)).game.score.verdict)
+
+
+def shipped(found: Sheet, games: int = 60) -> list[Shipped]:
+    """What a sheet says of the shipped scenarios of aircraft, and how games from them end; two rows each."""
+    rows = []
+    for name in SHIPPED:
+        base = spatial(name)
+        starts = [drawn_scenario(base, seed) for seed in range(1, games + 1)]
+        said = [said_of(found, EVADING[0], features(engagement_of(one))) for one in starts]
+        ends = [_end(one, 0) for one in starts]
+        for outcome, verdict in OUTCOMES:
+            mean = sum(getattr(one, outcome).p for one in said) / games
+            rows.append(Shipped(name, outcome, games, mean, ends.count(int(verdict))))
+    return rows
 
 
 def parts(folder: Path, kind: str, games: int) -> Part:
@@ -192,19 +246,6 @@ def fitted(z: Array, y: Array) -> Outcome:
     return Outcome(tuple(float(f"{v:.6g}") for v in w), tuple(tuple(row) for row in rounded))
 
 
-class Judged(NamedTuple):
-    """How a fit did on games held out."""
-
-    kind: str
-    evader: str
-    outcome: str
-    games: int
-    share: float
-    brier: float
-    plain: float  # Brier score of always saying the share
-    bins: tuple[tuple[float, int, int], ...]  # mean said, games, happened
-
-
 def judged(kind: str, evader: str, outcome: str, said: Array, y: Array) -> Judged:
     """Brier score and reliability in ten bins."""
     bins = []
@@ -227,12 +268,14 @@ def sheet(kind: str, part: Part, command: str) -> tuple[Sheet, list[Judged]]:
     told = []
     for number, evader in enumerate(EVADING):
         fits[evader] = {}
-        for outcome, verdict in (("captured", GameResult.CAPTURED), ("arrived", GameResult.ARRIVED)):
+        left, rest = np.ones(games, bool), np.ones(int(held.sum()))  # games, and chances, without a capture
+        for outcome, verdict in OUTCOMES:
             y = (part.ends[:, number] == int(verdict)).astype(float)
-            fit = fitted(z[~held], y[~held])
+            fit = fitted(z[~held & left], y[~held & left])
             fits[evader][outcome] = fit
-            said = 1.0 / (1.0 + np.exp(-np.clip(z[held] @ np.array(fit.weights), -500, 500)))
+            said = rest / (1.0 + np.exp(-np.clip(z[held] @ np.array(fit.weights), -500, 500)))
             told.append(judged(kind, evader, outcome, said, y[held]))
+            left, rest = left & (y == 0.0), rest - said
 
     def short(values: Array) -> tuple[float, ...]:
         return tuple(float(f"{v:.6g}") for v in values)
@@ -244,61 +287,6 @@ def sheet(kind: str, part: Part, command: str) -> tuple[Sheet, list[Judged]]:
     return Sheet(command, part.sources, games, *evaders, low, high, short(mean), short(deviation), fits), told
 
 
-def page(kind: str, told: list[Judged], made: str) -> str:
-    """The judgement as Markdown."""
-    where = {"plane": "in the plane", "space": "in space"}[kind]
-    lines = [
-        f"# Go or no-go {where}: what the table says, and what happened",
-        "",
-        made,
-        "",
-        f"Every {HELD_OUT}th game was held out of the fit. Pursuers: `{PURSUING}`. Brier score: the mean of"
-        " squares of (said − happened); beside it that of always saying the share.",
-        "",
-        "| evader | outcome | held out | share | Brier | of the share alone |"
-        " said in the mean: happened, by tenths |",
-        "|---|---|---|---|---|---|---|",
-    ]
-    for one in told:
-        cells = [f"{100 * s:.0f} %: {100 * k / n:.0f} % of {n}" for s, n, k in one.bins]
-        lines.append(
-            f"| {one.evader} | {one.outcome} | {one.games} | {100 * one.share:.0f} % |"
-            f" {one.brier:.3f} | {one.plain:.3f} | {'; '.join(cells)} |"
-        )
-    return "\n".join(lines) + "\n"
-
-
-def reliability(told: list[Judged], path: Path) -> None:
-    """The reliability diagram: what was said, and what happened with Wilson's 95 % interval, bin by bin."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-    from scipy.stats import binomtest
-
-    figure = Figure(figsize=(9.0, 4.3), layout="constrained")
-    FigureCanvasAgg(figure)
-    places: Any = figure.subplots(1, len(EVADING), squeeze=False, sharex=True, sharey=True)
-    for axes, evader in zip(places.flat, EVADING, strict=True):
-        axes.plot([0, 1], [0, 1], color="0.7", lw=1)
-        for one, colour in zip([t for t in told if t.evader == evader], ("#aa3377", "#228833"), strict=True):
-            said = [s for s, _, _ in one.bins]
-            share = [k / n for _, n, k in one.bins]
-            reach = [binomtest(k, n).proportion_ci(method="wilson") for _, n, k in one.bins]
-            error = [[h - r.low for h, r in zip(share, reach, strict=True)],
-                     [r.high - h for h, r in zip(share, reach, strict=True)]]  # fmt: skip
-            label = f"{one.outcome}: Brier {one.brier:.3f} (share alone {one.plain:.3f})"
-            axes.errorbar(said, share, yerr=np.maximum(error, 0.0), fmt="o-", ms=4, lw=1, capsize=2,
-                          color=colour, label=label)  # fmt: skip
-        axes.set_title(f"evader {evader}", fontsize=10)
-        axes.legend(fontsize=8, loc="upper left", frameon=False)
-        axes.grid(alpha=0.2)
-    for axes in places[-1]:
-        axes.set_xlabel("said before the game")
-    for axes in places[:, 0]:
-        axes.set_ylabel("happened")
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=110)
-
-
 def sources() -> str:
     """Sixteen hexadecimal digits of the kernels that play, and of this file."""
     names = sorted({*KERNELS, __spec__.name if __spec__ else __name__})
@@ -307,7 +295,7 @@ def sources() -> str:
 
 
 PAGES = {"plane": "odds", "space": "odds-space"}
-GAMES = {"plane": 1200, "space": 600}
+GAMES = {"plane": 1200, "space": 900}
 
 
 def make(kind: str, given: Any) -> Sheet:
@@ -318,9 +306,10 @@ def make(kind: str, given: Any) -> Sheet:
     where = f"{platform.machine()} ({os.cpu_count()} cores)"
     made = f"`{command}` on {where}, sources `{found.sources}`. {found.games} games against each evader, of"
     made += f" {', '.join(map(str, SIZES[kind]))} pursuers. Features: {', '.join(NAMES[1:])}."
-    text = page(kind, told, made)
-    (given.pages / f"{PAGES[kind]}.md").write_text(text, encoding="utf-8")
-    reliability(told, given.pictures / f"{PAGES[kind]}.png")
+    beside = shipped(found) if kind == "space" else []
+    text = page(kind, told, beside, made, HELD_OUT, PURSUING)
+    write_whole(given.pages / f"{PAGES[kind]}.md", text.encode())
+    reliability(told, EVADING, given.pictures / f"{PAGES[kind]}.png")
     print(text)
     return found
 
@@ -341,7 +330,7 @@ def main() -> None:
         kept = msgspec.json.decode(given.table.read_bytes(), type=Table).sheets
     sheets = kept | {kind: make(kind, given) for kind in SIZES if given.kind in (None, kind)}
     table = Table(PURSUING, sheets)
-    given.table.write_bytes(msgspec.json.format(msgspec.json.encode(table), indent=1) + b"\n")
+    write_whole(given.table, msgspec.json.format(msgspec.json.encode(table), indent=1) + b"\n")
 
 
 if __name__ == "__main__":

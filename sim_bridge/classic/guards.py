@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from onboard.core.math.states import Vehicle
 from onboard.core.math.vectors import DOWN, NORTH, Vec, along, distance, dot, scale, sub, unit
 from sim_bridge.classic.play import End, Scene, touch
@@ -12,6 +14,7 @@ GIVES_GROUND = (
     "pure pursuit gives ground; a faster pursuer blocks every heading, so that 'paper' and 'evasive' flee"
     " and never attack"
 )
+Short = Callable[[Scene, Vec], float]  # how far a place is short of what is guarded [m]
 SOUTH = Vec(-1.0, 0.0, 0.0)
 DEFENDERS = ("paper", "parallel-pursuit", "goalkeeper", "blocking-line", "team", "pure-pursuit")
 BEYOND_ZERO = 2.0  # capture radii: a value nearer to zero says neither side's game, as it is played
@@ -37,6 +40,23 @@ def is_clear(value: float, scene: Scene) -> bool:
     return abs(value) > BEYOND_ZERO * scene.conditions.rules.R
 
 
+def ends_short(short: Short) -> Callable[[Scene, Scene], End | None]:
+    """Capture short of what is guarded, or arrival: the payoff is how far short [m], 0 there."""
+
+    def end(before: Scene, after: Scene) -> End | None:
+        seen, dt = touch(before, after), before.conditions.control.dt
+        if seen.share <= 1.0 and short(before, seen.evader) > 0.0:
+            return End(short(before, seen.evader), before.game.time + seen.share * dt, True)
+        return End(0.0, after.game.time, False) if short(after, after.evader.position) <= 0.0 else None
+
+    return end
+
+
+def late_short(short: Short) -> Callable[[Scene], End]:
+    """At the horizon it is kept: the payoff is how far short the attacker is then [m]."""
+    return lambda scene: End(short(scene, scene.evader.position), scene.game.time, True)
+
+
 # ---------------------------------------------------------------- guarding a convex target
 
 
@@ -54,26 +74,13 @@ def _disc_value(scene: Scene) -> float:
     return short_of_disc(scene, ball.centre) - ball.radius
 
 
-def _disc_end(before: Scene, after: Scene) -> End | None:
-    """Capture short of the target, or arrival: the payoff is how far short [m], 0 there."""
-    seen, dt = touch(before, after), before.conditions.control.dt
-    if seen.share <= 1.0 and short_of_disc(before, seen.evader) > 0.0:
-        return End(short_of_disc(before, seen.evader), before.game.time + seen.share * dt, True)
-    return End(0.0, after.game.time, False) if short_of_disc(after, after.evader.position) <= 0.0 else None
-
-
-def _disc_late(scene: Scene) -> End:
-    """At the horizon the target is kept: the payoff is where the attacker is then [m]."""
-    return End(short_of_disc(scene, scene.evader.position), scene.game.time, True)
-
-
 CONVEX = Problem(
     "convex-target", "Guarding a convex target",
     "A faster defender meets an attacker as far from a disc as it can.",
     "Isaacs 1965, 1.9; Lee and Bakolas, arXiv 2104.00717 and 2109.07075",
     "distance from the target at capture", "m", +1,
     _disc_value, kept, lambda s: to_place(s.evader, _disc_point(s)), lambda s: all_to(s, _disc_point(s)),
-    _disc_end, _disc_late,
+    ends_short(short_of_disc), late_short(short_of_disc),
     GIVES_GROUND,
     admits=lambda s: is_clear(_disc_value(s), s) and short_of_disc(s, s.evader.position) > 0.0,
     floor=0.0, chasers=DEFENDERS,
@@ -115,24 +122,13 @@ def _border_value(scene: Scene) -> float:
     return above(scene, lowest_point(scene))
 
 
-def _border_end(before: Scene, after: Scene) -> End | None:
-    seen, dt = touch(before, after), before.conditions.control.dt
-    if seen.share <= 1.0 and above(before, seen.evader) > 0.0:
-        return End(above(before, seen.evader), before.game.time + seen.share * dt, True)
-    return End(0.0, after.game.time, False) if above(after, after.evader.position) <= 0.0 else None
-
-
-def _border_late(scene: Scene) -> End:
-    return End(above(scene, scene.evader.position), scene.game.time, True)
-
-
 HALF_SPACE = Problem(
     "half-space", "Half-space with two defenders, in space",
     "Two faster defenders meet an attacker as high above the ground as they can.",
     "Yan, Shi and Zhong, arXiv 1904.01113",
     "height above the ground at capture", "m", +1,
     _border_value, kept, lambda s: to_place(s.evader, lowest_point(s)), lambda s: all_to(s, lowest_point(s)),
-    _border_end, _border_late,
+    ends_short(above), late_short(above),
     GIVES_GROUND,
     "its target is a plane, and `bench` plays games in space with aircraft, not in simple motion",
     shown=_foot, admits=lambda s: is_clear(_border_value(s), s), floor=0.0, teams=(1, 2), chasers=DEFENDERS,

@@ -98,6 +98,14 @@ def test_every_shipped_scenario_is_judged(path: Path) -> None:
     assert told[0].partition(":")[0] in ("go", "no-go", "open", "unknown")
 
 
+@pytest.mark.parametrize("path", sorted((configs() / "scenarios").rglob("*.toml")), ids=lambda p: p.stem)
+def test_no_game_is_both_captured_and_arrived(path: Path) -> None:
+    for one in odds(engagement_of(load(path)), changes=False).chances.values():
+        assert one.captured.p + one.arrived.p <= 1.0 + 1e-12
+        for said in one:
+            assert 0.0 <= said.low <= said.p <= said.high <= 1.0
+
+
 def shipped(name: str) -> Situation:
     """A spatial scenario at its start."""
     return engagement_of(load(configs() / "scenarios" / "spatial" / f"{name}.toml"))

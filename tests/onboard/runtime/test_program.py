@@ -66,7 +66,14 @@ def test_every_end_has_its_code_and_at_most_one_line(
     assert ended(script(body, imports, app)) == (code, out, err)
 
 
-def test_a_session_that_is_being_opened_does_not_abort_the_end(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("end", "code", "last"),
+    [("return 3", 3, ""), ("raise KeyboardInterrupt", 130, "prog: interrupted"),
+     ("raise ValueError('a fault')", 1, "ValueError: a fault")],
+)  # fmt: skip
+def test_a_session_that_is_being_opened_does_not_abort_the_end(
+    tmp_path: Path, end: str, code: int, last: str
+) -> None:
     """Threads that come back from Zenoh while the interpreter goes down: "exception not rethrown", 134."""
     program = tmp_path / "prog.py"
     program.write_text(
@@ -96,17 +103,18 @@ def app():
     for _ in range(8):
         threading.Thread(target=opens, daemon=True).start()
     time.sleep(0.3)
-    return 3
+    END
 
 run(app, "prog")
-""",
+""".replace("END", end),
         encoding="utf-8",
     )
     env = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run(
         [sys.executable, program], env=env, capture_output=True, text=True, timeout=60, check=False
     )
-    assert (done.returncode, done.stdout, done.stderr) == (3, "begun\npooled\nswept up\n", "")
+    assert (done.returncode, done.stdout) == (code, "begun\npooled\nswept up\n")
+    assert done.stderr.strip().rpartition("\n")[2] == last
 
 
 def test_a_mistake_found_within_tasks_is_told_like_any_other() -> None:
