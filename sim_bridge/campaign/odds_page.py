@@ -59,8 +59,8 @@ def page(
         lines += [
             "",
             "Shipped scenarios against the evader `paper`, drawn as campaigns draw them, in no fit. What is"
-            " said is a mean over starts that are alike in the features above, and one of them may be far off:"
-            " `sim-bridge campaign NAME` plays it.",
+            " said is a mean over starts that are alike in the features above, and one of them may be far"
+            " off: `sim-bridge campaign NAME` plays it.",
             "",
             "| scenario | games | captured: said | happened (95 %) | arrived: said | happened (95 %) |",
             "|---|---|---|---|---|---|",
