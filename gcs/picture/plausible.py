@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from onboard.wire.bus.messages import EvaderBrief, Message, Setup, State, Track
+from onboard.wire.bus.messages import EvaderBrief, Message, OwnBrief, Setup, State, Track, Triple
 
 FARTHEST = 1e6  # [m] and [m/s]: no game is larger, nothing flies so fast
 
@@ -28,11 +28,20 @@ def _track(track: Track) -> bool:
 def _setup(setup: Setup) -> bool:
     lengths = (setup.rules.R, setup.rules.rho, setup.rules.separation)
     sizes = (*lengths, *(member.speed for member in setup.roster))
-    return _sane(*sizes) and min(sizes) >= 0.0
+    goals = all(_places(*one.targets) for one in setup.targets)
+    return goals and _sane(*sizes) and min(sizes) >= 0.0
 
 
 def _brief(brief: EvaderBrief) -> bool:
-    return brief.target is None or _sane(*brief.target)
+    return (brief.target is None or _sane(*brief.target)) and _places(*brief.targets)
+
+
+def _own_brief(brief: OwnBrief) -> bool:
+    return _places(*brief.targets)
+
+
+def _places(*places: Triple) -> bool:
+    return all(_sane(*place) for place in places)
 
 
 def _sane(*values: float) -> bool:
@@ -44,4 +53,5 @@ _CHECKS: dict[type[Message], Callable[[Any], bool]] = {
     Track: _track,
     Setup: _setup,
     EvaderBrief: _brief,
+    OwnBrief: _own_brief,
 }

@@ -11,20 +11,18 @@ from __future__ import annotations
 
 from enum import Enum
 
-import msgspec
-
 from onboard.config.derive import core_from, struct_from
 from onboard.core.game.rules import Rules
 from onboard.core.math.states import VehicleLimits
 from onboard.wire.autopilot_kind import Kind
+from onboard.wire.bus.base import Message as Message
+from onboard.wire.bus.base import Triple as Triple
+from onboard.wire.bus.evader_messages import EvaderOutcome as EvaderOutcome
+from onboard.wire.bus.evader_messages import EvaderTargets as EvaderTargets
+from onboard.wire.bus.evader_messages import OutcomeResult as OutcomeResult
+from onboard.wire.bus.evader_messages import OwnBrief as OwnBrief
 
 SCHEMA = 2
-
-Triple = tuple[float, float, float]
-
-
-class Message(msgspec.Struct, frozen=True, array_like=True):
-    """Base of all messages of the bus."""
 
 
 class Role(Enum):
@@ -54,16 +52,6 @@ class AgentStage(Enum):
     HELD = "held"  # an order or the supervisor stopped the setpoints
     HANDED_OVER = "handed_over"  # a pilot flies the vehicle
     ENDED = "ended"
-
-
-class OutcomeResult(Enum):
-    """How a game ended for the evader."""
-
-    CAPTURED = "captured"
-    ARRIVED = "arrived"  # at its target
-    ESCAPED = "escaped"  # not captured within the horizon
-    DENIED = "denied"  # nor arrived: at the horizon a pursuer can be at its target first
-    ABORTED = "aborted"  # ended without a result
 
 
 class DecisionLevel(Enum):
@@ -140,7 +128,7 @@ class Fence(Message, frozen=True):
 
 
 class Setup(Message, frozen=True):
-    """`game/setup`: everything but the evader's target, unless the rules say that the pursuers know it."""
+    """`game/setup`: everything but the evaders' targets, unless the rules say that the pursuers know them."""
 
     game: str  # name of the game, as in the topics
     scenario: str  # name
@@ -154,7 +142,8 @@ class Setup(Message, frozen=True):
     seed: int = 0
     field_profile: bool = False  # altitude layers, capture judged horizontally
     nonce: int = 0  # of the master's process, as in `Master`
-    target: Triple | None = None  # the evader's [m; NED], where the rules let the pursuers know it
+    target: Triple | None = None  # the first evader's first [m; NED], where the pursuers may know it
+    targets: tuple[EvaderTargets, ...] = ()  # all, where they may know them and there are more than that one
 
     @property
     def flat(self) -> bool:
@@ -173,17 +162,20 @@ class PhaseChange(Message, frozen=True):
     master: str = ""  # who says so
     nonce: int = 0  # of the master's process, as in `Master`
     number: int = 0  # counts the master's phases: the greater one is the later one, whatever clocks say
+    out: tuple[EvaderOutcome, ...] = ()  # of several evaders those whose game is over: they play no part
 
 
 class Outcome(Message, frozen=True):
-    """`game/outcome`."""
+    """`game/outcome`. Of several evaders the worst for the pursuers decides the whole game: one that arrived,
+    then one without a result, one that escaped, one that was denied; it is captured where all were."""
 
     verdict: OutcomeResult
-    time: float  # [s] since t0
-    captor: int  # id, 0 = nobody
+    time: float  # [s] since t0; of several evaders the last one's
+    captor: int  # id, 0 = nobody; of several captured the last one's
     smallest_distance: float  # [m] over all pursuers
     stamp_ns: int
     reason: str = ""
+    evaders: tuple[EvaderOutcome, ...] = ()  # of several each one's own, in the roster's order
 
 
 class Master(Message, frozen=True):
@@ -198,10 +190,11 @@ class Master(Message, frozen=True):
 
 
 class EvaderBrief(Message, frozen=True):
-    """`roles/evader/brief`: for the evader alone."""
+    """`roles/evader/brief`: for the evader alone; several have an `OwnBrief` each."""
 
-    target: Triple | None  # [m; NED]
+    target: Triple | None  # [m; NED] the first
     stamp_ns: int
+    targets: tuple[Triple, ...] = ()  # [m; NED] all, where it has several: it may go to any
 
 
 class State(Message, frozen=True):
@@ -244,6 +237,7 @@ class DecisionReport(Message, frozen=True):
     predictor: str = ""  # which predictor spoke
     predictor_sigma: float = 0.0  # [m] its stated error now
     setpoint: Triple = (0.0, 0.0, 0.0)  # [m/s; ground, NED] what was sent
+    quarry: int = 0  # id of the evader that a pursuer is after, where there are several; 0 = none
 
 
 class LinkLock(Enum):

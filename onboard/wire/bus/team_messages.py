@@ -41,6 +41,18 @@ class PlannedPart(Message, frozen=True):
     reason: PartReason
 
 
+class PlannedBand(Message, frozen=True):
+    """The ways out that one of several evaders has, as the planner sees them; see `TeamPlan`."""
+
+    quarry: int  # id of the evader
+    closed: bool
+    gap: float  # [rad]
+    bearing: float  # [rad, north to east]
+    pitch: float  # [rad, up]
+    closer: int  # id of who goes farthest to close it; 0 = nobody can
+    closes: float  # [s] since t0; -1 = never
+
+
 class TeamPlan(Message, frozen=True):
     """`vehicles/<id>/plan`: what the planner, vehicle <id>, has its team do."""
 
@@ -55,3 +67,5 @@ class TeamPlan(Message, frozen=True):
     closer: int = 0  # id of who goes farthest to close it; 0 = nobody can
     closes: float = -1.0  # when it is closed then [s] since t0; -1 = never
     nonce: int = 0  # of the planner's process
+    quarries: tuple[int, ...] = ()  # of several evaders: whom each is after, in the order of `parts`
+    bands: tuple[PlannedBand, ...] = ()  # of several evaders: each one's; the widest stands above

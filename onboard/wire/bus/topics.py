@@ -26,6 +26,7 @@ from onboard.wire.bus.messages import (
     Master,
     Message,
     Outcome,
+    OwnBrief,
     PhaseChange,
     Setup,
     State,
@@ -220,7 +221,7 @@ _GROUND = (Party.MASTER, Party.STATION)
 
 SETUP = Topic(
     "game/setup", Setup, Delivery.CACHED, (Party.MASTER,), _GAME,
-    "the game; the evader's target where pursuers may know it",
+    "the game; the evaders' targets where pursuers may know them",
 )
 PHASE = Topic("game/phase", PhaseChange, Delivery.CACHED, (Party.MASTER,), _GAME, "phase and t₀")
 OUTCOME = Topic("game/outcome", Outcome, Delivery.CACHED, (Party.MASTER,), _GAME, "how the game ended")
@@ -231,6 +232,10 @@ MASTER = Topic(
 EVADER_BRIEF = Topic(
     "roles/evader/brief", EvaderBrief, Delivery.CACHED, (Party.MASTER,), (Party.EVADER, Party.STATION),
     "the evader's target",
+)  # fmt: skip
+OWN_BRIEF = Topic(
+    "vehicles/{id}/brief", OwnBrief, Delivery.CACHED, (Party.MASTER,), (Party.OWN_AGENT, Party.STATION),
+    "the targets of one of several evaders",
 )  # fmt: skip
 STATE = Topic(
     "vehicles/{id}/state", State, Delivery.LATEST, (Party.OWN_AGENT,), (Party.SAME_SIDE, *_GROUND),
