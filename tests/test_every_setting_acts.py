@@ -21,7 +21,7 @@ from gcs import settings as gcs_settings
 from gcs.picture.alert_rules import Thresholds
 from onboard.agent import config as agent_config
 from onboard.config.strict import StrictConfig, parse
-from onboard.game import field_roster, route_file, scenario
+from onboard.game import field_roster, flight_spec, route_file, scenario, vehicle_spec
 from onboard.runtime.loop import run_virtual, virtual_clock
 from onboard.runtime.resources import configs
 from sim_bridge.plane_game.program import play, result, table1
@@ -80,7 +80,12 @@ def structs(*rooms: Any) -> set[type[msgspec.Struct]]:
     }  # fmt: skip
 
 
-OWN = ("__post_init__", "_demand_what_flies")  # a struct that checks itself reads for nobody
+SCENARIO = (scenario, vehicle_spec, flight_spec)
+OWN = (
+    "__post_init__",
+    "_demand_what_flies",
+    "_demand_players",
+)  # a struct that checks itself reads for nobody
 
 
 class Watch:
@@ -114,7 +119,7 @@ class Watch:
 def watch() -> Iterator[Watch]:
     with pytest.MonkeyPatch.context() as patch:
         found = Watch()
-        found.over(structs(scenario, agent_config, route_file, field_roster, gcs_settings, aircraft), patch)
+        found.over(structs(*SCENARIO, agent_config, route_file, field_roster, gcs_settings, aircraft), patch)
         found.over({Thresholds}, patch)
         yield found
 
@@ -125,7 +130,7 @@ def test_every_key_of_scenario_aircraft_and_agent_is_read(
     monkeypatch.chdir(tmp_path)
     game_played(tmp_path)
     agent_checked_and_started(tmp_path)
-    kinds = structs(scenario, aircraft, agent_config) - {scenario.Player}  # the base of VehicleSpec
+    kinds = structs(*SCENARIO, aircraft, agent_config) - {vehicle_spec.Player}  # the base of VehicleSpec
     assert len(kinds) > 20
     elsewhere = {
         "AgentConfig.route", "AgentConfig.track_ahead_s",  # of a tracker: route_player

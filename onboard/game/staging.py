@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import radians
 
-from onboard.core.math.vectors import NORTH, Vec, direction, sub, unit, yaw_of
-from onboard.game.scenario import Scenario, VehicleSpec, vec
-from onboard.wire.bus.messages import Fence, LimitsMessage, Member, Origin, Role, RulesMessage, Setup
+from onboard.core.math.vectors import NORTH, Vec, direction, distance, sub, unit, yaw_of
+from onboard.game.scenario import Scenario, VehicleSpec, targets_of, vec
+from onboard.wire.bus.messages import Fence, LimitsMessage, Member, Origin, RulesMessage, Setup
 
 
 def places_of(scenario: Scenario) -> tuple[Vec, ...]:
-    """Where all vehicles start [m; NED], the evader first."""
+    """Where all vehicles start [m; NED], in the order of `Scenario.vehicles`."""
     return tuple(spec.start() for spec in scenario.vehicles)
 
 
@@ -23,15 +24,24 @@ def heading_of(spec: VehicleSpec, place: Vec, towards: Vec) -> Vec:
 
 
 def start_headings(scenario: Scenario, places: tuple[Vec, ...] | None = None) -> tuple[Vec, ...]:
-    """Headings of all vehicles at the start: the evader towards its target, the pursuers towards it.
+    """Headings of all vehicles at the start: an evader's towards its nearest target, a pursuer's towards the
+    nearest evader.
 
     `places` are where they start where that is not the scenario's [m; NED].
     """
-    e, *others = places_of(scenario) if places is None else places
-    target = scenario.evader.target
-    goal = e if target is None else vec(target)
-    pursuers = zip(scenario.pursuers, others, strict=True)
-    return (heading_of(scenario.evader, e, goal), *(heading_of(spec, p, e) for spec, p in pursuers))
+    places = places_of(scenario) if places is None else places
+    pairs = list(zip(scenario.vehicles, places, strict=True))
+    pursuing = range(1, 1 + len(scenario.pursuers))
+    evaders = [place for index, place in enumerate(places) if index not in pursuing]
+    return tuple(
+        heading_of(spec, place, nearest(place, evaders if index in pursuing else targets_of(spec)))
+        for index, (spec, place) in enumerate(pairs)
+    )
+
+
+def nearest(place: Vec, others: Sequence[Vec]) -> Vec:
+    """Of other places the nearest, the first of equally near ones; `place` itself where there are none."""
+    return min(others, key=lambda other: distance(place, other), default=place)
 
 
 def flown(scenario: Scenario, point: Vec) -> Vec:
@@ -57,12 +67,12 @@ def setup_of(scenario: Scenario, game: str, master: str) -> Setup:
     target = target_of(scenario) if scenario.rules.target_known else None
     roster = []
     everybody = zip(scenario.ids, scenario.vehicles, start_headings(scenario), strict=True)
-    for index, (id, spec, heading) in enumerate(everybody):
+    for id, spec, heading in everybody:
         place = staging_place(scenario, spec)
         roster.append(
             Member(
                 id=id,
-                role=Role.PURSUER if index else Role.EVADER,
+                role=scenario.role_of(id),
                 speed=spec.speed,
                 start=(place.x, place.y, place.z),
                 limits=LimitsMessage(*spec.limits()),

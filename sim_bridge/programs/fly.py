@@ -115,11 +115,10 @@ def _fast(
 
 def demand_strategies(scenario: Scenario, name: str) -> None:
     """Raise ConfigError for a strategy that nobody here has: its vehicle would never be ready."""
-    for index, spec in enumerate(scenario.vehicles):
+    for at, spec in scenario.keyed().items():
         try:
-            (pursuer_strategy if index else evader_strategy)(spec.strategy)
+            (pursuer_strategy if at.startswith("pursuers") else evader_strategy)(spec.strategy)
         except ConfigError as error:
-            at = f"pursuers[{index - 1}]" if index else "evader"
             raise ConfigError(f"{name}: {at}.{error}") from None
 
 

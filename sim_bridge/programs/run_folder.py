@@ -15,6 +15,7 @@ import msgspec
 from onboard.core.strategy.registry import evader_named, pursuer_named
 from onboard.game.scenario import Scenario
 from onboard.runtime.whole_files import write_whole
+from onboard.wire.bus.messages import Role
 
 PACKAGES = ("apollonius", "numpy", "pymavlink", "eclipse-zenoh", "msgspec", "numba", "scipy", "control")
 BARE = re.compile("[A-Za-z0-9_-]+")  # a key that TOML takes without quotes
@@ -82,17 +83,24 @@ def scenario_used(scenario: Scenario, seed: int | None, home: Path) -> bytes:
     wind = scenario.flight.wind
     if wind.recorded:
         wind = replace(wind, recorded=str((home / wind.recorded).resolve()))
-    names = (evader_named, *(pursuer_named for _ in scenario.pursuers))
-    vehicles = [
-        replace(spec, id=id, strategy=named(spec.strategy), speed_max=spec.limits().speed_max)
-        for id, spec, named in zip(scenario.ids, scenario.vehicles, names, strict=True)
-    ]
+    named = {Role.EVADER: evader_named, Role.PURSUER: pursuer_named}
+    vehicles = tuple(
+        replace(
+            spec,
+            id=id,
+            strategy=named[scenario.role_of(id)](spec.strategy),
+            speed_max=spec.limits().speed_max,
+        )
+        for id, spec in zip(scenario.ids, scenario.vehicles, strict=True)
+    )
+    team = 1 + len(scenario.pursuers)
     used = replace(
         scenario,
         evader=vehicles[0],
-        pursuers=tuple(vehicles[1:]),
+        pursuers=vehicles[1:team],
+        evaders=vehicles[team:],
         seed=scenario.seed if seed is None else seed,
         parameters=replace(scenario.parameters, rho=scenario.rules.rho),
         flight=replace(scenario.flight, wind=wind),
     )
-    return f"# Every value that this run used.\n{toml_of(_answers(msgspec.to_builtins(used)))}".encode()
+    return f"# Every value that this run used.\n{toml_of(_answers(used.contents()))}".encode()

@@ -47,11 +47,11 @@ def scenarios() -> list[Row]:
 
     rows = []
     for name, path in named_files(SCENARIOS).items():
-        game = load(path)
+        game = load(path, several=True)
         kinds = sorted({(one.autopilot or game.flight.autopilot).value for one in game.vehicles})
         flown = "" if path.parent.name == "table1" else f", {' and '.join(kinds)}"
         space = "plane" if game.planar else "in space"
-        told = f"{game.name}: {len(game.pursuers)} on 1, {space}{flown}"
+        told = f"{game.name}: {len(game.pursuers)} on {len(game.evading)}, {space}{flown}"
         rows.append((name, told))
     return rows
 

@@ -8,7 +8,6 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 
-import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -125,7 +124,7 @@ def agrees(game: Game, row: Row) -> bool:
 
 def scenario_file(game: Game) -> str:
     """The game as a scenario file for `fly`, its draw written out."""
-    data = msgspec.to_builtins(drawn(game.cell, game.seed))
+    data = drawn(game.cell, game.seed).contents()
     return toml_of(data)
 
 

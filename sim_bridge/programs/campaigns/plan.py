@@ -155,7 +155,7 @@ def chosen(label: str, scenario: Scenario) -> Chosen:
     if scenario.flight.wind.recorded:
         found = scenario.flight.wind.recorded
         raise ConfigError(f"{label}: flight.wind.recorded: found {found!r}, expected a modelled wind")
-    return Chosen(label, without_none(msgspec.to_builtins(scenario)))
+    return Chosen(label, without_none(scenario.contents()))
 
 
 def without_none(data: Any) -> Any:

@@ -46,7 +46,7 @@ def fault(folder: Path, text: str) -> str:
 
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda p: f"{p.parent.name}/{p.stem}")
 def test_every_shipped_scenario_loads(path: Path) -> None:
-    scenario = load(path)
+    scenario = load(path, several=True)
     assert isinstance(scenario, Scenario)
     assert scenario.name
     assert len(scenario.pursuers) > 0
@@ -204,9 +204,7 @@ def test_a_fault_names_its_key_and_what_was_expected(tmp_path: Path, old: str, n
         ('"plain"', f'"plain"\nflight = {"[" * 10_000}', "nested too deeply"),
     ],
 )
-def test_an_absurd_value_is_refused_wherever_it_stands(
-    tmp_path: Path, old: str, new: str, said: str
-) -> None:
+def test_an_absurd_value_is_refused_wherever_it_stands(tmp_path: Path, old: str, new: str, said: str) -> None:
     assert fault(tmp_path, PLAIN.replace(old, new, 1)).startswith(said)
 
 
