@@ -31,9 +31,14 @@ def members(game: Game) -> tuple[Member, ...]:
 
 def situation(game: Game, conditions: Conditions) -> Situation:
     """What the planner knows: everything, a step ago."""
+    return situation_of(game, conditions, members(game))
+
+
+def situation_of(game: Game, conditions: Conditions, team: tuple[Member, ...]) -> Situation:
+    """What the planner of a team knows, which need not be all of the pursuers."""
     rules = conditions.rules
     return Situation(
-        game.time, 0.0, game.evader, game.evader_limits, members(game), told(conditions.target, rules), ZERO,
+        game.time, 0.0, game.evader, game.evader_limits, team, told(conditions.target, rules), ZERO,
         rules, Heights(-1e9, 1e9), Margin(conditions.control.dt, 0.0), game.evader.position,
         nearest_staged(rules),
     )  # fmt: skip

@@ -6,7 +6,7 @@ from enum import IntEnum
 from math import inf, sqrt
 from typing import NamedTuple
 
-from onboard.core.game.rules import Rules, Target
+from onboard.core.game.rules import NO_TARGET, Rules, Target
 from onboard.core.geometry.apollonius import in_time
 from onboard.core.math.vectors import TINY, Vec, sub
 
@@ -146,6 +146,31 @@ def judge(score: Score, step: Step, rules: Rules, target: Target) -> Score:
         result = GameResult.DENIED if kept else GameResult.ESCAPED
         return Score(result, rules.horizon, -1, smallest, unsafe)
     return Score(GameResult.RUNNING, start + dt, -1, smallest, unsafe)
+
+
+def judge_any(score: Score, step: Step, rules: Rules, targets: tuple[Target, ...]) -> Score:
+    """The score after one more step of an evader with several targets: to reach any of them is to arrive.
+
+    At the horizon it was denied only where every target is held. Targets that do not exist count for nothing.
+    """
+    found = judge(score, step, rules, targets[0] if len(targets) > 0 else NO_TARGET)
+    if score.verdict != GameResult.RUNNING:
+        return found
+    some = len(targets) > 0 and targets[0].exists
+    for k in range(1, len(targets)):
+        if targets[k].exists:
+            other = judge(score, step, rules, targets[k])
+            if not some or _sooner(other, found):
+                found = other
+            some = True
+    return found
+
+
+def _sooner(a: Score, b: Score) -> bool:
+    """Whether of two targets' scores of the same step the first is the evader's."""
+    if a.verdict == GameResult.ARRIVED:
+        return b.verdict != GameResult.ARRIVED or a.time < b.time
+    return a.verdict == GameResult.ESCAPED and b.verdict == GameResult.DENIED
 
 
 def held(step: Step, share: float, place: Vec) -> bool:

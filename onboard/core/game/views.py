@@ -29,6 +29,10 @@ class EvaderView(NamedTuple):
     turn_rates: tuple[float, ...]  # of the pursuers, at most, as they declare [rad/s]; 0 = not declared
 
 
+NO_MEMBER = Vehicle(Vec(1e9, 1e9, 0.0), ZERO, 0.0)
+"""In the place of a pursuer that has another quarry: without speed and far away it counts for nothing."""
+
+
 class Sighting(NamedTuple):
     """The evader as a pursuer sees it, in the moving air mass."""
 
@@ -61,7 +65,7 @@ class Team(NamedTuple):
     """What a pursuer knows of its own side."""
 
     mate: Nearest
-    members: tuple[Vehicle, ...]  # all pursuers that it knows of, itself among them
+    members: tuple[Vehicle, ...]  # all pursuers of its quarry that it knows of, itself among them
     own_index: int  # its own among the members
     target: Target  # the evader's, where the rules let the pursuers know it
     held: Held = NOTHING_HELD
@@ -81,7 +85,7 @@ class PursuerView(NamedTuple):
     mate: Nearest
     control: Control
     rules: Rules
-    members: tuple[Vehicle, ...] = ()  # all pursuers that it knows of, itself among them
+    members: tuple[Vehicle, ...] = ()  # all pursuers of its quarry that it knows of, itself among them
     own_index: int = -1  # its own among the members
     target: Target = NO_TARGET  # the evader's, where the pursuers know it
     held: Held = NOTHING_HELD  # nothing where nobody remembers: in the plane game

@@ -73,7 +73,9 @@ def wall_of(view: PursuerView, sight: Vec, right: Vec) -> Wall:
 
 
 def beside(mate: Vehicle, view: PursuerView, sight: Vec) -> bool:
-    """Whether a mate comes from the same side."""
+    """Whether a mate comes from the same side; one without speed counts for nothing."""
+    if mate.speed <= 0.0:
+        return False
     there = sub(view.evader.position, mate.position)
     return dot(unit(Vec(there.x, there.y, 0.0), NORTH), sight) >= TOGETHER
 
