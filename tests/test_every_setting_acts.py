@@ -21,7 +21,7 @@ from gcs import settings as gcs_settings
 from gcs.picture.alert_rules import Thresholds
 from onboard.agent import config as agent_config
 from onboard.config.strict import StrictConfig, parse
-from onboard.game import field_roster, flight_spec, route_file, scenario, vehicle_spec
+from onboard.game import field_roster, flight_spec, route_file, scenario, vehicle_spec, zone_spec
 from onboard.runtime.loop import run_virtual, virtual_clock
 from onboard.runtime.resources import configs
 from sim_bridge.plane_game.program import play, result, table1
@@ -45,6 +45,10 @@ position = [-90, 40]
 speed = 40
 autopilot = "arduplane"
 airframe = "nose"
+[[zones]]
+name = "tower"
+centre = [70, -60]
+radius = 10
 [parameters]
 horizon = 1.0
 [flight]
@@ -80,7 +84,7 @@ def structs(*rooms: Any) -> set[type[msgspec.Struct]]:
     }  # fmt: skip
 
 
-SCENARIO = (scenario, vehicle_spec, flight_spec)
+SCENARIO = (scenario, vehicle_spec, flight_spec, zone_spec)
 OWN = (
     "__post_init__",
     "_demand_what_flies",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from msgspec.structs import astuple
 
 from gcs.picture.values import AssessmentView, GameView, Presence, ProspectView, TrackView, VehicleView
-from onboard.core.game.rules import NO_TARGET, Rules, Target
+from onboard.core.game.rules import NO_TARGET, Target
 from onboard.core.geometry import assessment
 from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import ZERO, Vec, direction, distance, scale, sub
@@ -109,7 +109,7 @@ def engagement_in(
     return engagement(
         Member(evader, limits[evading], True),
         tuple(Member(vehicle, limits[id], True) for id, vehicle in team),
-        target, Rules(*astuple(setup.rules)), heights, setup.track_sigma,
+        target, setup.core_rules(), heights, setup.track_sigma,
     )  # fmt: skip
 
 

@@ -30,6 +30,7 @@ FIELD = re.compile(r'^\s+"?(\w+)"?: .*?#\s*(.+)$', re.MULTILINE)
 INTRODUCTIONS = {
     "": "The file itself",
     "evader": "`[evader]` and each `[[pursuers]]`",
+    "zones": "Each of `[[zones]]`",
 }
 
 
@@ -47,6 +48,8 @@ def _tables(kind: type[Any], place: str) -> Iterator[tuple[str, type[Any]]]:
     yield place, kind
     for field in types.type_info(kind).fields:  # type: ignore[attr-defined]
         inner = bare(field.type)
+        if field.encode_name == "zones" and isinstance(inner, types.VarTupleType):
+            inner = bare(inner.item_type)
         if isinstance(inner, types.StructType):
             yield from _tables(inner.cls, f"{place}.{field.encode_name}" if place else field.encode_name)
 

@@ -101,7 +101,7 @@ class GameMaster:
         self.nearest: dict[int, float] = {}  # smallest distance of each pursuer to the evader so far [m]
         self._timing = timing
         self._target = target
-        self._rules = setup.rules.core()
+        self._rules = setup.core_rules()
         self._agents = {member.id: HeardAgent() for member in setup.roster if not member.tracked}
         self._tracked = tuple(member.id for member in setup.roster if member.tracked)
         self._tracks = TrackWatch()

@@ -2,7 +2,7 @@
 
 TOML. `[evader]` is the first evader, `[[evaders]]` are further ones. Positions are `[north, east]` or
 `[north, east, height]` in metres of the game frame (height above the origin); a game is plane where every
-position has two numbers. `[flight]` holds what only `serve` and `fly` need.
+position has two numbers. `[[zones]]` are kept out of. `[flight]` holds what only `serve` and `fly` need.
 """
 
 from __future__ import annotations
@@ -44,6 +44,8 @@ from onboard.game.vehicle_spec import Kind as Kind
 from onboard.game.vehicle_spec import VehicleSpec as VehicleSpec
 from onboard.game.vehicle_spec import targets_of as targets_of
 from onboard.game.vehicle_spec import vec as vec
+from onboard.game.zone_spec import ZoneSpec as ZoneSpec
+from onboard.game.zone_spec import core_zones, demand_zones
 from onboard.pilot.predictor_choice import Predicting
 from onboard.wire.bus.messages import Role
 from onboard.wire.geodesy import Frame
@@ -58,10 +60,10 @@ RULE_KEYS = {
     "horizon": Key(PositiveDuration),
     "separation": Key(Distance),
 }
-"""How `[parameters]` writes the core's Rules; `planar` follows from the positions."""
+"""How `[parameters]` writes the core's Rules; `planar` follows from the positions, `zones` stand beside."""
 
 
-class Parameters(struct_from(Rules, StrictConfig, RULE_KEYS, ("planar",))):  # type: ignore[misc]
+class Parameters(struct_from(Rules, StrictConfig, RULE_KEYS, ("planar", "zones"))):  # type: ignore[misc]
     """The game's rules in the paper's symbols, and the time step `dt` of the plane and compiled games [s]."""
 
     def __post_init__(self) -> None:
@@ -109,6 +111,7 @@ class Scenario(StrictConfig, frozen=True):
     evader: VehicleSpec  # the first
     pursuers: Pursuers
     evaders: Evaders = ()  # further ones
+    zones: tuple[ZoneSpec, ...] = ()  # that everybody keeps out of
     description: str = ""  # for people
     seed: Seed = 0  # of noise, losses, gusts and training
     parameters: Parameters = Parameters()
@@ -150,6 +153,7 @@ class Scenario(StrictConfig, frozen=True):
         for key, place in places.items():
             demand(len(place) == axes, key, f"{len(place)} numbers",
                    f"{axes} as in evader.position: a game is plane or in space")  # fmt: skip
+        demand_zones(self.zones, places, self.planar)
 
     def _demand_what_flies(self) -> None:
         """Demand that what `[flight]` and the vehicles say goes together and has an effect."""
@@ -234,7 +238,7 @@ class Scenario(StrictConfig, frozen=True):
         """The rules for the core."""
         p = self.parameters
         rho = 2.0 * p.R if p.rho is None else p.rho
-        return core_from(p, Rules, RULE_KEYS, rho=rho, planar=self.planar)
+        return core_from(p, Rules, RULE_KEYS, rho=rho, planar=self.planar, zones=core_zones(self.zones))
 
     def contents(self) -> dict[str, Any]:
         """Everything as plain data, without the keys of `OMITTED` where they are empty.
@@ -250,7 +254,7 @@ class Scenario(StrictConfig, frozen=True):
         return sha256(msgspec.json.encode(self.contents())).hexdigest()[:16]
 
 
-OMITTED = frozenset(("evaders", "targets"))
+OMITTED = frozenset(("evaders", "targets", "zones"))
 """Keys of scenarios that came later: empty ones are left out of `contents`."""
 
 

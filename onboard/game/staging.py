@@ -7,7 +7,7 @@ from math import radians
 
 from onboard.core.math.vectors import NORTH, Vec, direction, distance, sub, unit, yaw_of
 from onboard.game.scenario import Scenario, VehicleSpec, targets_of, vec
-from onboard.wire.bus.messages import Fence, LimitsMessage, Member, Origin, RulesMessage, Setup
+from onboard.wire.bus.messages import Fence, LimitsMessage, Member, Origin, RulesMessage, Setup, Zone
 
 
 def places_of(scenario: Scenario) -> tuple[Vec, ...]:
@@ -89,10 +89,11 @@ def setup_of(scenario: Scenario, game: str, master: str) -> Setup:
         master=master,
         origin=Origin(flight.origin.latitude_deg, flight.origin.longitude_deg, flight.origin.altitude_m),
         roster=tuple(roster),
-        rules=RulesMessage(*scenario.rules),
+        rules=RulesMessage.of(scenario.rules),
         fence=None if fence is None else Fence(fence.polygon, fence.height_min, fence.height_max),
         track_sigma=flight.sensor.sigma,
         seed=scenario.seed,
         field_profile=flight.field_profile,
         target=None if target is None else (target.x, target.y, target.z),
+        zones=tuple(Zone(zone.name, *zone.prism()) for zone in scenario.zones),
     )

@@ -50,6 +50,7 @@ KERNELS = (
     "onboard.core.geometry.cones",
     "onboard.core.geometry.edges",
     "onboard.core.geometry.free_ray",
+    "onboard.core.geometry.zones",
     "onboard.core.game.views",
     "onboard.core.geometry.lead",
     "onboard.core.math.angles",

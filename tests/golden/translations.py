@@ -38,7 +38,7 @@ SEVERAL = "fields for games of several evaders, empty in games of one"
 
 # Topics as in `bus` (without the game's name), in `viewers`, and "summary" for a game's summary.json.
 TRANSLATIONS: tuple[Translation, ...] = (
-    Translation(r"game/setup", shorter(13), SEVERAL),
+    Translation(r"game/setup", shorter(13), f"{SEVERAL}; zones, empty where there are none"),
     Translation(r"game/phase", shorter(8), SEVERAL),
     Translation(r"game/outcome", shorter(6), SEVERAL),
     Translation(r"roles/evader/brief", shorter(2), SEVERAL),

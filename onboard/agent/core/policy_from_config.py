@@ -16,6 +16,7 @@ from onboard.core.safety.field_profile import capture_in_space_refused, field_po
 from onboard.core.safety.policy import Envelope, Fence, Policy
 from onboard.pilot.setup import GameSetup, Player, Side
 from onboard.wire.bus.messages import Member, Role, Setup
+from onboard.wire.bus.zone_messages import no_zone
 
 _DEFAULT = Policy()
 GROUND = 1.0  # [m] above the origin; a start below it is one on the ground
@@ -131,6 +132,8 @@ def contradiction(
     rules = setup.rules
     if not rules.R > 0.0 or rules.rho < rules.R:
         return f"R = {rules.R:g} m and ρ = {rules.rho:g} m do not fit"
+    if found := no_zone(setup.zones):
+        return found
     if setup.fence is not None and (
         len(setup.fence.polygon) < 3 or setup.fence.altitude_min >= setup.fence.altitude_max
     ):
@@ -190,7 +193,7 @@ def game_setup(
         players.append(Player(member.id, side, member.speed, limits, height))
     return GameSetup(
         roster=tuple(players),
-        rules=setup.rules.core()._replace(planar=setup.flat),
+        rules=setup.core_rules()._replace(planar=setup.flat),
         control=Control(1.0 / config.control_rate_hz, config.lookahead_s),
         target=NO_TARGET if target is None else Target(True, target),
     )

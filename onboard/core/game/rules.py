@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from onboard.core.geometry.zones import NO_ZONES, Zones
 from onboard.core.math.vectors import ZERO, Vec
 
 
@@ -19,6 +20,7 @@ class Rules(NamedTuple):
     separation: float = 0.0  # distance that pursuers keep from each other [m]; 0 = off (Figure 8b)
     planar: bool = False  # a game in the plane: heights count neither for decisions nor for the referee
     target_known: bool = False  # whether the pursuers know where the evader's target is
+    zones: Zones = NO_ZONES  # that everybody keeps out of
 
 
 class Target(NamedTuple):

@@ -21,6 +21,8 @@ from onboard.wire.bus.evader_messages import EvaderOutcome as EvaderOutcome
 from onboard.wire.bus.evader_messages import EvaderTargets as EvaderTargets
 from onboard.wire.bus.evader_messages import OutcomeResult as OutcomeResult
 from onboard.wire.bus.evader_messages import OwnBrief as OwnBrief
+from onboard.wire.bus.zone_messages import Zone as Zone
+from onboard.wire.bus.zone_messages import core_zones
 
 SCHEMA = 2
 
@@ -90,12 +92,13 @@ class Origin(Message, frozen=True):
     altitude_m: float
 
 
-class RulesMessage(struct_from(Rules, Message)):  # type: ignore[misc]
-    """The core's Rules on the bus, field by field as the core has them."""
+class RulesMessage(struct_from(Rules, Message, leave_out=("zones",))):  # type: ignore[misc]
+    """The core's Rules on the bus, field by field as the core has them; zones are the setup's."""
 
-    def core(self) -> Rules:
-        """The core's value."""
-        return core_from(self, Rules)
+    @classmethod
+    def of(cls, rules: Rules) -> RulesMessage:
+        """From the core's value."""
+        return cls(*(getattr(rules, field) for field in cls.__struct_fields__))
 
 
 class LimitsMessage(struct_from(VehicleLimits, Message)):  # type: ignore[misc]
@@ -144,11 +147,16 @@ class Setup(Message, frozen=True):
     nonce: int = 0  # of the master's process, as in `Master`
     target: Triple | None = None  # the first evader's first [m; NED], where the pursuers may know it
     targets: tuple[EvaderTargets, ...] = ()  # all, where they may know them and there are more than that one
+    zones: tuple[Zone, ...] = ()  # that everybody keeps out of
 
     @property
     def flat(self) -> bool:
         """Whether heights do not count: a plane game, or the field profile."""
         return bool(self.rules.planar or self.field_profile)
+
+    def core_rules(self) -> Rules:
+        """The rules for the core, zones among them."""
+        return core_from(self.rules, Rules, zones=core_zones(self.zones))
 
 
 class PhaseChange(Message, frozen=True):

@@ -66,7 +66,7 @@ def with_key(place: str, key: str) -> str:
         body, _, pursuers = rest.partition("[[")
         kept = "".join(one for one in body.splitlines(keepends=True) if not one.startswith(f"{key} "))
         return f"{head}[evader]\n{line}{kept}[[{pursuers}"
-    return f"{MINIMAL}[{place}]\n{line}"
+    return f"{MINIMAL}[[{place}]]\n{line}" if place == "zones" else f"{MINIMAL}[{place}]\n{line}"
 
 
 @pytest.mark.parametrize("key", ["R", "rho", "horizon"])
