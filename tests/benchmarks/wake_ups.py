@@ -1,8 +1,8 @@
 """What it saves that messages of a stream wake an event loop together: a ground station and agents, in turn.
 
-`python -m tests.benchmarks.wake_ups [--rounds N]` writes benchmarks/results/wake-ups.md, in four minutes. In one
-run each message of the bus wakes the loop by itself (unless it is on its way already), in the next those of a
-stream together, as the product does it (`onboard/runtime/inbox.py`).
+`python -m tests.benchmarks.wake_ups [--rounds N]` writes benchmarks/results/wake-ups.md, in five minutes. In
+one run each message of the bus wakes the loop by itself (unless it is on its way already), in the next those
+of a stream together, as the product does it (`onboard/runtime/inbox.py`).
 """
 
 from __future__ import annotations
@@ -84,8 +84,8 @@ def main() -> None:
             for what, value in row.items():
                 found.setdefault(what, {}).setdefault(name, []).append(value)
     lines = [
-        f"Medians of {rounds} runs in turn (all in brackets); CPU of whole processes, Zenoh's threads included.",
-        f"Together: in a stream the loop looks every {1e3 * inbox.TOGETHER_S:g} ms; a lone message and an order",
+        f"Medians of {rounds} runs in turn (all in brackets); CPU of whole processes, with Zenoh's threads.",
+        f"Together: in a stream the loop looks every {1e3 * inbox.TOGETHER_S:g} ms; a lone message and orders",
         "wake it at once in both.",
         "",
         "| what | each by itself | together | ratio |",
