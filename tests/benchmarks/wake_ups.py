@@ -85,8 +85,8 @@ def main() -> None:
                 found.setdefault(what, {}).setdefault(name, []).append(value)
     lines = [
         f"Medians of {rounds} runs in turn (all in brackets); CPU of whole processes, with Zenoh's threads.",
-        f"Together: in a stream the loop looks every {1e3 * inbox.TOGETHER_S:g} ms; a lone message and orders",
-        "wake it at once in both.",
+        f"Together: in a stream the loop looks every {1e3 * inbox.TOGETHER_S:g} ms; lone ones and orders",
+        "wake it at once in both ways.",
         "",
         "| what | each by itself | together | ratio |",
         "|---|---|---|---|",
