@@ -256,7 +256,7 @@ def fence(
     from gcs.fence import show
     from onboard.game.scenario import load
 
-    played = None if scenario is None else load(shipped_file(scenario, SCENARIOS))
+    played = None if scenario is None else load(shipped_file(scenario, SCENARIOS), several=True)
     print("\n".join(show(file, played)))
     return 0
 
@@ -297,7 +297,7 @@ def game_run(
     from gcs import programs
     from onboard.game.scenario import load
 
-    found, played = options.settings(), load(shipped_file(scenario, SCENARIOS))
+    found, played = options.settings(), load(shipped_file(scenario, SCENARIOS), several=True)
     plain = bool(options.plain)
     return _play(programs.play(found, played, plain=plain, auto_start=start, takes_over=take_over))
 
@@ -320,7 +320,7 @@ def game_check(
     from gcs import programs
     from onboard.game.scenario import load
 
-    found, played = options.settings(), load(shipped_file(scenario, SCENARIOS))
+    found, played = options.settings(), load(shipped_file(scenario, SCENARIOS), several=True)
     return _play(programs.check_crowd(found, played, wait))
 
 

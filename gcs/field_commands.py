@@ -88,5 +88,5 @@ def take_off(
 
     if not link:
         raise ConfigError("--link: found none, expected ID=URL, e.g. --link 2=udpin://0.0.0.0:14551")
-    links, played = takeoff.links_of(tuple(link)), load(shipped_file(scenario, SCENARIOS))
+    links, played = takeoff.links_of(tuple(link)), load(shipped_file(scenario, SCENARIOS), several=True)
     return asyncio.run(takeoff.take_off(played, links, may_arm=may_arm, within_s=within))

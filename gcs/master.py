@@ -19,7 +19,7 @@ from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec, along, sub
 from onboard.game.master import GameMaster, Standing, Timing
 from onboard.game.scenario import Scenario
-from onboard.game.staging import setup_of, target_of
+from onboard.game.staging import flown_targets, setup_of
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import (
     CommandKind,
@@ -27,6 +27,7 @@ from onboard.wire.bus.messages import (
     Master,
     OutcomeResult,
     Phase,
+    PhaseChange,
     Role,
     Severity,
     State,
@@ -106,7 +107,7 @@ class FieldMaster:
         name = f"{station.member}/{nonce & 0xFFFFFFFF:08x}"  # a person takes over by name: no two have one
         self.rules = GameMaster(
             setup_of(scenario, station.game, name),
-            target_of(scenario),
+            flown_targets(scenario),
             name,
             nonce,
             timing,
@@ -120,6 +121,7 @@ class FieldMaster:
         self._heard_own: dict[int, int] = {}  # vehicle → its last own state
         self._takers: dict[Topic[Any], Callable[[Any, int], None]] = {
             topics.MASTER: self._on_master,
+            topics.PHASE: self._on_phase,
             topics.HEALTH: self._on_health,
             topics.STATE: self._on_state,
             topics.TRACK: self._on_track,
@@ -168,8 +170,8 @@ class FieldMaster:
         judged_ns = now_ns - LAG_NS
         if judged_ns >= self.rules.t0_ns:
             self.rules.observe(judged_ns, now_ns, self._positions.at(judged_ns))
-        for topic, message in self.rules.outgoing():
-            key = topic.key(self._station.game)
+        for topic, message, id in self.rules.outgoing():
+            key = topic.key(self._station.game, id)
             self._station.bus.publish(key, topic.encode(message), topic.delivery)
         for line in self.rules.news():
             self._say(line)
@@ -182,6 +184,9 @@ class FieldMaster:
 
     def _on_master(self, master: Master, now_ns: int) -> None:
         self.rules.heard_master(master, now_ns)
+
+    def _on_phase(self, phase: PhaseChange, now_ns: int) -> None:
+        self.rules.heard_phase(phase)
 
     def _on_health(self, health: Health, now_ns: int) -> None:
         self._offsets[health.id] = round(health.clock_offset_s * NS_PER_S)

@@ -24,6 +24,7 @@ from onboard.config.version import version
 from onboard.core.math.constants import NS_PER_S
 from onboard.game import go_or_no_go
 from onboard.game.scenario import Scenario, load
+from onboard.game.trials import in_words
 from onboard.runtime.bus_security import Lock
 from onboard.runtime.clock import RealClock
 from onboard.runtime.progress import Progress
@@ -182,8 +183,10 @@ async def play(
                 _say_farewell(session)
         picture: Picture = session.picture()
         if picture.game.outcome is not None:
-            by = f" by {picture.game.outcome.captor}" if picture.game.outcome.captor else ""
-            print(f"evader {picture.game.outcome.verdict.value}{by} after {picture.game.outcome.time:.1f} s")
+            outcome = picture.game.outcome
+            by = f" by {outcome.captor}" if outcome.captor else ""
+            whole = f"evader {outcome.verdict.value}{by} after {outcome.time:.1f} s"
+            print("\n".join(in_words(end) for end in outcome.evaders) or whole)
         return master.exit_code
 
 

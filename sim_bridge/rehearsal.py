@@ -23,7 +23,7 @@ from onboard.runtime.impairment import Impaired, Impairment
 from onboard.runtime.links import memory_pair
 from onboard.runtime.progress import Tell, silent
 from onboard.runtime.protocols import Bus, Clock, Link, Sample
-from onboard.wire.bus.messages import Event, Health, Outcome, Phase, Role
+from onboard.wire.bus.messages import Event, Health, Outcome, Phase
 from onboard.wire.bus.topics import everything
 from onboard.wire.mavlink.tlog import TlogWriter
 from sim_bridge.world.bridge import Bridge, mute
@@ -216,7 +216,7 @@ class Rehearsal:
         for id, spec in zip(self.scenario.ids, self.scenario.vehicles, strict=True):
             settings: dict[str, Any] = {
                 "id": id,
-                "role": Role.EVADER if spec is self.scenario.evader else Role.PURSUER,
+                "role": self.scenario.role_of(id),
                 "game": self.game,
                 "take_control": True,
                 "may_arm": flight.ground_start,

@@ -14,14 +14,13 @@ from typing import Any, NamedTuple
 
 from msgspec.structs import replace
 
-from onboard.core.game.referee import GameResult, Score, Step, judge, opening, passage
-from onboard.core.game.rules import Target
 from onboard.core.math.constants import NS_PER_S
-from onboard.core.math.vectors import ZERO, Vec, along, sub
+from onboard.core.math.vectors import Vec
 from onboard.game.heard_agent import HeardAgent
 from onboard.game.phases import TRANSITIONS, PhaseEvent
 from onboard.game.places import PlaceReport, PlaceWatch
 from onboard.game.track_watch import TrackWatch
+from onboard.game.trials import Trial, Trials, in_words
 from onboard.wire.bus.codec import M
 from onboard.wire.bus.messages import (
     AgentStage,
@@ -31,28 +30,20 @@ from onboard.wire.bus.messages import (
     Message,
     Outcome,
     OutcomeResult,
+    OwnBrief,
     Phase,
     PhaseChange,
-    Role,
     Setup,
     Track,
-    Triple,
 )
-from onboard.wire.bus.topics import EVADER_BRIEF, MASTER, OUTCOME, PHASE, SETUP, Topic
+from onboard.wire.bus.topics import EVADER_BRIEF, MASTER, OUTCOME, OWN_BRIEF, PHASE, SETUP, Topic
 
 LEASE_S = 2.0  # a master silent for longer is no master any more
 LEASE_EVERY_NS = NS_PER_S // 2
 LISTEN_NS = 12 * NS_PER_S // 10  # a master that holds the lease speaks twice in this time
-UNSEEN_NS = 10 * NS_PER_S  # a game whose evader nobody sees for so long cannot be judged
 HEALTH_NS = 3 * NS_PER_S  # an agent silent for longer is not there: six heartbeats lost in a row
 SUPERSEDED_NS = 15 * NS_PER_S // 10  # an agent's earlier process counts as gone after this silence
 READY_STAGES = (AgentStage.READY, AgentStage.ACTING)  # of agents that can begin
-_RESULTS = {
-    GameResult.CAPTURED: OutcomeResult.CAPTURED,
-    GameResult.ARRIVED: OutcomeResult.ARRIVED,
-    GameResult.ESCAPED: OutcomeResult.ESCAPED,
-    GameResult.DENIED: OutcomeResult.DENIED,
-}
 
 
 class Standing(Enum):
@@ -77,17 +68,21 @@ class Publication(NamedTuple):
 
     topic: Topic[Any]
     message: Message
+    id: int | None = None  # of the vehicle, where the topic's key holds one
+
+
+Targets = Mapping[int, tuple[Vec, ...]]  # of evaders, by vehicle [m; NED]
 
 
 class GameMaster:
     """Give it time and messages; take `outgoing()` to the bus and `news()` to the people.
 
-    `target` is the evader's [m; NED], None in a game without one; of two masters the smaller `nonce` stays.
-    `takes_over` names the master, silent now, whose running game a person lets this one lead on.
+    `targets` are the evaders' [m; NED], by vehicle; of two masters the smaller `nonce` stays. `takes_over`
+    names the master, silent now, whose running game a person lets this one lead on.
     """
 
     def __init__(
-        self, setup: Setup, target: Vec | None, name: str, nonce: int, timing: Timing, takes_over: str = ""
+        self, setup: Setup, targets: Targets, name: str, nonce: int, timing: Timing, takes_over: str = ""
     ) -> None:
         self._takes_over = takes_over
         self.setup = setup
@@ -97,18 +92,11 @@ class GameMaster:
         self.phase = Phase.STAGING
         self.t0_ns = 0  # beginning of the game [ns, wall]; 0 = not set
         self.outcome: Outcome | None = None
-        self.score: Score | None = None
-        self.nearest: dict[int, float] = {}  # smallest distance of each pursuer to the evader so far [m]
         self._timing = timing
-        self._target = target
-        self._rules = setup.core_rules()
+        self._trials = Trials(setup, targets)
         self._agents = {member.id: HeardAgent() for member in setup.roster if not member.tracked}
         self._tracked = tuple(member.id for member in setup.roster if member.tracked)
         self._tracks = TrackWatch()
-        self._seen_ns = 0  # when the evader's position was last known [ns, monotonic]
-        self._evader = next(member.id for member in setup.roster if member.role is Role.EVADER)
-        self._speeds = {member.id: member.speed for member in setup.roster}  # declared [m/s]; 0 = not
-        self._pursuers = tuple(member.id for member in setup.roster if member.role is Role.PURSUER)
         self._resume: tuple[int, ...] = ()
         self._began_ns = -1
         self._lease_ns = 0
@@ -116,12 +104,15 @@ class GameMaster:
         self._places = PlaceWatch()
         self._ended_ns = 0
         self._started = timing.auto_start
-        self._before: dict[int, Vec] = {}
-        self._before_ns = 0
         self._outgoing: list[Publication] = []
         self._news: list[str] = []
         self._told: set[object] = set()
         self._words = self._phases = 0  # said so far
+
+    @property
+    def nearest(self) -> dict[int, float]:
+        """Smallest distance of each pursuer to any evader so far [m]."""
+        return self._trials.nearest
 
     # ------------------------------------------------------------------ what it hears
 
@@ -155,8 +146,14 @@ class GameMaster:
 
     def heard_track(self, track: Track) -> None:
         """Take a measurement: what counts of a vehicle that no agent flies."""
-        if track.id == self._evader:
+        if track.id in self._trials.all:
             self._tracks.heard(track)
+
+    def heard_phase(self, phase: PhaseChange) -> None:
+        """Take a phase that a master told of: of a game that this one takes over, whose evaders are out."""
+        silent = self.standing is Standing.LISTENING and self.phase is Phase.STAGING
+        if silent and self._takes_over and phase.master == self._takes_over:
+            self._trials.take_over(phase.out)
 
     def start(self) -> None:
         """Let the game begin as soon as everybody is ready."""
@@ -165,9 +162,7 @@ class GameMaster:
     def abort(self, wall_ns: int, now_ns: int, reason: str) -> None:
         """End the game without a result, in any phase before its end."""
         if (self.phase, PhaseEvent.ABORT) in TRANSITIONS and self.standing is not Standing.YIELDED:
-            elapsed = self._elapsed(wall_ns)
-            outcome = self._outcome(OutcomeResult.ABORTED, wall_ns, time=elapsed, reason=reason)
-            self._end(PhaseEvent.ABORT, outcome, now_ns)
+            self._end(PhaseEvent.ABORT, self._aborted(wall_ns, reason), now_ns)
 
     # ------------------------------------------------------------------ time passes
 
@@ -180,7 +175,7 @@ class GameMaster:
             self._staged_ns = now_ns
             self._lease_ns = now_ns
             self._put(SETUP, replace(self.setup, master=self.name, nonce=self.nonce))
-            self._put(EVADER_BRIEF, EvaderBrief(self._triple_target(), wall_ns))
+            self._brief(wall_ns)
             self._publish_phase(wall_ns, "")
         if self.standing is not Standing.HOLDING:
             return
@@ -193,21 +188,21 @@ class GameMaster:
             self._stage(wall_ns, now_ns)
         elif self.phase is Phase.READY:
             self._count_down(wall_ns, now_ns)
-            self._seen_ns = now_ns
-        elif self.phase is Phase.RUNNING and now_ns - self._seen_ns > UNSEEN_NS:
-            seconds = UNSEEN_NS // NS_PER_S
-            self.abort(wall_ns, now_ns, f"nobody has seen vehicle {self._evader} for {seconds} s")
-        elif self.phase is Phase.RUNNING:
+            self._trials.seen(now_ns)
+        elif self.phase is Phase.RUNNING and not self._lose_sight(wall_ns, now_ns):
             self._look_after(wall_ns, now_ns)
         elif self.phase is Phase.ENDED and now_ns - self._ended_ns >= self._timing.recovery_s * NS_PER_S:
             self._follow(PhaseEvent.RECOVERY_DUE, wall_ns)
 
     def lacking(self, wall_ns: int, now_ns: int) -> dict[int, str]:
         """Why the game cannot start: vehicle → what it lacks."""
-        lacking = {id: why for id in self._tracked if (why := self._tracks.lack(id, wall_ns))}
+        lost = {id: self._tracks.lack(id, wall_ns) for id in self._tracked if not self._trials.is_out(id)}
+        lacking = {id: why for id, why in lost.items() if why}
         for id, agent in self._agents.items():
+            if self._trials.is_out(id):
+                continue
             if agent.health is None:
-                seen = id == self._evader and not self._tracks.lack(id, wall_ns)
+                seen = id in self._trials.all and not self._tracks.lack(id, wall_ns)
                 hint = ", but a good track: evader.tracked = true plays without its agent" if seen else ""
                 lacking[id] = f"no agent heard{hint}"
             elif now_ns - agent.heard_ns > HEALTH_NS:
@@ -226,15 +221,7 @@ class GameMaster:
         """
         if self.phase is not Phase.RUNNING or self.standing is not Standing.HOLDING:
             return
-        if self._evader not in positions:
-            return
-        self._seen_ns = now_ns
-        here = {id: self._judged(positions[id]) for id in (self._evader, *self._pursuers) if id in positions}
-        if self.score is None:
-            self.score = opening(here[self._evader], tuple(here[id] for id in self._pursuers if id in here))
-        elif wall_ns > self._before_ns:
-            self._judge(wall_ns, now_ns, here)
-        self._before, self._before_ns = here, wall_ns
+        self._see_out(self._trials.observe(wall_ns, now_ns, self.t0_ns, positions), wall_ns, now_ns)
 
     # ------------------------------------------------------------------ what it says
 
@@ -262,7 +249,7 @@ class GameMaster:
             self._follow(PhaseEvent.ALL_READY, wall_ns)
         elif lacking and patience_ns > 0 and now_ns - self._staged_ns > patience_ns:
             missing = "; ".join(f"vehicle {id}: {reason}" for id, reason in sorted(lacking.items()))
-            outcome = self._outcome(OutcomeResult.ABORTED, wall_ns, reason=f"not ready in time: {missing}")
+            outcome = self._aborted(wall_ns, f"not ready in time: {missing}")
             self._end(PhaseEvent.PATIENCE_OVER, outcome, now_ns)
 
     def _count_down(self, wall_ns: int, now_ns: int) -> None:
@@ -285,14 +272,14 @@ class GameMaster:
 
     def _look_after(self, wall_ns: int, now_ns: int) -> None:
         """Agents that fell silent, came back, or were started again while the game runs."""
-        resume = set(self._resume)
+        resume = {id for id in self._resume if not self._trials.is_out(id)}
         for id, agent in self._agents.items():
             health = agent.health
             silent = now_ns - agent.heard_ns > HEALTH_NS
             if silent != agent.silent:
                 agent.silent = silent
                 self._say(f"agent {id} {'is silent' if silent else 'is back'}")
-            if silent or health is None:
+            if silent or health is None or self._trials.is_out(id):
                 continue
             if health.nonce == agent.acting_nonce:
                 if id in resume and health.stage is AgentStage.ACTING:
@@ -311,42 +298,40 @@ class GameMaster:
             self._resume = tuple(sorted(resume))
             self._publish_phase(wall_ns, "resume" if self._resume else "")
 
-    def _judge(self, wall_ns: int, now_ns: int, here: dict[int, Vec]) -> None:
-        assert self.score is not None
-        evader = self._evader
-        start, dt = (self._before_ns - self.t0_ns) / NS_PER_S, (wall_ns - self._before_ns) / NS_PER_S
-        ids = tuple(id for id in self._pursuers if id in self._before and id in here)
-        before = tuple(self._before[id] for id in ids)
-        after = tuple(here[id] for id in ids)
-        target = ZERO if self._target is None else self._judged(self._target)
-        speeds = tuple(self._speeds[id] for id in ids)
-        e0, e1 = self._before[evader], here[evader]
-        step = Step(start, dt, e0, e1, before, after, self._speeds[evader], speeds)
-        goal = Target(self._target is not None, target)
-        self.score = score = judge(self.score, step, self._rules, goal)
-        played = min(1.0, (score.time - start) / dt)  # a game ends within a step
-        end = _part(e0, e1, played)
-        for id, p0, p1 in zip(ids, before, after, strict=True):
-            seen = passage(p0, _part(p0, p1, played), e0, end, 0.0).smallest
-            self.nearest[id] = min(self.nearest.get(id, seen), seen)
-        if score.verdict != GameResult.RUNNING:
-            captor = ids[score.captor] if score.captor >= 0 else 0
-            result = _RESULTS[GameResult(score.verdict)]
-            outcome = self._outcome(result, wall_ns, time=score.time, captor=captor)
-            self._end(PhaseEvent.RESULT, outcome, now_ns)
+    def _lose_sight(self, wall_ns: int, now_ns: int) -> bool:
+        """Let evaders leave that nobody has seen for long; whether that ended the game."""
+        lost = self._trials.lose_sight(now_ns, self._elapsed(wall_ns))
+        self._see_out(lost, wall_ns, now_ns)
+        return self.phase is not Phase.RUNNING
 
-    def _judged(self, position: Vec) -> Vec:
-        """Plane games and field profiles are judged horizontally."""
-        return Vec(position.x, position.y, 0.0) if self.setup.flat else position
+    def _see_out(self, ended: list[Trial], wall_ns: int, now_ns: int) -> None:
+        """Tell whose game has ended just now; with the last one's the whole game ends."""
+        if not ended:
+            return
+        if self._trials.playing:
+            words = [in_words(trial.outcome) for trial in ended if trial.outcome is not None]
+            self._publish_phase(wall_ns, "; ".join(words))
+            self._news += words
+            return
+        outcome = self._trials.whole(wall_ns)
+        aborted = outcome.verdict is OutcomeResult.ABORTED
+        self._end(PhaseEvent.ABORT if aborted else PhaseEvent.RESULT, outcome, now_ns)
 
     def _elapsed(self, wall_ns: int) -> float:
         return max(0.0, (wall_ns - self.t0_ns) / NS_PER_S) if self.phase is Phase.RUNNING else 0.0
 
-    def _outcome(
-        self, result: OutcomeResult, wall_ns: int, *, time: float = 0.0, captor: int = 0, reason: str = ""
-    ) -> Outcome:
-        smallest = self.score.smallest if self.score is not None else -1.0
-        return Outcome(result, time, captor, smallest, wall_ns, reason)
+    def _aborted(self, wall_ns: int, reason: str) -> Outcome:
+        return self._trials.aborted(wall_ns, self._elapsed(wall_ns), reason)
+
+    def _brief(self, wall_ns: int) -> None:
+        """Tell the evader where it goes; of several each its own targets alone."""
+        for id, trial in self._trials.all.items():
+            targets = tuple((target.x, target.y, target.z) for target in trial.targets)
+            if len(self._trials.all) > 1:
+                self._put(OWN_BRIEF, OwnBrief(id, wall_ns, targets), id)
+            else:
+                several = targets if len(targets) > 1 else ()
+                self._put(EVADER_BRIEF, EvaderBrief(targets[0] if targets else None, wall_ns, several))
 
     def _end(self, event: PhaseEvent, outcome: Outcome, now_ns: int) -> None:
         self.outcome = outcome
@@ -365,15 +350,12 @@ class GameMaster:
         self._phases += 1
         phase = PhaseChange(
             phase=self.phase, t0_ns=self.t0_ns, stamp_ns=wall_ns, resume=self._resume, reason=reason,
-            master=self.name, nonce=self.nonce, number=self._phases,
+            master=self.name, nonce=self.nonce, number=self._phases, out=self._trials.out,
         )  # fmt: skip
         self._put(PHASE, phase)
 
-    def _triple_target(self) -> Triple | None:
-        return None if self._target is None else (self._target.x, self._target.y, self._target.z)
-
-    def _put(self, topic: Topic[M], message: M) -> None:
-        self._outgoing.append(Publication(topic, message))
+    def _put(self, topic: Topic[M], message: M, id: int | None = None) -> None:
+        self._outgoing.append(Publication(topic, message, id))
 
     def _say(self, line: str) -> None:
         self._news.append(line)
@@ -383,6 +365,3 @@ class GameMaster:
             self._told.add(about)
             self._say(line)
 
-
-def _part(a: Vec, b: Vec, share: float) -> Vec:
-    return along(a, sub(b, a), share)

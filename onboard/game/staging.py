@@ -6,8 +6,17 @@ from collections.abc import Sequence
 from math import radians
 
 from onboard.core.math.vectors import NORTH, Vec, direction, distance, sub, unit, yaw_of
-from onboard.game.scenario import Scenario, VehicleSpec, targets_of, vec
-from onboard.wire.bus.messages import Fence, LimitsMessage, Member, Origin, RulesMessage, Setup, Zone
+from onboard.game.scenario import Scenario, VehicleSpec, targets_of
+from onboard.wire.bus.messages import (
+    EvaderTargets,
+    Fence,
+    LimitsMessage,
+    Member,
+    Origin,
+    RulesMessage,
+    Setup,
+    Zone,
+)
 
 
 def places_of(scenario: Scenario) -> tuple[Vec, ...]:
@@ -55,14 +64,30 @@ def staging_place(scenario: Scenario, spec: VehicleSpec) -> Vec:
     return Vec(place.x, place.y, 0.0) if scenario.flight.ground_start else place
 
 
+def flown_targets(scenario: Scenario) -> dict[int, tuple[Vec, ...]]:
+    """The evaders' targets as they are flown [m; NED], by vehicle; () for one without."""
+    evaders = zip(scenario.evader_ids, scenario.evading, strict=True)
+    return {id: tuple(flown(scenario, place) for place in targets_of(spec)) for id, spec in evaders}
+
+
 def target_of(scenario: Scenario) -> Vec | None:
-    """The evader's target as it is flown."""
-    target = scenario.evader.target
-    return None if target is None else flown(scenario, vec(target))
+    """The first evader's first target as it is flown."""
+    return next(iter(flown_targets(scenario)[scenario.evader_ids[0]]), None)
+
+
+def told_targets(scenario: Scenario) -> tuple[EvaderTargets, ...]:
+    """The targets as pursuers know them: none, unless the rules say so; nor where `Setup.target` says all."""
+    if not scenario.rules.target_known:
+        return ()
+    targets = flown_targets(scenario)
+    if len(targets) == 1 and max(map(len, targets.values())) <= 1:
+        return ()
+    told = ((id, tuple((place.x, place.y, place.z) for place in places)) for id, places in targets.items())
+    return tuple(EvaderTargets(id, places) for id, places in told if places)
 
 
 def setup_of(scenario: Scenario, game: str, master: str) -> Setup:
-    """`game/setup`: everything but the evader's target, unless the rules say that the pursuers know it."""
+    """`game/setup`: everything but the evaders' targets, unless the rules say that the pursuers know them."""
     flight = scenario.flight
     target = target_of(scenario) if scenario.rules.target_known else None
     roster = []
@@ -95,5 +120,6 @@ def setup_of(scenario: Scenario, game: str, master: str) -> Setup:
         seed=scenario.seed,
         field_profile=flight.field_profile,
         target=None if target is None else (target.x, target.y, target.z),
+        targets=told_targets(scenario),
         zones=tuple(Zone(zone.name, *zone.prism()) for zone in scenario.zones),
     )

@@ -12,6 +12,8 @@ from math import inf, isnan
 from typing import NamedTuple
 
 from onboard.core.game.advance import EvaderStrategy, PursuerStrategy
+from onboard.core.game.rules import NO_TARGET, Target
+from onboard.core.game.targets import NONE, at, chosen
 from onboard.core.game.views import (
     EvaderView,
     PursuerView,
@@ -34,6 +36,7 @@ from onboard.core.strategy.choosing import held_after
 from onboard.core.strategy.knowledge import Decision, Level, Module, level_of
 from onboard.core.strategy.registry import EVADERS, PURSUERS, evader_named, pursuer_named
 from onboard.core.strategy.team.plan_types import IDLE
+from onboard.pilot.hunt import Hunt, levelled
 from onboard.pilot.memory import Memory
 from onboard.pilot.predictor import Prediction, PredictorKind
 from onboard.pilot.setup import GameSetup, Own, Player, Side
@@ -64,6 +67,7 @@ class PilotDecision(NamedTuple):
     others: tuple[Vehicle, ...]  # opponents as the strategy saw them
     rho: float  # safety distance ρ of the blocked cones [m]
     why: str = ""  # who planned it, in words; "" where the vehicle decides alone
+    quarry: int = 0  # of several evaders the one that a pursuer is after; 0 = none
 
 
 def drawing(thought: PilotDecision, side: Side) -> tuple[tuple[Quad, ...], tuple[Quad, ...]]:
@@ -109,6 +113,8 @@ class Viewpoint:
         known = (EVADERS if side is Side.EVADER else PURSUERS).get(self.strategy)
         self.part = IDLE  # of the team's plan, where there is one
         self.why = ""  # whose plan that is, in words
+        self.hunt: Hunt | None = None  # of a pursuer that has a choice of evaders or of their targets
+        self._aim = NONE  # number of the target that an evader with several goes for
         self._last: Decision | None = None  # and when it was asked for [s]
         self._last_at = self._asked_at = 0.0
         self._modules: dict[int, Module] = {} if known is None else {r.id: r.module for r in known.table}
@@ -130,7 +136,10 @@ class Viewpoint:
         seen = Vehicle(level(own.position, planar), sub(level(own.velocity, planar), wind), me.speed)
         known: list[tuple[Player, Prediction]] = []
         lacks: list[str] = []
-        for player in setup.opponents(self.side):
+        after = self._opponents(now, own, mates, setup, memory)
+        if not after:
+            return self._silent(own, ("an evader that is still in the game",))
+        for player in after:
             prediction = memory.predict(player.id, now)
             if prediction is None:
                 lacks.append(f"track of {player.side.value} {player.id}")
@@ -142,7 +151,7 @@ class Viewpoint:
         others = tuple(_opponent(player, p, now, wind, planar, memory) for player, p in known)
         view: EvaderView | PursuerView
         if self.side is Side.EVADER:
-            goal = setup.target._replace(position=level(setup.target.position, planar))
+            goal = self._goal(seen, me, others, setup)
             view = evader_view(seen, me.limits, others, goal, wind, setup.rules)
             view = with_limits(view, tuple(player.limits for player, _ in known))
         else:
@@ -157,20 +166,44 @@ class Viewpoint:
         sigma = inf if lacks else worst.sigma
         return Question(view, own, me, seen, others, wind, sigma, worst.source.name.lower(), tuple(lacks))
 
+    def _opponents(
+        self, now: float, own: Own, mates: tuple[Mate, ...], setup: GameSetup, memory: Memory
+    ) -> tuple[Player, ...]:
+        """Whom the strategy is shown: an evader all pursuers, a pursuer the evader that it is after."""
+        if self.hunt is not None:
+            if self.hunt.choose(now, own, mates, setup, memory):
+                self._last = None  # the meeting point that was held was with another one
+            player = setup.player(self.hunt.quarry)
+            return () if player is None else (player,)
+        return setup.opponents(self.side)
+
+    def _goal(self, seen: Vehicle, me: Player, pursuers: tuple[Vehicle, ...], setup: GameSetup) -> Target:
+        """The target that an evader goes for; of several the one that it is at soonest."""
+        planar = setup.rules.planar
+        goals = levelled(setup.targets_of(self.id), planar)
+        if len(goals) > 1:
+            cones = blocked_cones(seen, pursuers, setup.rules.rho)
+            self._aim = chosen(seen, me.limits, cones, goals, planar, self._aim)
+            return at(goals, self._aim)
+        return goals[0] if goals else NO_TARGET
+
     def _team(self, seen: Vehicle, mates: tuple[Mate, ...], wind: Vec, setup: GameSetup) -> Team:
         """The own side in the moving air; who declares no speed counts as fast as this vehicle."""
         planar = setup.rules.planar
-        members = [seen]
+        members, places = [seen], [seen.position]
+        hunt = self.hunt
         for mate in mates:
             player = setup.player(mate.id)
             if mate.id != self.id:
+                places.append(level(mate.position, planar))
+            if mate.id != self.id and (hunt is None or mate.id in hunt.together):
                 speed = player.speed if player is not None and player.speed > 0.0 else seen.speed
                 velocity = sub(level(mate.velocity, planar), wind)
                 members.append(Vehicle(level(mate.position, planar), velocity, speed))
-        places = tuple(member.position for member in members)
-        target = setup.target._replace(position=level(setup.target.position, planar))
+        target = setup.target if hunt is None else hunt.target_of(hunt.quarry, setup)
+        target = target._replace(position=level(target.position, planar))
         return Team(
-            nearest_mate(seen.position, places, 0), tuple(members), 0, told(target, setup.rules)
+            nearest_mate(seen.position, tuple(places), 0), tuple(members), 0, told(target, setup.rules)
         )
 
     def conclude(self, question: Question, decision: Decision, setup: GameSetup) -> PilotDecision:
@@ -193,8 +226,13 @@ class Viewpoint:
             own=question.seen,
             others=question.others,
             rho=setup.rules.rho,
-            why=self.why,
+            why=self._reason(),
+            quarry=self.hunt.quarry if self.hunt is not None and len(self.hunt.evaders) > 1 else 0,
         )
+
+    def _reason(self) -> str:
+        hunted = self.hunt.why if self.hunt is not None else ""
+        return "; ".join(word for word in (self.why, hunted) if word)
 
     def _silent(self, own: Own, lacks: tuple[str, ...]) -> PilotDecision:
         here = Vehicle(own.position, own.velocity, 0.0)

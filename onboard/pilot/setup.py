@@ -28,13 +28,36 @@ class Player(NamedTuple):
     height: float = 0.0  # [m above the origin] of its place: plane games are flown there; NaN: as it is
 
 
+class Goals(NamedTuple):
+    """Where one evader goes: to any of its targets."""
+
+    evader: int
+    targets: tuple[Target, ...]
+
+
 class GameSetup(NamedTuple):
-    """The game as one pilot knows it; a pursuer knows the target only where the rules say so."""
+    """The game as one pilot knows it; a pursuer knows targets only where the rules say so."""
 
     roster: tuple[Player, ...]
     rules: Rules
     control: Control = Control()
-    target: Target = NO_TARGET
+    target: Target = NO_TARGET  # of the only evader with one target
+    goals: tuple[Goals, ...] = ()  # of several evaders, or of one with several targets: as far as known
+
+    def with_targets(self, evader: int, places: tuple[Vec, ...]) -> GameSetup:
+        """The game as an evader knows it that was told its own targets [m; NED]."""
+        targets = tuple(Target(True, place) for place in places)
+        several = len(targets) > 1 or len(self.opponents(Side.PURSUER)) > 1
+        goals = (Goals(evader, targets),) if several else ()
+        return self._replace(target=targets[0] if targets else NO_TARGET, goals=goals)
+
+    def targets_of(self, evader: int) -> tuple[Target, ...]:
+        """An evader's targets, as far as they are known."""
+        for goals in self.goals:
+            if goals.evader == evader:
+                return goals.targets
+        alone = len(self.opponents(Side.PURSUER)) == 1
+        return (self.target,) if alone and self.target.exists else ()
 
     def player(self, id: int) -> Player | None:
         """The roster's entry of a vehicle."""

@@ -18,7 +18,10 @@ from onboard.core.math.states import Mate, Vehicle, VehicleLimits
 from onboard.core.math.vectors import Vec, sub
 from onboard.core.strategy.team.plan_types import (
     IDLE,
+    NOBODY,
+    OPEN,
     Assignment,
+    Band,
     Heights,
     Margin,
     Member,
@@ -27,6 +30,8 @@ from onboard.core.strategy.team.plan_types import (
     nearest_staged,
 )
 from onboard.core.strategy.team.planner import EVERY, no_plan, plan
+from onboard.core.strategy.team.quarry import Quarry, quarries_of
+from onboard.pilot.hunt import Crowd
 from onboard.pilot.setup import GameSetup, Own, Side
 
 LEASE_S = 1.0  # for which a member's or a planner's last word counts
@@ -44,6 +49,7 @@ class Known(NamedTuple):
     mates: tuple[Mate, ...]  # carried forward to now
     unfit: frozenset[int]  # mates that say that they do not follow the game
     evader: Vehicle | None  # through the air; None: no track of it
+    crowd: Crowd | None = None  # everybody, where there are several evaders
 
 
 class Field(NamedTuple):
@@ -59,8 +65,10 @@ class Dated(NamedTuple):
     """A plan, and when it came."""
 
     planner: int
-    plan: Plan
+    plan: Plan  # of several evaders: with the widest of their bands
     at: float  # [s, monotonic]
+    quarries: tuple[int, ...] = ()  # of several evaders: ids of whom each member is after, 0 = nobody
+    bands: tuple[tuple[int, Band], ...] = ()  # of several evaders: each one's, by its id
 
 
 class TeamSeat:
@@ -73,12 +81,13 @@ class TeamSeat:
         self._planned_at = -1e9
         self._began = inf  # when it first looked at its team
 
-    def heard(self, planner: int, made: Plan, now: float) -> None:
-        """A mate's plan came at `now` [s, monotonic]; one of another team is left out, and one overtaken."""
+    def heard(self, dated: Dated) -> None:
+        """A mate's plan came; one of another team is left out, and one overtaken."""
+        planner, made = dated.planner, dated.plan
         before = self._heard.get(planner)
         overtaken = before is not None and made.time < before.plan.time
         if planner in self.field.team and len(made.assignments) == len(self.field.team) and not overtaken:
-            self._heard[planner] = Dated(planner, made, now)
+            self._heard[planner] = dated
 
     def counts(self, now: float) -> Dated | None:
         """The plan that counts at `now` [s, monotonic]; None where there is none, or only an old one."""
@@ -109,19 +118,57 @@ class TeamSeat:
         last = max((dated.at for dated in self._heard.values() if dated.planner < self.id), default=0.0)
         return not lower or known.now - max(last, self._began) > 2.0 * LEASE_S * len(lower)
 
-    def work(self, known: Known) -> Plan | None:
+    def due(self, now: float) -> bool:
+        """Whether it is time for another plan at `now` [s, monotonic]."""
+        return now - self._planned_at >= EVERY - 1e-6
+
+    def work(self, known: Known) -> Dated | None:
         """Make a plan where one is due and it is this member's to make; it counts at once."""
         self._began = min(self._began, known.now)
-        due = known.now - self._planned_at >= EVERY - 1e-6
-        if not due or known.evader is None or not self.turn(known):
+        if not self.due(known.now) or known.evader is None or not self.turn(known):
             return None
         self._planned_at = known.now
         situation = situation_of(self.id, self.field, known, known.evader)
         newest = max(self._heard.values(), key=lambda dated: dated.at, default=None)
-        before = no_plan(situation.team, known.t) if newest is None else newest.plan
-        made = plan(situation, before)
-        self._heard[self.id] = Dated(self.id, made, known.now)
+        if newest is None:
+            newest = Dated(self.id, no_plan(situation.team, known.t), known.now)
+        if known.crowd is None:
+            made = Dated(self.id, plan(situation, newest.plan), known.now)
+        else:
+            made = self._against_all(situation, newest, known, known.crowd)
+        self._heard[self.id] = made
         return made
+
+    def _against_all(self, situation: Situation, before: Dated, known: Known, crowd: Crowd) -> Dated:
+        """A plan against several evaders: a quarry for each member, and for each quarry a plan of its own."""
+        game, team = self.field.game, situation.team
+        evaders = tuple(player.id for player in game.opponents(Side.PURSUER))
+        number = {id: index for index, id in enumerate(evaders)}
+        previous = tuple(number.get(id, NOBODY) for id in before.quarries) or (NOBODY,) * len(team)
+        given = quarries_of(team, crowd.quarries, previous, game.rules, game.rules.horizon - known.t)
+        bands = dict(before.bands)
+        plans: dict[int, Plan] = {}
+        for index, quarry in enumerate(crowd.quarries):
+            if quarry.live:
+                mine = tuple(m._replace(fit=m.fit and q == index) for m, q in zip(team, given, strict=True))
+                alone = against(situation, quarry, mine)
+                last = before.plan._replace(band=bands.get(evaders[index], OPEN))
+                plans[index] = plan(alone, last)
+        if not plans:
+            return before._replace(planner=self.id, at=known.now)
+        whole = max(plans.values(), key=lambda one: (not one.band.closed, one.band.gap))
+        parts = tuple(plans.get(q, whole).assignments[i] for i, q in enumerate(given))
+        ids = tuple(0 if q == NOBODY else evaders[q] for q in given)
+        each = tuple((evaders[index], one.band) for index, one in plans.items())
+        return Dated(self.id, whole._replace(assignments=parts), known.now, ids, each)
+
+
+def against(situation: Situation, quarry: Quarry, team: tuple[Member, ...]) -> Situation:
+    """The situation of those who are after one of several evaders."""
+    return situation._replace(
+        evader=quarry.vehicle, evader_limits=quarry.limits, target=quarry.target, team=team,
+        expected=quarry.vehicle.position,
+    )  # fmt: skip
 
 
 def situation_of(id: int, field: Field, known: Known, evader: Vehicle) -> Situation:

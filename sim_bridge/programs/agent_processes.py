@@ -124,7 +124,7 @@ class AgentProcesses:
         flight = self._scenario.flight
         settings: dict[str, Any] = {
             "id": id,
-            "role": "evader" if spec is self._scenario.evader else "pursuer",
+            "role": self._scenario.role_of(id).value,
             "game": DEFAULT_GAME,
             "link": [f"udpin://127.0.0.1:{self.ports[id]}"],
             "bus": self._bus,

@@ -23,7 +23,7 @@ from onboard.runtime.progress import Progress, silent
 from onboard.runtime.run_folder import new_run
 from onboard.runtime.whole_files import write_whole
 from sim_bridge.programs import run_folder
-from sim_bridge.world.summary import Summary
+from sim_bridge.world.summary import EvaderSummary, Summary
 
 REPORT_S = 120.0
 
@@ -49,7 +49,7 @@ class Flown(NamedTuple):
 
 def fly(path: Path, options: Options, say: Callable[[str], None] = print) -> Flown:
     """Fly a scenario file. Raises ConfigError for what the user can mend."""
-    scenario = load(path)
+    scenario = load(path, several=True)
     demand_strategies(scenario, str(path))
     clock = RealClock()
     folder = new_run(options.runs, scenario.name, clock.wall_ns())
@@ -138,8 +138,37 @@ def _report(folder: Path, say: Callable[[str], None]) -> Path | None:
     return page
 
 
+def verdict_lines(summary: Summary) -> list[str]:
+    """How it ended, a sentence; of several evaders one for each, after one for all."""
+    return [verdict_line(summary), *(_evader_line(one) for one in summary.evaders)]
+
+
+def _evader_line(end: EvaderSummary) -> str:
+    text = {
+        "captured": f"captured by pursuer {end.captor} after {end.time:.1f} s",
+        "arrived": f"reached its target after {end.time:.1f} s",
+        "escaped": f"escaped: not captured within {end.time:.0f} s",
+        "denied": f"its target was denied: neither arrived nor captured within {end.time:.0f} s",
+    }.get(end.verdict, f"no verdict: its game ended after {end.time:.1f} s")
+    nearest = "" if end.smallest_distance is None else f"; smallest distance {end.smallest_distance:.2f} m"
+    return f"  evader {end.id}: {text}{nearest}"
+
+
+def _whole_line(summary: Summary) -> str:
+    """How the whole game of several evaders ended."""
+    count = len(summary.evaders)
+    found = {verdict: sum(end.verdict == verdict for end in summary.evaders) for verdict in SAID}
+    told = ", ".join(f"{number} {verdict}" for verdict, number in found.items() if number)
+    return f"{summary.verdict} after {summary.time:.1f} s: of {count} evaders {told}"
+
+
+SAID = ("captured", "denied", "escaped", "arrived", "aborted")  # verdicts, the best for the pursuers first
+
+
 def verdict_line(summary: Summary) -> str:
     """How it ended, in a sentence."""
+    if summary.evaders and summary.verdict != "aborted":
+        return _whole_line(summary)
     smallest = summary.smallest_distance
     nearest = "" if smallest is None else f"; smallest distance {smallest:.2f} m"
     text = {
@@ -155,7 +184,7 @@ def verdict_line(summary: Summary) -> str:
 
 def story(flown: Flown) -> str:
     """What to tell when it is over."""
-    lines = [verdict_line(flown.summary), f"run folder: {flown.folder}"]
+    lines = [*verdict_lines(flown.summary), f"run folder: {flown.folder}"]
     pictures = sorted((flown.folder / "figures").glob("*.png"))
     if pictures:
         lines.append(f"figures:    {pictures[0].parent}: {', '.join(p.stem for p in pictures)}")

@@ -59,7 +59,7 @@ def serve(scenario: Path, options: Options) -> Outcome | None:
     """
     lines = SpokenLines()
     try:
-        return asyncio.run(serve_scenario(load(scenario), options, lines.say, scenario.parent))
+        return asyncio.run(serve_scenario(load(scenario, several=True), options, lines.say, scenario.parent))
     finally:
         lines.close()
 
@@ -180,7 +180,7 @@ def _introduce(
         f"{scenario.seed if options.seed is None else options.seed}"
     )
     for id, spec in zip(scenario.ids, scenario.vehicles, strict=True):
-        role = "evader" if spec is scenario.evader else "pursuer"
+        role = scenario.role_of(id).value
         say(
             f"  vehicle {id:3d}  {role:8s} {kind_of(scenario, spec).value:10s}  agent on udp {options.host}:"
             f"{ports[id]}  autopilot at {radios[id].address[1]}"

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from onboard.core.math.vectors import Vec
 from onboard.game.master import GameMaster, Timing
 from onboard.game.scenario import Scenario
-from onboard.game.staging import setup_of, target_of
+from onboard.game.staging import flown_targets, setup_of
 from onboard.runtime.protocols import Bus, Clock
 from onboard.wire.bus.messages import Health, Master
 from onboard.wire.bus.topics import HEALTH, MASTER, TRACK, Dispatcher
@@ -34,14 +34,14 @@ class BridgeMaster:
     ) -> None:
         flight, (name, nonce) = scenario.flight, who
         timing = Timing(flight.ready_s, flight.timeout_s, RECOVERY_S)
-        self.rules = GameMaster(setup_of(scenario, game, name), target_of(scenario), name, nonce, timing)
+        self.rules = GameMaster(setup_of(scenario, game, name), flown_targets(scenario), name, nonce, timing)
         self.drops: Counter[str] = Counter()
         self._game = game
         self._clock = clock
         self._bus = bus
         self._say = say
         hear = Dispatcher(self.drops).on(MASTER, self._on_master).on(HEALTH, self._on_health)
-        if scenario.evader.tracked:
+        if any(spec.tracked for spec in scenario.evading):
             hear.on(TRACK, self.rules.heard_track)
         self._subscriptions = [bus.subscribe(topic.key(game), hear) for topic in hear.topics]
 
@@ -51,8 +51,8 @@ class BridgeMaster:
         positions: dict[int, Vec] = {id: motion.position for id, motion in motions.items()}
         self.rules.tick(wall_ns, now_ns)
         self.rules.observe(wall_ns, now_ns, positions)
-        for topic, message in self.rules.outgoing():
-            self._bus.publish(topic.key(self._game), topic.encode(message), topic.delivery)
+        for topic, message, id in self.rules.outgoing():
+            self._bus.publish(topic.key(self._game, id), topic.encode(message), topic.delivery)
         for line in self.rules.news():
             self._say(line)
 

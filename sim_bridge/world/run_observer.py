@@ -8,10 +8,10 @@ from collections.abc import Callable, Mapping
 from onboard.game.master import GameMaster
 from onboard.game.scenario import Scenario
 from onboard.runtime.protocols import Bus, Link
-from onboard.wire.bus.messages import AgentStage, Event, Health, Outcome
+from onboard.wire.bus.messages import AgentStage, EvaderOutcome, Event, Health, Outcome
 from onboard.wire.bus.topics import EVENTS, HEALTH, Dispatcher
 from sim_bridge.world.sensor import Sensor
-from sim_bridge.world.summary import Summary, VehicleSummary, kept, reached
+from sim_bridge.world.summary import EvaderSummary, Summary, VehicleSummary, kept, reached
 
 EVENTS_MAX = 100_000
 MEASURED = ("overrun", "skipped", "worst")  # counters with a part of the wall clock in them: timing.json's
@@ -50,14 +50,14 @@ class Observer:
     ) -> Summary:
         """Everything that the game's summary tells; `links` give their counters, by vehicle id."""
         vehicles = []
-        for id, spec in zip(self.scenario.ids, self.scenario.vehicles, strict=True):
+        for id in self.scenario.ids:
             health = self.health.get(id)
             flying = self._flying.get(id, health)
             counters = links[id].counters() if id in links else {}
             vehicles.append(
                 VehicleSummary(
                     id=id,
-                    role="evader" if spec is self.scenario.evader else "pursuer",
+                    role=self.scenario.role_of(id).value,
                     autopilot=health.autopilot.value if health and health.autopilot else "",
                     stage=health.stage.value if health else "never heard",
                     mode=health.mode if health else "",
@@ -83,6 +83,7 @@ class Observer:
             tracks_measured=sensor.measured,
             tracks_dropped=sensor.dropped,
             vehicles=tuple(vehicles),
+            evaders=tuple(_ended(one) for one in outcome.evaders) if outcome else (),
         )
 
     def _on_event(self, event: Event) -> None:
@@ -95,6 +96,16 @@ class Observer:
         self.health[health.id] = health
         if health.stage is AgentStage.ACTING:
             self._flying[health.id] = health
+
+
+def _ended(end: EvaderOutcome) -> EvaderSummary:
+    return EvaderSummary(
+        id=end.id,
+        verdict=end.verdict.value,
+        time=round(end.time, 6),
+        captor=end.captor,
+        smallest_distance=kept(end.smallest_distance),
+    )
 
 
 def _counted(health: Health) -> dict[str, int]:

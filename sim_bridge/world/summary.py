@@ -23,7 +23,17 @@ class VehicleSummary(msgspec.Struct, frozen=True, kw_only=True):
     events: int
 
 
-class Summary(msgspec.Struct, frozen=True, kw_only=True):
+class EvaderSummary(msgspec.Struct, frozen=True, kw_only=True):
+    """How the game of one of several evaders ended."""
+
+    id: int
+    verdict: str  # captured | arrived | denied | escaped | aborted
+    time: float  # since t₀ [s]
+    captor: int  # id, 0 = nobody
+    smallest_distance: float | None  # [m]
+
+
+class Summary(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     """What a run leaves in figures."""
 
     scenario: str
@@ -39,6 +49,7 @@ class Summary(msgspec.Struct, frozen=True, kw_only=True):
     tracks_measured: int
     tracks_dropped: int
     vehicles: tuple[VehicleSummary, ...]
+    evaders: tuple[EvaderSummary, ...] = ()  # of several
 
 
 def kept(distance: float | None) -> float | None:

@@ -23,12 +23,14 @@ from onboard.wire.bus.messages import (
     Health,
     Master,
     Outcome,
+    OwnBrief,
     Phase,
     PhaseChange,
     Role,
     Setup,
     State,
     Track,
+    Triple,
 )
 from onboard.wire.bus.team_messages import TeamPlan
 
@@ -64,8 +66,9 @@ class BusView:
         self.setup_number = 0  # counts the setups heard
         self.phase: PhaseChange | None = None
         self.outcome: Outcome | None = None
-        self.target: Vec | None = None
+        self.targets: tuple[Vec, ...] = ()  # the own ones, as briefed [m; NED]
         self.briefed = False
+        self._own_brief = False  # whether it has a brief of its own: in a game of several evaders
         self.mates: dict[int, Heard] = {}
         self.plans: dict[int, tuple[TeamPlan, float]] = {}  # by planner, with when each came [s, monotonic]
         self._plans = False  # whether plans are listened to
@@ -88,6 +91,7 @@ class BusView:
             .on(topics.PHASE, self._take_phase)
             .on(topics.OUTCOME, self._take_outcome)
             .on(topics.EVADER_BRIEF, self._take_brief)
+            .on(topics.OWN_BRIEF, self._take_own_brief)
             .on(topics.MASTER, self._take_master)
             .on(topics.TRACK, self._take_track)
             .on(topics.STATE, self._take_mate)
@@ -108,6 +112,8 @@ class BusView:
             fixed.append(topics.EVADER_BRIEF)
         keys = [topic.key(self._game) for topic in fixed]
         keys.append(topics.HEALTH.key(self._game, self._id))
+        if self._own_brief:
+            keys.append(topics.OWN_BRIEF.key(self._game, self._id))
         for mate in sorted(self._followed):
             keys += self._keys_of(mate)
         return tuple(keys)
@@ -142,6 +148,14 @@ class BusView:
                 for key in self._keys_of(id):
                     self._out.put(Subscribe(key))
 
+    def brief_alone(self, alone: bool) -> None:
+        """Take the brief that is for this one of several evaders `alone`, or the one for the only evader."""
+        if alone is self._own_brief:
+            return
+        key = topics.OWN_BRIEF.key(self._game, self._id)
+        self._own_brief, self.briefed, self.targets = alone, False, ()
+        self._out.put(Subscribe(key) if alone else Unsubscribe(key))
+
     def _keys_of(self, mate: int) -> list[str]:
         keys = [topics.STATE.key(self._game, mate)]
         return [*keys, topics.PLAN.key(self._game, mate)] if self._plans else keys
@@ -157,6 +171,11 @@ class BusView:
                 for id, heard in self.mates.items()
             )
         return self._mates
+
+    @property
+    def unfit(self) -> frozenset[int]:
+        """Team mates that say that they do not follow the game."""
+        return frozenset(id for id, heard in self.mates.items() if not heard.state.fit)
 
     def _take_setup(self, setup: Setup) -> None:
         if setup == self.setup or self._foreign(setup.master):
@@ -200,9 +219,17 @@ class BusView:
         self.outcome = outcome
 
     def _take_brief(self, brief: EvaderBrief) -> None:
-        if self._role is Role.EVADER:  # nobody else asks for it
-            self.target = None if brief.target is None else Vec(*brief.target)
-            self.briefed = True
+        if self._role is Role.EVADER and not self._own_brief:  # nobody else asks for it
+            only = () if brief.target is None else (brief.target,)
+            self._be_briefed(brief.targets or only)
+
+    def _take_own_brief(self, brief: OwnBrief) -> None:
+        if brief.id == self._id and self._own_brief:
+            self._be_briefed(brief.targets)
+
+    def _be_briefed(self, targets: tuple[Triple, ...]) -> None:
+        self.targets = tuple(Vec(*target) for target in targets)
+        self.briefed = True
 
     def _take_track(self, track: Track) -> None:
         if track.id not in self._followed:  # team mates tell of themselves

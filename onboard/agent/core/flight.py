@@ -221,7 +221,7 @@ class Flight:
             id=self.config.id,
             position=t.position,
             velocity=t.velocity,
-            mates=self.bus.mates_at(now),
+            mates=self.bus.mates_at(now) + self.part.obstacles(now),
             telemetry_age=now - t.position_at if t.placed else inf,
             heartbeat_age=now - t.heartbeat_at,
             ground_age=now - self.bus.master_at,

@@ -10,20 +10,22 @@ from onboard.agent.core.bus_view import BusView
 from onboard.agent.core.events import Instant, Load, Outbox
 from onboard.agent.core.journal import Journal
 from onboard.agent.core.part import PartState, Way
-from onboard.agent.core.participation import Participation
+from onboard.agent.core.participation import Participation, is_out
 from onboard.agent.core.readiness import lacking
 from onboard.agent.core.team_talk import TEAM, TeamTalk
 from onboard.agent.core.to_place import approach_of, own_state
 from onboard.agent.core.vehicle_link import VehicleLink
 from onboard.autopilot.base import Stage
 from onboard.autopilot.flight_limits import FlightLimits
-from onboard.core.game.rules import Target
 from onboard.core.math.constants import NS_PER_S
+from onboard.core.math.states import Mate, MateState, carried
 from onboard.core.math.vectors import Vec
 from onboard.core.strategy.knowledge import Decision
 from onboard.core.strategy.team.plan_types import Heights
 from onboard.game.track_watch import TrackWatch
+from onboard.game.trials import in_words
 from onboard.pilot.approach import Approach
+from onboard.pilot.hunt import Crowd, Hunt, hunt_of
 from onboard.pilot.memory import Memory
 from onboard.pilot.pilot import PilotDecision, Question, Viewpoint
 from onboard.pilot.setup import GameSetup, Own, Side, TrackSample
@@ -67,6 +69,9 @@ class GamePlayer:
         self._judged: tuple[int, bool | None, FlightLimits] = (0, None, FlightLimits())
         self._phase_seen: PhaseChange | None = None
         self._tracks = TrackWatch()
+        self._briefed: tuple[Vec, ...] = ()  # the own targets that the game at hand was told
+        self._ended: frozenset[int] = frozenset()  # evaders whose game is over
+        self._seen: dict[int, MateState] = {}  # evaders as they were last measured
         self._loaded: dict[str, str] = {}  # strategies looked up → why they cannot be used, '' = they can
         self._asked_for: set[str] = set()
 
@@ -95,7 +100,12 @@ class GamePlayer:
         )  # fmt: skip
         self._tracks.heard(track)
         self._memory.take((sample,))
-        if self.state(now.wall_ns).on:  # what the next step asks for is reckoned now
+        hunt = None if self.flying is None else self.flying.viewpoint.hunt
+        if hunt is not None and track.id in hunt.ids:
+            at = now.s - (now.wall_ns - track.stamp_ns) / NS_PER_S
+            self._seen[track.id] = MateState(track.id, at, sample.position, sample.velocity)
+        # What the next step asks for is reckoned now.
+        if (hunt is None or hunt.quarry == track.id) and self.state(now.wall_ns).on:
             self._memory.prepare(track.id)
 
     # ------------------------------------------------------------------ the part
@@ -126,7 +136,7 @@ class GamePlayer:
         if limits.contradiction(self.config, setup, hovers, own):
             return False
         self.policy = limits.policy_of(self.config, setup, hovers, own)
-        game = limits.game_setup(self.config, setup, self._bus.target, hovers, own)
+        game = limits.game_setup(self.config, setup, self._bus.targets, hovers, own)
         self.flying = flying._replace(game=game, approach=self._approach(setup, game))
         if self._team is not None:
             self._team.seat.field = self._field(setup, game)
@@ -184,16 +194,37 @@ class GamePlayer:
         flying, bus = self.flying, self._bus
         assert flying is not None
         game = flying.game
-        if self.side is Side.EVADER and bus.target is not None and game.target.position != bus.target:
-            game = game._replace(target=Target(True, bus.target))
+        if self.side is Side.EVADER and bus.targets != self._briefed:
+            self._briefed = bus.targets
+            game = game.with_targets(self.config.id, bus.targets)
             self.flying = flying._replace(game=game)
         at = self._seconds(now.wall_ns)
+        hunt = flying.viewpoint.hunt
+        before = 0 if hunt is None else hunt.quarry
         if self._team is not None:
             flying.viewpoint.part = self._team.part(now.s)
             flying.viewpoint.why = self._team.why
+        if hunt is not None:
+            self._prepare(hunt, game.rules.horizon - self.time(now.wall_ns))
         asked = flying.viewpoint.look(at, own, bus.mates_at(now.s), game, self._memory)
         self._asked = (now, asked) if isinstance(asked, Question) else None
+        if hunt is not None and hunt.quarry != before and hunt.why:
+            self._journal.info("quarry", hunt.why, "strategic", "geometric")
         return asked
+
+    def _prepare(self, hunt: Hunt, left: float) -> None:
+        """Tell a pursuer's choice of evaders what the bus knows; the game lasts `left` [s] more."""
+        hunt.fit, hunt.unfit, hunt.left = self.fit, self._bus.unfit, left
+        if self._team is not None:
+            hunt.planner, hunt.planned = self._team.quarries
+
+    def obstacles(self, now: float) -> tuple[Mate, ...]:
+        """Evaders that are out, where their tracks have them at `now` [s, monotonic].
+
+        They keep apart from nobody any more, so they count as team mates that have gone quiet."""
+        out = [self._seen[id] for id in self._ended if id in self._seen]
+        quiet = self.policy.mate_age + 1e-3
+        return tuple(mate._replace(age=max(mate.age, quiet)) for mate in (carried(one, now) for one in out))
 
     def conclude(self, question: Question, decision: Decision) -> PilotDecision:
         """What the strategy's answer means in this game."""
@@ -205,7 +236,7 @@ class GamePlayer:
         found = lacking(now.s, self._vehicle, self._bus, self.policy, self.config.role, self.why_not)
         if self.flying is None:
             return found
-        opponents = self.flying.game.opponents(self.side)
+        opponents = [one for one in self.flying.game.opponents(self.side) if one.id not in self._ended]
         tracks = ((player, self._tracks.lack(player.id, now.wall_ns)) for player in opponents)
         return (*found, *(f"{player.side.value} {player.id}: {why}" for player, why in tracks if why))
 
@@ -219,12 +250,21 @@ class GamePlayer:
             self._team.fit = self.fit
             now, question = self._asked
             self._asked = None
-            self._team.work(now, self.time(now.wall_ns), question)
+            self._team.work(now, self.time(now.wall_ns), question, self._crowd(now, question))
         if self.flying is not None:
             left = self._to_start(wall_ns)
             soon = left is not None and left < SOON_S
             asked = soon or self._participation.running(self._bus.phase, wall_ns)
             self._memory.train(self._seconds(wall_ns), TRAINING_SLICES, asked=asked)
+
+    def _crowd(self, now: Instant, question: Question) -> Crowd | None:
+        """Everybody, for a plan against several evaders; None where none is due, or there is one evader."""
+        flying, team = self.flying, self._team
+        hunt = None if flying is None else flying.viewpoint.hunt
+        if flying is None or team is None or hunt is None or not team.seat.due(now.s):
+            return None
+        mates, at = self._bus.mates_at(now.s), self._seconds(now.wall_ns)
+        return hunt.crowd(at, question.own, mates, flying.game, self._memory)
 
     # ------------------------------------------------------------------ what the master says
 
@@ -235,6 +275,11 @@ class GamePlayer:
         before, self._phase_seen = self._phase_seen, phase
         was = self._participation.joined
         self._participation.follow(phase, wall_ns)
+        self._ended = frozenset(end.id for end in phase.out)
+        if self.flying is not None and self.flying.viewpoint.hunt is not None:
+            self.flying.viewpoint.hunt.out = self._ended
+        if self.config.id in self._ended and (before is None or not is_out(before, self.config.id)):
+            self._journal.info("out", in_words(next(end for end in phase.out if end.id == self.config.id)))
         if phase.phase is Phase.RUNNING and not self._participation.joined:
             self._journal.warning("late", "the game runs already: waiting for the master's resume")
         elif phase.phase is Phase.RUNNING and not was:
@@ -264,7 +309,9 @@ class GamePlayer:
         self.strategy = self._strategy_of(setup)
         mates = (m.id for m in setup.roster if m.role is self.config.role and m.id != self.config.id)
         self._bus.follow(tuple(mates), self.strategy == TEAM)
-        game = limits.game_setup(self.config, setup, self._bus.target, hovers, own)
+        several = sum(member.role is Role.EVADER for member in setup.roster) > 1
+        self._bus.brief_alone(several and self.side is Side.EVADER)
+        game = limits.game_setup(self.config, setup, self._bus.targets, hovers, own)
         opponents = [player.id for player in game.opponents(self.side)]
         self._memory = Memory(self.config.prediction, opponents)
         self._team = None
@@ -272,6 +319,9 @@ class GamePlayer:
             field, where = self._field(setup, game), self.config.game
             self._team = TeamTalk(self.config.id, where, field, self._bus, self._out, self._journal)
         viewpoint = Viewpoint(self.config.id, self.side, self.strategy)
+        if self.side is Side.PURSUER:
+            viewpoint.hunt = hunt_of(self.config.id, game)
+        self._seen.clear()
         self.flying = Flying(game, viewpoint, self._approach(setup, game))
         self._journal.info("setup", f"{setup.scenario} from {setup.master}: {len(setup.roster)} vehicles")
 

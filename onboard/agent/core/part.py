@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple, Protocol
 
 from onboard.agent.core.events import Instant
+from onboard.core.math.states import Mate
 from onboard.core.math.vectors import Vec
 from onboard.core.safety.policy import Policy
 from onboard.core.strategy.knowledge import Decision
@@ -69,6 +70,10 @@ class Part(Protocol):
 
     def conclude(self, question: Question, decision: Decision) -> PilotDecision:
         """What the strategy's answer means."""
+        ...
+
+    def obstacles(self, now: float) -> tuple[Mate, ...]:
+        """What the supervisor keeps off beside team mates, at `now` [s, monotonic]."""
         ...
 
     def lacks(self, now: Instant) -> tuple[str, ...]:

@@ -43,23 +43,31 @@ class Participation:
 
     def waits_for_resume(self, phase: PhaseChange | None) -> bool:
         """Whether the game runs without this agent."""
-        return phase is not None and phase.phase is Phase.RUNNING and not self.joined
+        return self._goes_on(phase) is Phase.RUNNING and not self.joined
 
     def running(self, phase: PhaseChange | None, wall_ns: int) -> bool:
-        """Whether the agent's part is on: from t₀ to the end."""
-        return phase is not None and phase.phase is Phase.RUNNING and self.joined and wall_ns >= phase.t0_ns
+        """Whether the agent's part is on: from t₀ to its end."""
+        on = self._goes_on(phase) is Phase.RUNNING and self.joined
+        return on and phase is not None and wall_ns >= phase.t0_ns
 
-    @staticmethod
-    def about_to(phase: PhaseChange | None) -> bool:
+    def about_to(self, phase: PhaseChange | None) -> bool:
         """Whether control should be taken: from ready on."""
-        return phase is not None and phase.phase in (Phase.READY, Phase.RUNNING)
+        return self._goes_on(phase) in (Phase.READY, Phase.RUNNING)
 
-    @staticmethod
-    def over(phase: PhaseChange | None) -> bool:
-        """Whether the game has ended."""
-        return phase is not None and phase.phase in (Phase.ENDED, Phase.RECOVERY)
+    def over(self, phase: PhaseChange | None) -> bool:
+        """Whether the game has ended, or this vehicle's part in it: it is an evader that is out."""
+        return phase is not None and (phase.phase in (Phase.ENDED, Phase.RECOVERY) or is_out(phase, self._id))
+
+    def _goes_on(self, phase: PhaseChange | None) -> Phase | None:
+        """The phase for a vehicle that is in the game; None without one, and for an evader that is out."""
+        return None if phase is None or is_out(phase, self._id) else phase.phase
 
     @staticmethod
     def game_time(phase: PhaseChange | None, wall_ns: int) -> float:
         """Seconds since t₀, 0 before it is fixed."""
         return (wall_ns - phase.t0_ns) / NS_PER_S if phase is not None and phase.t0_ns > 0 else 0.0
+
+
+def is_out(phase: PhaseChange, id: int) -> bool:
+    """Whether a vehicle is an evader whose game is over."""
+    return any(end.id == id for end in phase.out)

@@ -14,9 +14,11 @@ from onboard.core.math.vectors import Vec
 from onboard.core.safety.fence import fits
 from onboard.core.safety.field_profile import capture_in_space_refused, field_policy, layers
 from onboard.core.safety.policy import Envelope, Fence, Policy
-from onboard.pilot.setup import GameSetup, Player, Side
-from onboard.wire.bus.messages import Member, Role, Setup
+from onboard.pilot.setup import GameSetup, Goals, Player, Side
+from onboard.wire.bus.messages import EvaderTargets, Member, Role, Setup
 from onboard.wire.bus.zone_messages import no_zone
+
+Places = tuple[Vec, ...]  # [m; NED]
 
 _DEFAULT = Policy()
 GROUND = 1.0  # [m] above the origin; a start below it is one on the ground
@@ -166,14 +168,12 @@ def contradiction(
 
 
 def game_setup(
-    config: AgentConfig, setup: Setup, target: Vec | None, hovers: bool, own: FlightLimits = UNKNOWN_LIMITS
+    config: AgentConfig, setup: Setup, targets: Places, hovers: bool, own: FlightLimits = UNKNOWN_LIMITS
 ) -> GameSetup:
     """The game as the pilot is told it. Climb limits of the own vehicle narrow its pitch band.
 
-    `target` is the evader's brief; a pursuer knows the target from the setup, where the rules say so.
+    `targets` are the evader's by its brief; a pursuer knows targets from the setup, where the rules say so.
     """
-    if config.role is Role.PURSUER:
-        target = Vec(*setup.target) if setup.rules.target_known and setup.target is not None else None
     envelope = envelope_of(config, member_of(setup, config.id), hovers, own)
     players: list[Player] = []
     for member in setup.roster:
@@ -191,12 +191,22 @@ def game_setup(
         if height < GROUND:  # a ground start: who does not take off was given no height, and keeps its own
             height = config.take_off_height if config.may_arm else nan
         players.append(Player(member.id, side, member.speed, limits, height))
-    return GameSetup(
+    game = GameSetup(
         roster=tuple(players),
         rules=setup.core_rules()._replace(planar=setup.flat),
         control=Control(1.0 / config.control_rate_hz, config.lookahead_s),
-        target=NO_TARGET if target is None else Target(True, target),
     )
+    if config.role is not Role.PURSUER:
+        return game.with_targets(config.id, targets)
+    if not setup.rules.target_known:
+        return game
+    only = NO_TARGET if setup.target is None else Target(True, Vec(*setup.target))
+    return game._replace(target=only, goals=tuple(goals_of(one) for one in setup.targets))
+
+
+def goals_of(told: EvaderTargets) -> Goals:
+    """One evader's targets as the pilot is told them."""
+    return Goals(told.id, tuple(Target(True, Vec(*place)) for place in told.targets))
 
 
 def only_limits(before: Policy, after: Policy) -> bool:

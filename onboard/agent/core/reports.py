@@ -104,6 +104,7 @@ class Reports:
             predictor=decision.predictor,
             predictor_sigma=min(_number(decision.sigma, UNSURE), UNSURE),
             setpoint=_sound(flight.setpoint),
+            quarry=decision.quarry,
         )
 
     def health(self, standing: Standing, now: Instant) -> Health:

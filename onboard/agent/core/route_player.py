@@ -17,6 +17,7 @@ from onboard.autopilot.base import Stage
 from onboard.autopilot.flight_limits import FlightLimits
 from onboard.config.strict import ConfigError
 from onboard.core.math.constants import NS_PER_S
+from onboard.core.math.states import Mate
 from onboard.core.route.choice import TrackMemory
 from onboard.core.safety.policy import Policy
 from onboard.core.strategy.knowledge import Decision
@@ -103,6 +104,10 @@ class RoutePlayer:
     def conclude(self, question: Question, decision: Decision) -> PilotDecision:
         """Never called: a route asks no strategy."""
         raise AssertionError("a route asks no strategy")
+
+    def obstacles(self, now: float) -> tuple[Mate, ...]:
+        """Nobody's."""
+        return ()
 
     def lacks(self, now: Instant) -> tuple[str, ...]:
         """What is missing before the route can begin."""

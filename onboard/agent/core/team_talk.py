@@ -9,16 +9,18 @@ from onboard.agent.core.events import Instant, Outbox, Publish
 from onboard.agent.core.journal import Journal
 from onboard.core.math.vectors import Vec
 from onboard.core.strategy.team.plan_types import NOBODY, Assignment, Band, Plan, Reason, Role
+from onboard.pilot.hunt import Crowd
 from onboard.pilot.pilot import Question
 from onboard.pilot.team_seat import Dated, Field, Known, TeamSeat
-from onboard.wire.bus.team_messages import PartReason, PlannedPart, TeamPlan, TeamRole
+from onboard.wire.bus.team_messages import PartReason, PlannedBand, PlannedPart, TeamPlan, TeamRole
 from onboard.wire.bus.topics import PLAN
 
 TEAM = "team"  # name of the strategy whose pursuers fly by a plan
 
 
-def said(made: Plan, team: tuple[int, ...], planner: int, stamp_ns: int, nonce: int) -> TeamPlan:
+def said(dated: Dated, team: tuple[int, ...], stamp_ns: int, nonce: int) -> TeamPlan:
     """A plan as it goes over the bus; `team` are the ids of its members in their order."""
+    made, planner = dated.plan, dated.planner
     band = made.band
     parts = tuple(
         PlannedPart(
@@ -43,15 +45,28 @@ def said(made: Plan, team: tuple[int, ...], planner: int, stamp_ns: int, nonce: 
         closer=0 if band.closer == NOBODY else team[band.closer],
         closes=band.closes if isfinite(band.closes) else -1.0,
         nonce=nonce,
-    )
+        quarries=dated.quarries,
+        bands=tuple(
+            PlannedBand(
+                id, one.closed, one.gap, one.bearing, one.pitch,
+                0 if one.closer == NOBODY else team[one.closer],
+                one.closes if isfinite(one.closes) else -1.0,
+            )
+            for id, one in dated.bands
+        ),
+    )  # fmt: skip
 
 
-def understood(message: TeamPlan, team: tuple[int, ...]) -> Plan | None:
-    """The plan of a message; None where it is not one of this team, or holds what is no number."""
+def understood(message: TeamPlan, team: tuple[int, ...], at: float) -> Dated | None:
+    """The plan of a message that came `at` [s, monotonic]; None where it is not one of this team, or holds
+    what is no number."""
     parts = {part.id: part for part in message.parts}
     numbers = [message.t, message.gap, message.bearing, message.pitch, message.closes]
     numbers += [n for part in message.parts for n in (*part.aim, part.heading, part.due)]
-    if set(parts) != set(team) or not all(map(isfinite, numbers)):
+    numbers += [n for band in message.bands for n in (band.gap, band.bearing, band.pitch, band.closes)]
+    several = len(message.quarries) == len(message.parts)
+    fits = set(parts) == set(team) and (several or not message.quarries)
+    if not fits or not all(map(isfinite, numbers)):
         return None
     assignments = tuple(
         Assignment(
@@ -63,10 +78,16 @@ def understood(message: TeamPlan, team: tuple[int, ...]) -> Plan | None:
         )
         for id in team
     )
-    closer = team.index(message.closer) if message.closer in team else NOBODY
-    closes = message.closes if message.closes >= 0.0 else inf
-    band = Band(message.closed, message.gap, message.bearing, message.pitch, closer, closes)
-    return Plan(message.t, assignments, band)
+    after = {part.id: id for part, id in zip(message.parts, message.quarries, strict=False)}
+    quarries = tuple(after[id] for id in team) if several else ()
+    bands = tuple((band.quarry, _band(band, team)) for band in message.bands)
+    return Dated(message.id, Plan(message.t, assignments, _band(message, team)), at, quarries, bands)
+
+
+def _band(told: TeamPlan | PlannedBand, team: tuple[int, ...]) -> Band:
+    closer = team.index(told.closer) if told.closer in team else NOBODY
+    closes = told.closes if told.closes >= 0.0 else inf
+    return Band(told.closed, told.gap, told.bearing, told.pitch, closer, closes)
 
 
 class TeamTalk:
@@ -86,11 +107,11 @@ class TeamTalk:
         for planner, (message, at) in self._bus.plans.items():
             if self._taken.get(planner) is not message:
                 self._taken[planner] = message
-                made = understood(message, self.seat.field.team)
+                made = understood(message, self.seat.field.team, at)
                 if made is None:
                     self._bus.drops["foreign_plan"] += 1
                 else:
-                    self.seat.heard(planner, made, at)
+                    self.seat.heard(made)
         self._tell(now)
         return self.seat.part(now)
 
@@ -104,15 +125,25 @@ class TeamTalk:
         reason = PartReason[part.reason.name].value
         return f"{part.role.name.lower()} in the plan of {dated.planner}" + (f": {reason}" if reason else "")
 
-    def work(self, now: Instant, t: float, question: Question) -> None:
-        """After a control step at `t` [s] since t0: plan where that is this vehicle's to do, and say it."""
+    @property
+    def quarries(self) -> tuple[int, dict[int, int]]:
+        """Of several evaders: whose plan counts, and whom it has each pursuer go for."""
+        dated = self._dated
+        if dated is None:
+            return 0, {}
+        pairs = zip(self.seat.field.team, dated.quarries, strict=False)
+        return dated.planner, {id: quarry for id, quarry in pairs if quarry}
+
+    def work(self, now: Instant, t: float, question: Question, crowd: Crowd | None = None) -> None:
+        """After a control step at `t` [s] since t0: plan where that is this vehicle's to do, and say it.
+
+        `crowd` is everybody, where there are several evaders."""
         bus, seat = self._bus, self.seat
-        unfit = frozenset(id for id, heard in bus.mates.items() if not heard.state.fit)
         evader = question.others[0] if question.others else None
-        known = Known(now.s, t, question.own, self.fit, bus.mates_at(now.s), unfit, evader)
-        made = seat.work(known)
+        mates = bus.mates_at(now.s)
+        made = seat.work(Known(now.s, t, question.own, self.fit, mates, bus.unfit, evader, crowd))
         if made is not None:
-            message = said(made, seat.field.team, seat.id, now.wall_ns, self._bus.nonce)
+            message = said(made, seat.field.team, now.wall_ns, self._bus.nonce)
             self._out.put(Publish(self._key, PLAN.encode(message), PLAN.delivery))
 
     def _tell(self, now: float) -> None:

@@ -59,7 +59,7 @@ def setup(speed: float = 15.0, down: float = -50.0, **changes: object) -> Setup:
 
 def test_the_pitch_that_the_game_reckons_with_is_that_of_climb_and_sink_over_speed() -> None:
     config = AgentConfig(id=2, game="g", envelope=EnvelopeConfig(climb_max=6.0, sink_max=3.0))
-    player = game_setup(config, setup(15.0), None, True).player(2)
+    player = game_setup(config, setup(15.0), (), True).player(2)
     assert player is not None
     assert player.limits.pitch_max == pytest.approx(asin(6.0 / 15.0))
     assert player.limits.pitch_min == pytest.approx(-asin(3.0 / 15.0))
@@ -68,17 +68,17 @@ def test_the_pitch_that_the_game_reckons_with_is_that_of_climb_and_sink_over_spe
 def test_the_evader_that_has_a_target_is_told_that_it_has_one() -> None:
     place = Vec(300.0, 20.0, -40.0)
     runner = COPTER.__class__(id=1, game="g", role=Role.EVADER)
-    assert game_setup(runner, setup(), place, True).target == (True, place)
-    assert not game_setup(runner, setup(), None, True).target.exists
+    assert game_setup(runner, setup(), (place,), True).target == (True, place)
+    assert not game_setup(runner, setup(), (), True).target.exists
 
 
 def test_a_pursuer_knows_the_target_from_the_setup_alone_and_only_where_the_rules_say_so() -> None:
-    brief, place = Vec(300.0, 20.0, -40.0), (7.0, 8.0, -40.0)
+    brief, place = (Vec(300.0, 20.0, -40.0),), (7.0, 8.0, -40.0)
     known = RulesMessage(2.0, 4.0, target_known=True)
     assert not game_setup(COPTER, setup(), brief, True).target.exists
     assert not game_setup(COPTER, setup(target=place), brief, True).target.exists
     assert not game_setup(COPTER, setup(rules=known), brief, True).target.exists
-    assert game_setup(COPTER, setup(rules=known, target=place), None, True).target == (True, Vec(*place))
+    assert game_setup(COPTER, setup(rules=known, target=place), (), True).target == (True, Vec(*place))
 
 
 @pytest.mark.parametrize(("may_arm", "up"), [(True, 25.0), (False, None)])
@@ -87,7 +87,7 @@ def test_a_place_on_the_ground_is_flown_at_the_height_of_the_take_off_or_as_high
 ) -> None:
     config = AgentConfig(id=2, game="g", may_arm=may_arm, take_off_height=25.0)
     for down, height in ((0.0, up), (-0.99, up), (-1.0, 1.0), (-50.0, 50.0)):
-        player = game_setup(config, setup(down=down), None, True).player(2)
+        player = game_setup(config, setup(down=down), (), True).player(2)
         assert player is not None
         assert isnan(player.height) if height is None else player.height == height
 

@@ -67,7 +67,8 @@ class Range:
 
     def __init__(self, target: Vec | None = None, timing: Timing | None = None, **changes: object) -> None:
         patience = timing or Timing(ready_s=2.0, timeout_s=20.0)
-        self.master = GameMaster(setup(**changes), target, "bridge", 50, patience)
+        targets = {1: () if target is None else (target,)}
+        self.master = GameMaster(setup(**changes), targets, "bridge", 50, patience)
         self.now = 0
         self.agents: dict[int, Health] = {}
         self.places = {1: Vec(0, 0, -50), 2: Vec(100, 0, -50), 3: Vec(0, 200, -50)}
@@ -99,10 +100,10 @@ class Range:
         assert self.master.phase is Phase.RUNNING
 
     def phases(self) -> list[PhaseChange]:
-        return [m for _, m in self.said if isinstance(m, PhaseChange)]
+        return [m for _, m, _ in self.said if isinstance(m, PhaseChange)]
 
     def outcome(self) -> Outcome:
-        outcomes = [m for _, m in self.said if isinstance(m, Outcome)]
+        outcomes = [m for _, m, _ in self.said if isinstance(m, Outcome)]
         assert len(outcomes) == 1
         return outcomes[0]
 
@@ -168,7 +169,7 @@ def test_it_listens_then_stages_then_waits_for_everybody() -> None:
 def test_the_lease_is_renewed_twice_a_second() -> None:
     field = Range()
     field.fly(11.2)
-    leases = [m for _, m in field.said if isinstance(m, Master)]
+    leases = [m for _, m, _ in field.said if isinstance(m, Master)]
     assert len(leases) == 20  # the first 1.2 s it listened
     assert {b.stamp_ns - a.stamp_ns for a, b in pairwise(leases)} == {NS_PER_S // 2}
     assert {(m.name, m.nonce, m.lease_s) for m in leases} == {("bridge", 50, 2.0)}
@@ -440,7 +441,7 @@ def test_of_two_that_began_at_once_exactly_one_stays() -> None:
         low.fly(0.1)
         high.fly(0.1)
         for speaker, hearer in ((low, high), (high, low)):
-            for _, message in speaker.said:
+            for _, message, _ in speaker.said:
                 if isinstance(message, Master):
                     hearer.master.heard_master(message, hearer.now)
     assert low.master.standing is Standing.HOLDING
@@ -493,7 +494,7 @@ def test_everything_it_says_passes_the_wire() -> None:
         EvaderBrief: EVADER_BRIEF,
     }
     drops = Counter[str]()
-    for _, message in field.said:
+    for _, message, _ in field.said:
         codec = codecs[type(message)]
         assert codec.decode(codec.encode(message), drops) == message
     assert not drops

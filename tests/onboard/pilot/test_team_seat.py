@@ -57,7 +57,7 @@ class Squadron:
                 made.append(id)
                 for other, theirs in self.seats.items():
                     if other != id and not {id, other} & self.silent:
-                        theirs.heard(id, plan, self.now)
+                        theirs.heard(plan)
         return made
 
     def known(self, id: int) -> Known:
@@ -139,7 +139,7 @@ def test_a_plan_of_another_team_is_no_plan() -> None:
     mine = team.seats[2].counts(team.now)
     assert mine is not None
     stranger = TeamSeat(3, Field(team.game, (3, 5), Heights(), 5.0))
-    stranger.heard(2, mine.plan, team.now)
+    stranger.heard(mine)
     assert stranger.counts(team.now) is None
 
 
@@ -157,7 +157,7 @@ def test_a_plan_that_was_overtaken_on_its_way_does_not_count() -> None:
     new = team.seats[3].counts(team.now)
     assert old is not None
     assert new is not None
-    team.seats[3].heard(2, old.plan, team.now)
+    team.seats[3].heard(old._replace(at=team.now))
     assert team.seats[3].counts(team.now) == new
 
 
