@@ -8,7 +8,6 @@ planner's; who flies by none makes it for everybody, and keeps to its own part. 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
 
 from onboard.core.game.rules import NO_TARGET, Target
 from onboard.core.game.targets import NONE, at, chosen
@@ -19,18 +18,11 @@ from onboard.core.math.vectors import Vec, sub
 from onboard.core.strategy.team.plan_types import NOBODY, Member
 from onboard.core.strategy.team.quarry import Quarry, quarries_of
 from onboard.pilot.memory import Memory
-from onboard.pilot.setup import GameSetup, Own, Player, Side
+from onboard.pilot.setup import Crowd, GameSetup, Own, Player, Side
 
 EVERY = 0.5  # [s] between two assignments, as between two plans
 HEARD_S = 1.0  # a mate's last word counts for so long
 UNSEEN = Quarry(Vehicle(Vec(0.0, 0.0, 0.0), Vec(0.0, 0.0, 0.0), 0.0), FREE, False, NO_TARGET)
-
-
-class Crowd(NamedTuple):
-    """Everybody as one pursuer knows them at an instant, through the air."""
-
-    team: tuple[Member, ...]  # the pursuers, in the roster's order
-    quarries: tuple[Quarry, ...]  # the evaders, in the roster's order; not `live`: out, or without a track
 
 
 class Hunt:

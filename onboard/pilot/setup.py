@@ -8,6 +8,8 @@ from typing import NamedTuple
 from onboard.core.game.rules import NO_TARGET, Control, Rules, Target
 from onboard.core.math.states import VehicleLimits
 from onboard.core.math.vectors import ZERO, Vec
+from onboard.core.strategy.team.plan_types import Member
+from onboard.core.strategy.team.quarry import Quarry
 from onboard.pilot.kalman import Variance
 
 
@@ -66,6 +68,13 @@ class GameSetup(NamedTuple):
     def opponents(self, side: Side) -> tuple[Player, ...]:
         """Everybody on the other side."""
         return tuple(player for player in self.roster if player.side is not side)
+
+
+class Crowd(NamedTuple):
+    """Everybody as one pursuer knows them at an instant, through the air."""
+
+    team: tuple[Member, ...]  # the pursuers, in the roster's order
+    quarries: tuple[Quarry, ...]  # the evaders, in the roster's order; not `live`: out, or without a track
 
 
 class Own(NamedTuple):

@@ -31,8 +31,7 @@ from onboard.core.strategy.team.plan_types import (
 )
 from onboard.core.strategy.team.planner import EVERY, no_plan, plan
 from onboard.core.strategy.team.quarry import Quarry, quarries_of
-from onboard.pilot.hunt import Crowd
-from onboard.pilot.setup import GameSetup, Own, Side
+from onboard.pilot.setup import Crowd, GameSetup, Own, Side
 
 LEASE_S = 1.0  # for which a member's or a planner's last word counts
 OLD_S = 5.0  # beyond which a plan is no plan

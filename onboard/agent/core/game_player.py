@@ -25,10 +25,10 @@ from onboard.core.strategy.team.plan_types import Heights
 from onboard.game.track_watch import TrackWatch
 from onboard.game.trials import in_words
 from onboard.pilot.approach import Approach
-from onboard.pilot.hunt import Crowd, Hunt, hunt_of
+from onboard.pilot.hunt import Hunt, hunt_of
 from onboard.pilot.memory import Memory
 from onboard.pilot.pilot import PilotDecision, Question, Viewpoint
-from onboard.pilot.setup import GameSetup, Own, Side, TrackSample
+from onboard.pilot.setup import Crowd, GameSetup, Own, Side, TrackSample
 from onboard.pilot.team_seat import Field
 from onboard.wire.bus.messages import Phase, PhaseChange, Role, Setup, Track
 from onboard.wire.geodesy import Frame

@@ -9,8 +9,8 @@ from onboard.agent.core.events import Instant, Outbox, Publish
 from onboard.agent.core.journal import Journal
 from onboard.core.math.vectors import Vec
 from onboard.core.strategy.team.plan_types import NOBODY, Assignment, Band, Plan, Reason, Role
-from onboard.pilot.hunt import Crowd
 from onboard.pilot.pilot import Question
+from onboard.pilot.setup import Crowd
 from onboard.pilot.team_seat import Dated, Field, Known, TeamSeat
 from onboard.wire.bus.team_messages import PartReason, PlannedBand, PlannedPart, TeamPlan, TeamRole
 from onboard.wire.bus.topics import PLAN
