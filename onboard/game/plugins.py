@@ -18,6 +18,8 @@ from onboard.core.game.advance import EvaderStrategy, PursuerStrategy
 from onboard.core.strategy.registry import EVADERS, PURSUERS, evader_named, pursuer_named
 from onboard.game.policy_file import is_policy
 from onboard.game.policy_file import strategy as policy
+from onboard.game.team_knowledge import is_team
+from onboard.game.team_knowledge import strategy as team
 
 GROUP = "apollonius.strategies"
 
@@ -26,6 +28,8 @@ def pursuer_strategy(name: str) -> PursuerStrategy:
     """A pursuers' strategy by name ("" = the default). Raises ConfigError for an unknown one."""
     if (own := pursuer_named(name)) in PURSUERS:
         return PURSUERS[own].decide
+    if is_team(name):
+        return team(name)
     if is_policy(name):
         return cast(PursuerStrategy, policy(name, "pursuer"))
     found: PursuerStrategy = _plugin(name, "pursuer", list(PURSUERS))
@@ -49,6 +53,12 @@ def demand_name(name: str, role: str, where: str) -> None:
     if is_policy(name):
         try:
             policy(name, role)
+        except ConfigError as error:
+            raise ConfigError(f"{where}: {error}") from None
+        return
+    if role == "pursuer" and is_team(name):
+        try:
+            team(name)
         except ConfigError as error:
             raise ConfigError(f"{where}: {error}") from None
         return

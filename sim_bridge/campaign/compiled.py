@@ -32,14 +32,15 @@ from onboard.core.game.advance import (
     decide_by_plan,
     moved_on,
 )
-from onboard.core.game.planning import planned, steps_between, unplanned
+from onboard.core.game.planning import planning_by, steps_between, unplanned
 from onboard.core.game.referee import GameResult
 from onboard.core.game.rules import Target
 from onboard.core.math import each as each_module
 from onboard.core.math.each import each, each_pair
 from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import Vec
-from onboard.core.strategy.team.flying import pursuer_team
+from onboard.core.strategy.team.plan_types import Plan
+from onboard.core.strategy.team.planners import planner_for
 from sim_bridge.campaign.each_compiled import compile_each
 from sim_bridge.campaign.kernel_cache import kept, kernel
 
@@ -63,6 +64,9 @@ KERNELS = (
     "onboard.core.strategy.features",
     "onboard.core.strategy.policy",
     "onboard.core.strategy.choosing",
+    "onboard.core.strategy.semantic.graph",
+    "onboard.core.strategy.semantic.goals",
+    "onboard.core.strategy.semantic.relations",
     "onboard.core.strategy.team.assignment",
     "onboard.core.strategy.team.closure",
     "onboard.core.strategy.team.flying",
@@ -88,6 +92,8 @@ OUT_OF_LINE = frozenset(
     | {"blow", "fly_ordered", "fly_commanded", "measure", "hear"}
 )
 
+OURS = ("onboard.core", "onboard.pilot", "sim_bridge")  # where kernels are registered by their modules
+
 Array = NDArray[np.float64]
 T = TypeVar("T", bound=tuple[Callable[..., Any], ...])
 
@@ -109,7 +115,7 @@ def _functions(module: ModuleType) -> list[FunctionType]:
 def _register(function: FunctionType) -> None:
     if id(function) in _registered or function.__module__ == each_module.__name__:
         return
-    if not function.__module__.startswith(("onboard.core", "onboard.pilot", "sim_bridge")):
+    if not function.__module__.startswith(OURS):
         return
     _registered.add(id(function))
     _register_parts(function)
@@ -135,7 +141,24 @@ def register_strategies(functions: Iterable[Callable[..., Any]]) -> None:
         if isinstance(function, FunctionType) and id(function) not in _registered:
             _registered.add(id(function))
             _register_parts(function)
+            register_strategies(_foreign(function))
             register_jitable(forceinline=True)(function)
+
+
+def _foreign(function: FunctionType, seen: set[int] | None = None) -> list[FunctionType]:
+    """The functions of other distributions, and of users' files, that one reaches by its closures."""
+    seen = set() if seen is None else seen
+    found: list[FunctionType] = []
+    for cell in function.__closure__ or ():
+        part = cell.cell_contents
+        if isinstance(part, FunctionType) and id(part) not in seen:
+            seen.add(id(part))
+            if not part.__module__.startswith(OURS):
+                found += [one for name in part.__code__.co_names
+                          if isinstance(one := part.__globals__.get(name), FunctionType)]  # fmt: skip
+                found.append(part)
+            found += _foreign(part, seen)
+    return found
 
 
 class Starts(NamedTuple):
@@ -251,8 +274,10 @@ def _player(
 ) -> Callable[[Starts, Conditions, Ends, int, int], None]:
     """Plays games first…last − 1 of the starts into the ends."""
     team = tuple(range(1, pursuers + 1))
-    if decide_pursuer is pursuer_team:
-        return _planning_player(decide_evader, decide_pursuer, team, compiled)
+    planner = planner_for(decide_pursuer)
+    if planner is not None:
+        pair = decide_evader, decide_pursuer
+        return _planning_player(pair, planning_by(planner), team, compiled)
 
     def play(starts: Starts, conditions: Conditions, ends: Ends, first: int, last: int) -> None:
         kept = ends.trace.shape[1]
@@ -283,9 +308,13 @@ def _player(
 
 
 def _planning_player(
-    decide_evader: EvaderStrategy, decide_pursuer: PursuerStrategy, team: tuple[int, ...], compiled: bool
+    pair: tuple[EvaderStrategy, PursuerStrategy],
+    planned: Callable[[Game, Conditions, Plan], Plan],
+    team: tuple[int, ...],
+    compiled: bool,
 ) -> Callable[[Starts, Conditions, Ends, int, int], None]:
     """`_player` for pursuers that fly by a plan."""
+    decide_evader, decide_pursuer = pair
 
     def play(starts: Starts, conditions: Conditions, ends: Ends, first: int, last: int) -> None:
         kept = ends.trace.shape[1]
@@ -311,7 +340,7 @@ def _planning_player(
                     _note(game, ends.trace[number, steps])
             _close(ends, number, game, steps)
 
-    return _ready(play, (decide_evader, decide_pursuer), compiled)
+    return _ready(play, (*pair, planned), compiled)
 
 
 def _close(ends: Ends, number: int, game: Game, steps: int) -> None:

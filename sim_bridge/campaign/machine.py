@@ -6,10 +6,11 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
+from onboard.config.strict import ConfigError
 from onboard.core.game.advance import EvaderStrategy, PursuerStrategy
 from onboard.core.strategy.knowledge import Decision
-from onboard.core.strategy.team.flying import pursuer_team
-from onboard.core.strategy.team.planner import engaged
+from onboard.core.strategy.team.planner import Planner
+from onboard.core.strategy.team.planners import planner_for
 from sim_bridge.campaign.spatial_game import Array, Chosen, SpatialPlay, Start, Ways, planned_by
 from sim_bridge.campaign.spatial_lanes import moved_in_lanes
 from sim_bridge.campaign.spatial_play import Flying, approach, moved_one_by_one, play
@@ -55,6 +56,17 @@ def _either(
     return either
 
 
+def only_planner(pursuers: tuple[PursuerStrategy, ...]) -> Planner | None:
+    """The planner of those of a kernel's strategies that fly by a plan; None where none does.
+
+    Raises ConfigError where they fly by the plans of several: a kernel has one planner.
+    """
+    found = {planner for decide in pursuers if (planner := planner_for(decide)) is not None}
+    if len(found) > 1:
+        raise ConfigError(f"pursuers: found strategies of {len(found)} planners, expected one in a game")
+    return next(iter(found), None)
+
+
 @cache
 def machine(
     evaders: tuple[EvaderStrategy, ...], pursuers: tuple[PursuerStrategy, ...], in_lanes: bool
@@ -65,7 +77,8 @@ def machine(
     sky is `InLanes`, for a kernel that is compiled, else `OneByOne`.
     """
     evade, pursue = among(evaders), among(pursuers)
-    messages = planned_by(engaged) if pursuer_team in pursuers else SILENT
+    planner = only_planner(pursuers)
+    messages = SILENT if planner is None else planned_by(planner)
     begin, exchange, part = messages
     motion = moved_in_lanes if in_lanes else moved_one_by_one
 

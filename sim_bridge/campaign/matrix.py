@@ -22,19 +22,19 @@ from onboard.core.game.advance import (
     moved_on,
     still_view,
 )
-from onboard.core.game.planning import planned, steps_between, unplanned
+from onboard.core.game.planning import planning_by, steps_between, unplanned
 from onboard.core.game.referee import GameResult
 from onboard.core.game.views import PursuerView, sighted
 from onboard.core.math.each import each
 from onboard.core.math.states import Vehicle
 from onboard.core.math.vectors import scale
 from onboard.core.strategy.knowledge import Decision
-from onboard.core.strategy.team.flying import pursuer_team
 from onboard.core.strategy.team.plan_types import Plan
+from onboard.core.strategy.team.planners import planner_for
 from sim_bridge.campaign import compiled as pairs
 from sim_bridge.campaign.compiled import Ends, Starts
 from sim_bridge.campaign.kernel_cache import kernel
-from sim_bridge.campaign.machine import among
+from sim_bridge.campaign.machine import among, only_planner
 
 
 class Meeting(NamedTuple):
@@ -73,7 +73,8 @@ def _player(
 ) -> Callable[[Starts, Conditions, Ends, Meeting], None]:
     """Plays all games of the starts into the ends."""
     evade, pursue = among(evaders), among(pursuers)
-    plan_by: Any = planned if pursuer_team in pursuers else no_plan_made
+    planner = only_planner(pursuers)
+    plan_by: Any = no_plan_made if planner is None else planning_by(planner)
     view_of: Any = the_view
     team = tuple(range(1, count + 1))
 
@@ -104,7 +105,7 @@ def _player(
     if not compiled:
         return play
     pairs.register((*pairs.KERNELS, pairs.__name__, __name__))
-    pairs.register_strategies((*evaders, *pursuers, evade, pursue))
+    pairs.register_strategies((*evaders, *pursuers, evade, pursue, plan_by))
     return kernel(play)
 
 
@@ -124,7 +125,7 @@ def matrix(
         if compiled:
             both = pairs.in_arrays(evaders), pairs.in_arrays(pursuers)
         run = _player(*both, count, compiled)
-        run(starts, conditions, ends, Meeting(evader, pursuer, pursuers[pursuer] is pursuer_team))
+        run(starts, conditions, ends, Meeting(evader, pursuer, planner_for(pursuers[pursuer]) is not None))
         return ends
 
     return play

@@ -17,7 +17,7 @@ from onboard.config.strict import ConfigError, FieldError
 from onboard.core.game.advance import EvaderStrategy, PursuerStrategy, begin
 from onboard.core.math.vectors import Vec, sub, yaw_of
 from onboard.core.strategy.registry import EVADERS, PURSUERS
-from onboard.core.strategy.team.flying import pursuer_team
+from onboard.core.strategy.team.planners import planner_for
 from onboard.game.scenario import Scenario, VehicleSpec, load
 from onboard.game.staging import places_of, start_headings
 from onboard.runtime.resources import configs
@@ -257,7 +257,8 @@ def _compiled_game(
 ) -> Callable[..., Any]:
     # A team keeps its plans in lists, a plug-in may make some; others play without counting references.
     own: set[Any] = {one.decide for one in EVADERS.values()} | {one.decide for one in PURSUERS.values()}
-    counted = not (own - {pursuer_team}).issuperset((*evaders, *pursuers))
+    free = {one for one in own if planner_for(one) is None}
+    counted = not free.issuperset((*evaders, *pursuers))
     evaders, pursuers = in_arrays(evaders), in_arrays(pursuers)
     register_strategies((*evaders, *pursuers))
     return compiled_kernel(machine(evaders, pursuers, in_lanes=True), counted)

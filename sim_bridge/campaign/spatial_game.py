@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from onboard.core.game.advance import Conditions, Game, positions
+from onboard.core.game.rules import NO_TARGET
 from onboard.core.game.views import (
     EvaderView,
     Nearest,
@@ -238,6 +239,7 @@ def situation(team: Deciding) -> Situation:
     return Situation(
         (team.now - start.pace.t0) * dt, 0.0, evader, planning.limits[0], members, target, wind,
         conditions.rules, planning.heights, planning.margin, evader.position, planning.nearest,
+        (NO_TARGET,),
     )  # fmt: skip
 
 

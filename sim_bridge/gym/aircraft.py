@@ -11,7 +11,7 @@ import numpy as np
 
 from onboard.config.strict import ConfigError
 from onboard.core.game.advance import EvaderStrategy, PursuerStrategy
-from onboard.core.strategy.team.flying import pursuer_team
+from onboard.core.strategy.team.planners import planner_for
 from sim_bridge.campaign.compiled import in_arrays, register_strategies
 from sim_bridge.campaign.ledger import DECIDES, KNOWS
 from sim_bridge.campaign.spatial_draw import (
@@ -42,7 +42,7 @@ class AircraftGames(BatchedGames):
     ) -> None:
         """Raises ConfigError for a scenario that compiled games do not fly, ValueError as `BatchedGames`."""
         demand_spatial(task.scenario)
-        if task.pursuers is pursuer_team:
+        if planner_for(task.pursuers) is not None:
             raise ConfigError(
                 "pursuers: found 'team', expected a strategy without a plan, with motion 'aircraft'"
             )

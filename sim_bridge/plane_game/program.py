@@ -19,10 +19,10 @@ from onboard.core.game.advance import (
     decide_by_plan,
     moved_on,
 )
-from onboard.core.game.planning import planned, steps_between, unplanned
+from onboard.core.game.planning import planning_by, steps_between, unplanned
 from onboard.core.game.referee import GameResult
 from onboard.core.math.vectors import Vec
-from onboard.core.strategy.team.flying import pursuer_team
+from onboard.core.strategy.team.planners import planner_for
 from onboard.game.plugins import evader_strategy, pursuer_strategy
 from onboard.game.scenario import Scenario, load
 from onboard.runtime.resources import configs
@@ -52,9 +52,10 @@ class Played(NamedTuple):
         decide_evader: EvaderStrategy = evader_strategy(self.scenario.evader.strategy)
         decide_pursuer: PursuerStrategy = pursuer_strategy(self.strategy)
         game = self.frames[index]
-        if decide_pursuer is not pursuer_team:
+        planner = planner_for(decide_pursuer)
+        if planner is None:
             return decide(game, self.conditions, decide_evader, decide_pursuer)
-        parts = planned(game, self.conditions, unplanned(game)).assignments
+        parts = planning_by(planner)(game, self.conditions, unplanned(game)).assignments
         return decide_by_plan(game, self.conditions, decide_evader, decide_pursuer, parts)
 
 
@@ -84,13 +85,14 @@ def play(scenario: Scenario, strategy: str, dt: float | None = None, keep: bool 
     game = game_of(scenario)
     frames = []
     before = game
+    planner = planner_for(decide_pursuer)
     plan, every, steps = unplanned(game), steps_between(conditions.control.dt), 0
     while game.score.verdict == GameResult.RUNNING:
         if keep:
             frames.append(game)
         before = game
-        if decide_pursuer is pursuer_team and steps % every == 0:
-            plan = planned(game, conditions, plan)
+        if planner is not None and steps % every == 0:
+            plan = planning_by(planner)(game, conditions, plan)
         decided = decide_by_plan(game, conditions, decide_evader, decide_pursuer, plan.assignments)
         game = moved_on(game, conditions, decided)
         steps += 1

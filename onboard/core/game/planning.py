@@ -5,13 +5,16 @@ Kernel style. Aircraft games have delay and loss besides (`sim_bridge/campaign/t
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from onboard.core.game.advance import Conditions, Game
+from onboard.core.game.rules import NO_TARGET
 from onboard.core.game.views import told
 from onboard.core.math.each import each_pair
 from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import ZERO
 from onboard.core.strategy.team.plan_types import Heights, Margin, Member, Plan, Situation, nearest_staged
-from onboard.core.strategy.team.planner import EVERY, engaged, no_plan
+from onboard.core.strategy.team.planner import EVERY, Planner, engaged, no_plan
 
 
 def steps_between(dt: float) -> int:
@@ -40,13 +43,22 @@ def situation_of(game: Game, conditions: Conditions, team: tuple[Member, ...]) -
     return Situation(
         game.time, 0.0, game.evader, game.evader_limits, team, told(conditions.target, rules), ZERO,
         rules, Heights(-1e9, 1e9), Margin(conditions.control.dt, 0.0), game.evader.position,
-        nearest_staged(rules),
+        nearest_staged(rules), (NO_TARGET,),
     )  # fmt: skip
 
 
 def unplanned(game: Game) -> Plan:
     """The plan before the first."""
     return no_plan(members(game), game.time)
+
+
+def planning_by(planner: Planner) -> Callable[[Game, Conditions, Plan], Plan]:
+    """`planned` by another planner than the one of `team`."""
+
+    def planned_so(game: Game, conditions: Conditions, previous: Plan) -> Plan:
+        return planner(situation(game, conditions), previous)
+
+    return planned_so
 
 
 def planned(game: Game, conditions: Conditions, previous: Plan) -> Plan:

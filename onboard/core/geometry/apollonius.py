@@ -121,3 +121,20 @@ def closest_approach(e: Vec, heading: Vec, v_e: float, p: Vec, v_p: float) -> Me
     k = v_e * time
     aim = Vec(ex + hx * k, ey + hy * k, ez + hz * k)
     return Meeting(True, time, aim, max(0.0, h * root - s * gamma))  # (20)
+
+
+def disc_margin(place: Vec, radius: float, p: Vec, v_p: float, e: Vec, v_e: float) -> float:
+    """By how much a disc [m] lies within what a pursuer reaches before the evader; negative: it sticks out.
+
+    What the pursuer reaches first is the inside of its Apollonius sphere where it is slower, the outside of
+    the evader's where it is faster, and its side of the bisecting plane where both are as fast.
+    """
+    sphere = apollonius_sphere(e, v_e, p, v_p)
+    if not sphere.exists:
+        far = distance(e, p)
+        if far <= TINY:
+            return -radius
+        nearer = distance(e, place) * distance(e, place) - distance(p, place) * distance(p, place)
+        return nearer / (2.0 * far) - radius
+    off = distance(sphere.centre, place)
+    return sphere.radius - off - radius if v_p < v_e else off - sphere.radius - radius

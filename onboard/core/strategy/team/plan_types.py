@@ -10,13 +10,38 @@ from enum import IntEnum
 from math import inf, pi
 from typing import NamedTuple
 
-from onboard.core.game.rules import Rules, Target
+from onboard.core.game.rules import NO_TARGET, Rules, Target
 from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import ZERO, Vec
 
 NEAREST = 10.0  # safety distances ρ that a plane game's pursuers stage away from the evader, and
 NEAREST_IN_SPACE = 17.0  # those in space: 1.5 km with the 88 m of the shipped scenarios
 NOBODY = -1  # where a member is asked for and there is none
+
+
+class Goal(IntEnum):
+    """What a team is after."""
+
+    NONE = 0
+    RING = 1  # complete the ring before the evader sets out
+    HOLD = 2  # hold the closed ring
+    TIGHTEN = 3  # go on: a band open by little closes in the chase
+    DENY_ALL = 4  # keep every target
+    DENY_IN_DEPTH = 5  # keep the target, with a second at hand in case the first is lost
+    DENY = 6  # keep the target
+    CHASE = 7  # pursue, nothing better is known
+
+
+class Choice(NamedTuple):
+    """A goal, and what it follows from."""
+
+    goal: Goal
+    rule: int  # number of the rule of goals that spoke; 0 = none
+    about: int  # number of the target (or of the member) that it is about; −1 = none
+    strength: float  # of the relation that decided, 0 … 1
+
+
+NO_GOAL = Choice(Goal.NONE, 0, -1, 0.0)
 
 
 class Role(IntEnum):
@@ -40,6 +65,8 @@ class Reason(IntEnum):
     CLOSES_CORRIDOR = 5  # it is in time for its place across the corridor
     NO_GAP_IN_REACH = 6  # the band stays open, and nothing better than the chase is known
     LOST = 7  # nothing is heard of it, or it cannot fly on
+    SECOND = 8  # it can be at the target in time should the keeper be lost, and the chase leads nowhere
+    BETWEEN = 9  # the one pursuer that keeps two targets: where it is in time for either
 
 
 class Member(NamedTuple):
@@ -79,6 +106,7 @@ class Situation(NamedTuple):
     margin: Margin
     expected: Vec  # [m; NED] where the evader is at t0; until then it is taken to stay about there
     nearest: float  # [m] no pursuer stages nearer to that place than this
+    targets: tuple[Target, ...] = (NO_TARGET,)  # all, where several are known
 
 
 class Band(NamedTuple):
@@ -108,6 +136,7 @@ class Plan(NamedTuple):
     time: float  # [s] for which it was made
     assignments: tuple[Assignment, ...]  # one a member, in the members' order
     band: Band
+    choice: Choice = NO_GOAL  # what it is after, and why
 
 
 OPEN = Band(False, 2.0 * pi, 0.0, 0.0, NOBODY, inf)
@@ -122,3 +151,17 @@ def idle(_member: Member, _index: int, _shared: float) -> Assignment:
 def nearest_staged(rules: Rules) -> float:
     """How near to the evader pursuers may be when it sets out [m]."""
     return (NEAREST if rules.planar else NEAREST_IN_SPACE) * rules.rho
+
+
+def target_count(s: Situation) -> int:
+    """How many targets the pursuers know."""
+    if s.targets[0].exists:
+        return len(s.targets)
+    return 1 if s.target.exists else 0
+
+
+def target_at(s: Situation, number: int) -> Target:
+    """The target of a number below `target_count`."""
+    if s.targets[0].exists:
+        return s.targets[number]
+    return s.target
