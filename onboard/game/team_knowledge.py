@@ -22,8 +22,9 @@ from onboard.core.game.advance import PursuerStrategy
 from onboard.core.strategy.semantic.goals import GoalRule
 from onboard.core.strategy.semantic.graph import Relation
 from onboard.core.strategy.semantic.model import MODEL, Model, extended
+from onboard.core.strategy.team.flying import pursuer_team
 from onboard.core.strategy.team.planner import Planner
-from onboard.core.strategy.team.planners import planner_for, pursuer_team, pursuer_team_plain, team_of
+from onboard.core.strategy.team.planners import planner_for, pursuer_team_plain, team_of
 
 GROUP = "apollonius.knowledge"
 TEAM = "team"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from enum import Enum
 
+from onboard.wire.bus.knowledge_messages import PlannedGoal
 from onboard.wire.bus.messages import Message, Triple
 
 
@@ -28,6 +29,8 @@ class PartReason(Enum):
     CLOSES_CORRIDOR = "in time for its place across the corridor"
     NO_GAP_IN_REACH = "the band stays open"
     LOST = "not heard, or cannot fly on"
+    SECOND = "at hand should the keeper be lost: the chase leads nowhere"
+    BETWEEN = "in time for either of two targets"
 
 
 class PlannedPart(Message, frozen=True):
@@ -69,3 +72,4 @@ class TeamPlan(Message, frozen=True):
     nonce: int = 0  # of the planner's process
     quarries: tuple[int, ...] = ()  # of several evaders: whom each is after, in the order of `parts`
     bands: tuple[PlannedBand, ...] = ()  # of several evaders: each one's; the widest stands above
+    goals: tuple[PlannedGoal, ...] = ()  # what the team is after, one for each evader that is planned against

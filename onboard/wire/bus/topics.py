@@ -15,6 +15,7 @@ from enum import Enum
 from typing import Any, Generic, NamedTuple, TypeVar
 
 from onboard.wire.bus.codec import Codec, M
+from onboard.wire.bus.knowledge_messages import Knowledge
 from onboard.wire.bus.messages import (
     Alive,
     Command,
@@ -248,6 +249,10 @@ DECISION = Topic(
 PLAN = Topic(
     "vehicles/{id}/plan", TeamPlan, Delivery.LATEST, (Party.OWN_AGENT,), (Party.SAME_SIDE, *_GROUND),
     "what the planner has its team do", 2.0,
+)  # fmt: skip
+KNOWLEDGE = Topic(
+    "vehicles/{id}/knowledge", Knowledge, Delivery.LATEST, (Party.OWN_AGENT,), _GROUND,
+    "what the planner knows, and what its team is after", 1.0,
 )  # fmt: skip
 HEALTH = Topic(
     "vehicles/{id}/health", Health, Delivery.LATEST, (Party.OWN_AGENT,), (Party.OWN_AGENT, *_GROUND),

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from onboard.agent.core.team_talk import said, understood
 from onboard.core.math.vectors import Vec
-from onboard.core.strategy.team.plan_types import NOBODY, Assignment, Band, Plan, Reason, Role
+from onboard.core.strategy.team.plan_types import NO_GOAL, NOBODY, Assignment, Band, Plan, Reason, Role
 from onboard.pilot.team_seat import Dated
 from onboard.wire.bus.team_messages import PartReason, TeamPlan, TeamRole
 from onboard.wire.bus.topics import PLAN
@@ -39,7 +39,7 @@ bands = st.builds(
 )
 
 
-plans = st.builds(Plan, st.floats(0.0, 1e4), st.tuples(parts, parts, parts), bands)
+plans = st.builds(Plan, st.floats(0.0, 1e4), st.tuples(parts, parts, parts), bands, st.just(NO_GOAL))
 quarries = st.just(()) | st.tuples(*(st.sampled_from((0, 1, 9)) for _ in TEAM))
 
 

@@ -106,7 +106,7 @@ class Situation(NamedTuple):
     margin: Margin
     expected: Vec  # [m; NED] where the evader is at t0; until then it is taken to stay about there
     nearest: float  # [m] no pursuer stages nearer to that place than this
-    targets: tuple[Target, ...] = (NO_TARGET,)  # all, where several are known
+    targets: tuple[Target, ...] = (NO_TARGET,)  # all, where several are known, those that exist first
 
 
 class Band(NamedTuple):
@@ -155,8 +155,12 @@ def nearest_staged(rules: Rules) -> float:
 
 def target_count(s: Situation) -> int:
     """How many targets the pursuers know."""
-    if s.targets[0].exists:
-        return len(s.targets)
+    count = 0
+    for k in range(len(s.targets)):
+        if s.targets[k].exists:
+            count += 1
+    if count > 0:
+        return count
     return 1 if s.target.exists else 0
 
 

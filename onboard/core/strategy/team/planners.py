@@ -26,9 +26,9 @@ def team_of(model: Model) -> PursuerStrategy:
     return flown_by(planner_of(model))
 
 
-def planner_for(decide: PursuerStrategy) -> Planner | None:
-    """The planner that a strategy flies by; None of one that needs no plan."""
-    return _PLANNERS.get(decide)
+def planner_for(decide: PursuerStrategy | None) -> Planner | None:
+    """The planner that a strategy flies by; None of one that needs no plan, and of none."""
+    return None if decide is None else _PLANNERS.get(decide)
 
 
 _PLANNERS[pursuer_team] = engaged
