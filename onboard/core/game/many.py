@@ -22,7 +22,7 @@ from onboard.core.game.advance import (
     still_view,
     team_of,
 )
-from onboard.core.game.planning import seat, situation_of, unplanned
+from onboard.core.game.planning import seat, situation_of, unplanned, with_targets
 from onboard.core.game.referee import GameResult, Score, Step, judge_any, opening
 from onboard.core.game.rules import Control, Rules, Target
 from onboard.core.game.targets import NONE, at, chosen
@@ -219,7 +219,13 @@ def planned_for(previous: Plan, number: int, shared: Whole) -> Plan:
         return previous
     team = each(seat_in, game.pursuers, Group(game, number))
     mine = conditions_alone(game, number, conditions)
-    return engaged(situation_of(alone(game, number), mine, team), previous)
+    known = each(target_told, conditions.targets[number], conditions.rules)
+    return engaged(with_targets(situation_of(alone(game, number), mine, team), known), previous)
+
+
+def target_told(target: Target, _number: int, rules: Rules) -> Target:
+    """One of several targets as the pursuers know it (for `each`)."""
+    return told(target, rules)
 
 
 def seat_in(vehicle: Vehicle, index: int, group: Group) -> Member:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from onboard.core.game.advance import Conditions, Game
-from onboard.core.game.rules import NO_TARGET
+from onboard.core.game.rules import NO_TARGET, Target
 from onboard.core.game.views import told
 from onboard.core.math.each import each_pair
 from onboard.core.math.states import Vehicle, VehicleLimits
@@ -44,6 +44,14 @@ def situation_of(game: Game, conditions: Conditions, team: tuple[Member, ...]) -
         game.time, 0.0, game.evader, game.evader_limits, team, told(conditions.target, rules), ZERO,
         rules, Heights(-1e9, 1e9), Margin(conditions.control.dt, 0.0), game.evader.position,
         nearest_staged(rules), (NO_TARGET,),
+    )  # fmt: skip
+
+
+def with_targets(s: Situation, targets: tuple[Target, ...]) -> Situation:
+    """The same situation of an evader that has several targets."""
+    return Situation(
+        s.now, s.t0, s.evader, s.evader_limits, s.team, s.target, s.wind, s.rules, s.heights, s.margin,
+        s.expected, s.nearest, targets,
     )  # fmt: skip
 
 

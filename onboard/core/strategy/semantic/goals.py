@@ -102,8 +102,6 @@ GOALS: tuple[GoalRule, ...] = (
          "tighten the ring", nearly_enclosed),
     _row(SEVERAL_THREATENED, "the evader threatens more than one target", "deny every target",
          several_threatened),
-    _row(HOPELESS_CHASE, "several cover the target, and the team is too few to enclose",
-         "give the chase up for a second at the target", hopeless_chase),
     _row(TARGET_REACHED, "somebody is at the target before the evader, or nearly",
          "deny the target", target_reached),
     _row(NOBODY_IN_TIME, "nothing else holds", "chase", nobody_in_time),

@@ -6,7 +6,7 @@ the words say. Kernel style.
 
 from __future__ import annotations
 
-from math import acos, atan2, pi
+from math import acos, asin, atan2, pi
 
 from onboard.core.geometry.apollonius import disc_margin
 from onboard.core.geometry.cones import Seen, blocked_cone
@@ -36,20 +36,30 @@ def encloses(scene: Scene, _team: int, _evader: int) -> Held:
 
 
 def half_closed(scene: Scene, index: int) -> float:
-    """Half the heading that a member closes at its best, from far off [rad]."""
+    """Half the heading that a member closes at its distance, were it in the right direction [rad]."""
     s = scene.situation
     steepest = 0.0
     if not s.rules.planar:
         band = pitch_band(s.evader, s.evader_limits, s.heights, past(s))
         steepest = max(band.pitch_max, -band.pitch_min)
-    return sight_cone(s.team[index].vehicle.speed / max(s.evader.speed, TINY), steepest)
+    own = s.team[index].vehicle
+    far = max(distance(own.position, s.evader.position), TINY)
+    half = sight_cone(own.speed / max(s.evader.speed, TINY), steepest)
+    return clamp(half + asin(clamp(s.rules.R / far, 0.0, 1.0)), 0.0, pi)
 
 
 def suffices(scene: Scene, _team: int, _evader: int) -> Held:
-    """Those who are fit could close the band, each at its place of the ring: Σ halves ≥ π."""
+    """Those who can still meet the evader could close the band, each in the right direction: Σ halves ≥ π.
+
+    Who would not meet it before the horizon though both flew at each other counts for nothing.
+    """
+    s = scene.situation
+    left = s.rules.horizon - max(0.0, s.now - s.t0)
     total = 0.0
-    for i in range(len(scene.situation.team)):
-        if scene.situation.team[i].fit:
+    for i in range(len(s.team)):
+        own = s.team[i].vehicle
+        meets = distance(own.position, s.evader.position) / max(own.speed + s.evader.speed, TINY)
+        if s.team[i].fit and meets <= left:
             total += half_closed(scene, i)
     return Held(clamp(total / pi - 1.0, 0.0, 1.0), (total - pi) * 180.0 / pi)
 
