@@ -43,6 +43,7 @@ from onboard.core.strategy.team.plan_types import Plan
 from onboard.core.strategy.team.planners import planner_for
 from sim_bridge.campaign.each_compiled import compile_each
 from sim_bridge.campaign.kernel_cache import kept, kernel
+from sim_bridge.campaign.reached import reached
 
 KERNELS = (
     "onboard.core.math.vectors",
@@ -141,24 +142,8 @@ def register_strategies(functions: Iterable[Callable[..., Any]]) -> None:
         if isinstance(function, FunctionType) and id(function) not in _registered:
             _registered.add(id(function))
             _register_parts(function)
-            register_strategies(_foreign(function))
+            register_strategies(reached(function, OURS))
             register_jitable(forceinline=True)(function)
-
-
-def _foreign(function: FunctionType, seen: set[int] | None = None) -> list[FunctionType]:
-    """The functions of other distributions, and of users' files, that one reaches by its closures."""
-    seen = set() if seen is None else seen
-    found: list[FunctionType] = []
-    for cell in function.__closure__ or ():
-        part = cell.cell_contents
-        if isinstance(part, FunctionType) and id(part) not in seen:
-            seen.add(id(part))
-            if not part.__module__.startswith(OURS):
-                found += [one for name in part.__code__.co_names
-                          if isinstance(one := part.__globals__.get(name), FunctionType)]  # fmt: skip
-                found.append(part)
-            found += _foreign(part, seen)
-    return found
 
 
 class Starts(NamedTuple):

@@ -46,6 +46,7 @@ MAKERS = (
     "sim_bridge.campaign.compiled",
     "sim_bridge.campaign.each_compiled",
     "sim_bridge.campaign.fingerprint",
+    "sim_bridge.campaign.reached",
     __name__,
 )
 
