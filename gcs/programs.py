@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING
 from gcs.console.plain_lines import PlainLines
 from gcs.console.plain_lines import status as status_lines
 from gcs.picture.alert_rules import Thresholds
-from gcs.picture.assessment import engagement_in
+from gcs.picture.assessment import beyond_one, engagements_in
 from gcs.picture.json_document import to_json
+from gcs.picture.several import verdict_in_words
 from gcs.picture.terminal_text import printable
 from gcs.picture.values import Picture
 from gcs.session import Session, on_air
@@ -121,7 +122,7 @@ async def status(settings: Settings, *, json: bool, wait_s: float) -> int:
 
 def assess_file(path: Path) -> int:
     """Print the odds of a scenario; exit code 1 where they say no-go."""
-    return _told(go_or_no_go.lines(go_or_no_go.engagement_of(load(path))))
+    return _told({1: go_or_no_go.lines(go_or_no_go.engagement_of(load(path)))})
 
 
 async def assess_bus(settings: Settings, *, wait_s: float) -> int:
@@ -129,17 +130,21 @@ async def assess_bus(settings: Settings, *, wait_s: float) -> int:
     async with on_air(settings, listen=False, record=False) as session:
         await asyncio.sleep(wait_s)
         picture = session.picture()
-        found = engagement_in(picture.game, picture.vehicles, picture.tracks)
-        if found is None:
+        found = engagements_in(picture.game, picture.vehicles, picture.tracks)
+        if not found:
             print(f"gcs: no evader with pursuers heard in game {settings.game}: {session.bus.status()}",
                   file=sys.stderr)  # fmt: skip
             return 1
-    return _told(go_or_no_go.lines(found))
+    return _told({id: go_or_no_go.lines(one, beyond_one(picture.game, id)) for id, one in found.items()})
 
 
-def _told(lines: list[str]) -> int:
-    print("\n".join(map(printable, lines)), flush=True)
-    return 1 if lines[0].startswith("no-go") else 0
+def _told(judged: dict[int, list[str]]) -> int:
+    """Print what was said of each evader's engagement; 1 where one is a no-go."""
+    for id, lines in judged.items():
+        if len(judged) > 1:
+            print(f"evader {id}")
+        print("\n".join(map(printable, lines)), flush=True)
+    return 1 if any(lines[0].startswith("no-go") for lines in judged.values()) else 0
 
 
 async def check_crowd(settings: Settings, scenario: Scenario, wait_s: float) -> int:
@@ -184,9 +189,9 @@ async def play(
         picture: Picture = session.picture()
         if picture.game.outcome is not None:
             outcome = picture.game.outcome
-            by = f" by {outcome.captor}" if outcome.captor else ""
-            whole = f"evader {outcome.verdict.value}{by} after {outcome.time:.1f} s"
-            print("\n".join(in_words(end) for end in outcome.evaders) or whole)
+            print(f"{verdict_in_words(outcome)} after {outcome.time:.1f} s")
+            for end in outcome.evaders:
+                print(f"  {in_words(end)}")
         return master.exit_code
 
 

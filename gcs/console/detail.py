@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from math import atan2, degrees, hypot
 
-from gcs.console.vehicle_table import GRADE_WORDS, STYLES, age, evader_position, grades
+from gcs.console.vehicle_table import GRADE_WORDS, STYLES, age, grades, quarries
+from gcs.console.status_line import spans
 from gcs.picture.current import current
 from gcs.picture.team import part_in_words, part_of
 from gcs.picture.values import Picture, VehicleView
 from onboard.core.math.vectors import Vec, distance, dot, norm, scale, sub
+from onboard.game import sides
 from onboard.wire.bus.messages import LinkLock, Role, SupervisorAction
 
 Line = tuple[str, str]  # text, style
@@ -43,6 +45,7 @@ def detail(
     lines += _last(known, vehicle)
     if vehicle.health is not None and vehicle.health.lacks:
         lines.append((f"waits for {', '.join(vehicle.health.lacks)}", "yellow"))
+    lines += _side(picture, vehicle)
     lines += _part(picture, vehicle)
     lines += _decision(vehicle)
     lines += _distances(picture, vehicle)
@@ -77,6 +80,18 @@ def _mode_age(known: VehicleView) -> float:
     return known.health_age_s + known.health.heartbeat_age_s
 
 
+def _side(picture: Picture, vehicle: VehicleView) -> list[Line]:
+    """How the game ended for an evader; of several evaders who is after which."""
+    game = picture.game
+    fate = game.fate_of(vehicle.id)
+    if fate is not None:
+        return [(f"{'out of the game: ' if fate.out else ''}{fate.words}", "bold")]
+    after, hunters = game.quarry_of(vehicle.id), game.hunters_of(vehicle.id)
+    if after is not None:
+        return [(f"after evader {after}", "bold")]
+    return [(f"after it: {spans(list(hunters))}", "bold")] if hunters else []
+
+
 def _part(picture: Picture, vehicle: VehicleView) -> list[Line]:
     plan = picture.game.plan
     part = part_of(plan, vehicle.id)
@@ -106,12 +121,13 @@ def _distances(picture: Picture, vehicle: VehicleView) -> list[Line]:
         return []
     here = Vec(*vehicle.state.position)
     lines = []
-    evader = evader_position(picture)
-    if vehicle.role is not Role.EVADER and evader is not None:
-        line = sub(evader, here)
+    quarry = quarries(picture).get(vehicle.id)
+    if quarry is not None:
+        line = sub(quarry.place, here)
         away = norm(line)
         closing = dot(Vec(*vehicle.state.velocity), scale(line, 1.0 / away)) if away > 0.0 else 0.0
-        lines.append((f"evader {away:.1f} m, closing {closing:+z.1f} m/s", ""))
+        named = f" {quarry.id}" if len(sides.evaders(picture.roles)) > 1 else ""
+        lines.append((f"evader{named} {away:.1f} m, closing {closing:+z.1f} m/s", ""))
     others = [
         (distance(here, Vec(*o.position)), o)
         for o in picture.vehicles
@@ -121,13 +137,19 @@ def _distances(picture: Picture, vehicle: VehicleView) -> list[Line]:
         away, nearest = min(others, key=lambda pair: pair[0])
         word = "nearest pursuer" if vehicle.role is Role.EVADER else "nearest mate"
         lines.append((f"{word} {nearest.id}: {away:.1f} m", ""))
-    if vehicle.role is Role.EVADER and picture.game.target is not None:
-        lines.append((f"target {distance(here, Vec(*picture.game.target)):.1f} m away", ""))
+    goals = picture.game.targets_of(vehicle.id) if vehicle.role is Role.EVADER else ()
+    if goals:
+        away = ", ".join(f"{distance(here, Vec(*goal)):.1f}" for goal in goals)
+        lines.append((f"target{'s' if len(goals) > 1 else ''} {away} m away", ""))
     return lines
 
 
 def _prospect(picture: Picture, vehicle: VehicleView) -> list[Line]:
-    found = picture.assessment
+    after = picture.game.quarry_of(vehicle.id)
+    if vehicle.role is not Role.EVADER and len(picture.assessments) > 1 and after is None:
+        return []  # nobody says whom it is after
+    only = picture.assessments[0].evader if len(picture.assessments) == 1 else 0
+    found = picture.assessment_of(vehicle.id if vehicle.role is Role.EVADER else after or only)
     if found is None:
         return []
     if vehicle.role is Role.EVADER:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 from gcs.console.vehicle_table import GRADE_WORDS, STYLES, Grade, grades
 from gcs.picture.current import MOTION_OLD_S, current
 from gcs.picture.values import Picture, Presence, VehicleView
-from onboard.game import palette
+from onboard.game import palette, sides
 from onboard.wire.bus.messages import Role
 
 Run = tuple[str, str]  # text, style
@@ -20,6 +20,7 @@ ARROWS = "↑↗→↘↓↙←↖"
 BRAILLE = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))  # [row][column]
 MOST_DOTS = 2000  # of one line or circle
 FAR = 1e9  # [dots] what lies farther off is not drawn: Apollonius circles have no greatest radius
+FAINT = palette.FAINT.dark  # of those that are on no side
 MARGIN = 0.15  # share of the view kept free when it is fitted
 
 
@@ -46,8 +47,8 @@ def points(picture: Picture) -> list[tuple[float, float]]:
     """What a fitted view must show: vehicles there, tracks, the target."""
     found = [v.position[:2] for v in picture.vehicles if v.position and v.presence is not Presence.EXPECTED]
     found += [t.track.position[:2] for t in picture.tracks]
-    if picture.game.target is not None and found:
-        found.append(picture.game.target[:2])
+    if found:
+        found += [goal.place[:2] for goal in picture.game.targets]
     if not found and picture.game.setup:
         found = [member.start[:2] for member in picture.game.setup.roster]
     return found
@@ -192,66 +193,70 @@ def plan(
         for a, b in zip(corners, corners[1:] + corners[:1], strict=True):
             canvas.line(a, b, "dim", gap=2)
     chosen = picture.vehicle(selected) if selected is not None else None
+    now, shades = current(picture), {id: c.dark for id, c in sides.colours(picture.roles).items()}
     if options.circles:
-        _circles(canvas, current(picture), chosen)
+        _circles(canvas, now, chosen, shades)
     if options.trails:
-        _trails(canvas, picture)
-    now = current(picture)
+        _trails(canvas, picture, shades)
+    _chases(canvas, now, selected, shades)
     active = None if chosen is None else now.vehicle(chosen.id)
     if active is not None and active.decision is not None and active.position is not None:
         aim = active.decision.aim
         canvas.line(active.position[:2], aim[:2], "bold", gap=3)
         canvas.sign(aim[0], aim[1], "×", "bold")
-    if picture.game.target is not None:
-        canvas.sign(picture.game.target[0], picture.game.target[1], "◎", f"bold {palette.TARGET.dark}")
+    several = len(sides.evaders(picture.roles)) > 1
+    for goal in picture.game.targets:
+        name = f"◎{goal.evader}" if several else "◎"
+        canvas.sign(*goal.place[:2], name, f"bold {palette.TARGET.dark}")
     own = {v.id for v in now.vehicles if v.position}
     for track in now.tracks:
         if track.id not in own:
-            canvas.sign(*track.track.position[:2], f"+{track.id}", _colour(picture, track.id))
+            canvas.sign(*track.track.position[:2], f"+{track.id}", shades.get(track.id, FAINT))
     graded = grades(picture)
     for vehicle in sorted(picture.vehicles, key=lambda v: v.id == selected):
         if vehicle.position is not None:
-            colour = _colour(picture, vehicle.id)
+            colour = shades.get(vehicle.id, FAINT)
             grade = graded[vehicle.id] if vehicle.state_age_s <= MOTION_OLD_S else Grade.LOST
             label, style = _label(vehicle, grade, vehicle.id == selected, colour)
+            fate = picture.game.fate_of(vehicle.id) if several else None
+            if fate is not None and fate.out:
+                label, style = f"{label} {fate.verdict.value}", f"dim {colour}"
             canvas.sign(vehicle.position[0], vehicle.position[1], label, style)
     _scale(canvas)
     return canvas.rows()
 
 
-def _circles(canvas: _Canvas, picture: Picture, chosen: VehicleView | None) -> None:
+def _chases(canvas: _Canvas, picture: Picture, selected: int | None, shades: dict[int, str]) -> None:
+    """Thin lines between the selected vehicle and those that are after it, or whom it is after."""
+    at = {v.id: v.position[:2] for v in picture.vehicles if v.position is not None}
+    at = {track.id: track.track.position[:2] for track in picture.tracks} | at
+    for pursuer, evader in picture.game.quarries:
+        if selected in (pursuer, evader) and pursuer in at and evader in at:
+            canvas.line(at[pursuer], at[evader], f"dim {shades.get(evader, FAINT)}", gap=6)
+
+
+def _circles(canvas: _Canvas, picture: Picture, chosen: VehicleView | None, shades: dict[int, str]) -> None:
     if picture.game.setup is not None:
         for vehicle in picture.vehicles:
             if vehicle.role is Role.PURSUER and vehicle.position is not None:
-                style = f"dim {_colour(picture, vehicle.id)}"
+                style = f"dim {shades.get(vehicle.id, FAINT)}"
                 canvas.circle(*vehicle.position[:2], picture.game.setup.rules.R, style)
     if chosen is not None and chosen.decision is not None and chosen.decision_age_s <= MOTION_OLD_S:
         for north, east, _, radius in chosen.decision.circles:
             canvas.circle(north, east, radius, palette.APOLLONIUS.dark)
 
 
-def _trails(canvas: _Canvas, picture: Picture) -> None:
+def _trails(canvas: _Canvas, picture: Picture, shades: dict[int, str]) -> None:
     seen = set()
     for vehicle in picture.vehicles:
         seen.add(vehicle.id)
-        style = _colour(picture, vehicle.id)
+        style = shades.get(vehicle.id, FAINT)
         for a, b in zip(vehicle.trail, vehicle.trail[1:], strict=False):
             canvas.line(a[:2], b[:2], style)
     for track in picture.tracks:
         if track.id not in seen:
             for place in track.trail:
-                canvas.dot(*canvas.place(*place[:2]), _colour(picture, track.id))
-
-
-def _colour(picture: Picture, vehicle_id: int) -> str:
-    """A vehicle's colour on a dark screen, the same as in reports; one of no side is grey."""
-    vehicle = picture.vehicle(vehicle_id)
-    role = vehicle.role if vehicle is not None else None
-    if role is None and picture.game.setup is not None:
-        role = next((member.role for member in picture.game.setup.roster if member.id == vehicle_id), None)
-    if role not in (Role.EVADER, Role.PURSUER):
-        return palette.FAINT.dark
-    return palette.vehicle(vehicle_id, role is Role.EVADER).dark
+                canvas.dot(*canvas.place(*place[:2]), shades.get(track.id, FAINT))
 
 
 def _label(vehicle: VehicleView, grade: Grade, selected: bool, colour: str) -> tuple[str, str]:
@@ -282,10 +287,10 @@ def _scale(canvas: _Canvas) -> None:
 
 LEGEND = (
     ("↗2", "pursuer 2 and its course"),
-    ("E1", "the evader"),
+    ("E1", "an evader; one that is out of the game says how"),
     ("[2]", "the selected vehicle, with its line to its aim × and its Apollonius circles"),
     ("2!", f"an alert about it ({GRADE_WORDS[Grade.WARN]} or {GRADE_WORDS[Grade.ERROR]})"),
     ("✕2", "where it was last: lost, or its position is old"),
     ("+1", "a track of somebody who does not speak here"),
-    ("◎", "the evader's target"),
+    ("◎", "the evader's target; of several evaders with its id"),
 )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from datetime import UTC, datetime
 from math import degrees
 
+from gcs.picture.several import verdict_in_words
 from gcs.picture.team import band_in_words
 from gcs.picture.terminal_text import cut
 from gcs.picture.values import AssessmentView, CommandView, LegState, LogLine, Picture, Presence
@@ -42,13 +43,23 @@ def _game(picture: Picture) -> list[str]:
     phase = game.phase.value.upper() if game.phase else "setup"
     parts = [f"{name} {phase} {game.clock}"]
     if game.outcome is not None:
-        by = f" by {game.outcome.captor}" if game.outcome.captor else ""
-        parts.append(f"evader {game.outcome.verdict.value}{by}")
-    elif picture.assessment is not None:
-        parts.append(prospects_in_words(picture.assessment))
+        parts.append(verdict_in_words(game.outcome))
+    elif picture.assessments:
+        parts.append(situation_in_words(picture))
     if game.plan is not None:
         parts.append(band_in_words(game.plan))
     return parts
+
+
+def situation_in_words(picture: Picture, *, whole: bool = False) -> str:
+    """The ways out of all evaders, for people: the only one's with its odds; of several each by its id, and how
+    those that are out of the game went."""
+    judged = picture.assessments
+    if len(judged) == 1 and judged[0].alone:
+        return prospects_in_words(judged[0], whole=whole)
+    told = {found.evader: prospects_in_words(found) for found in judged}
+    told |= {fate.id: fate.verdict.value for fate in picture.game.fates if fate.out}
+    return "; ".join(f"evader {id} {words}" if whole else f"E{id} {words}" for id, words in sorted(told.items()))
 
 
 def prospects_in_words(found: AssessmentView, *, whole: bool = False) -> str:

@@ -8,9 +8,10 @@ from math import inf, isinf
 from typing import Any, NamedTuple
 
 from gcs.picture.terminal_text import cut
-from gcs.picture.values import Picture, Presence, VehicleView
+from gcs.picture.values import FateView, Picture, Presence, VehicleView
 from onboard.core.math.vectors import Vec, distance
-from onboard.wire.bus.messages import Role, Severity
+from onboard.game import sides
+from onboard.wire.bus.messages import Health, Role, Severity
 
 
 class Grade(IntEnum):
@@ -89,40 +90,95 @@ def grades(picture: Picture) -> dict[int, Grade]:
     return found
 
 
-def evader_position(picture: Picture) -> Vec | None:
-    """Where the evader is: by its own state, else by its track."""
+class Quarry(NamedTuple):
+    """An evader that is in the game, and where it is."""
+
+    id: int
+    place: Vec
+
+
+def quarries(picture: Picture) -> dict[int, Quarry]:
+    """For everybody but evaders: the evader that it is after, as far as somebody says so, else the nearest one
+    in the game. An evader is where its own state says, else its track."""
+    at = evader_places(picture)
+    after = dict(picture.game.quarries)
+    found = {}
     for vehicle in picture.vehicles:
-        if vehicle.role is Role.EVADER and vehicle.position is not None:
-            return Vec(*vehicle.position)
-    roster = picture.game.setup.roster if picture.game.setup else ()
-    evaders = {member.id for member in roster if member.role is Role.EVADER}
-    for track in picture.tracks:
-        if track.id in evaders:
-            return Vec(*track.track.position)
-    return None
+        if vehicle.role is Role.EVADER or vehicle.position is None or not at:
+            continue
+        here = Vec(*vehicle.position)
+        told = after.get(vehicle.id, 0)
+        id = told if told in at else min(at, key=lambda one: distance(at[one], here))
+        found[vehicle.id] = Quarry(id, at[id])
+    return found
+
+
+def evader_places(picture: Picture) -> dict[int, Vec]:
+    """Where the evaders in the game are [m; NED], by id, as far as it is known."""
+    roles = picture.roles
+    at = {track.id: Vec(*track.track.position) for track in picture.tracks}
+    at |= {v.id: Vec(*v.position) for v in picture.vehicles if v.position is not None}
+    known = [id for id in sides.evaders(roles) if id in at]
+    playing = [id for id in known if (fate := picture.game.fate_of(id)) is None or not fate.out]
+    return {id: at[id] for id in playing or known}
 
 
 def rows(picture: Picture, sort: str, descending: bool) -> list[Row]:
     """The table in the order asked for; equal ones by id. Unknown values come last either way."""
-    graded = grades(picture)
-    evader = evader_position(picture)
     ranked = []
-    for vehicle in picture.vehicles:
-        value = _KEYS.get(sort, _KEYS["id"])(vehicle, graded[vehicle.id], evader)
-        row = Row(vehicle.id, graded[vehicle.id], _cells(vehicle, graded[vehicle.id], evader))
+    for told in _told(picture):
+        value = _KEYS.get(sort, _KEYS["id"])(told)
+        row = Row(told.vehicle.id, told.grade, _cells(told))
         ranked.append((value is None, value, row))
     known = [(v, row) for unknown, v, row in ranked if not unknown]
     known.sort(key=lambda pair: pair[0], reverse=descending)
     return [row for _, row in known] + [row for unknown, _, row in ranked if unknown]
 
 
-def _cells(vehicle: VehicleView, grade: Grade, evader: Vec | None) -> tuple[str, ...]:
-    health = vehicle.health
-    position = vehicle.position
+class _Told(NamedTuple):
+    """What a row is made of."""
+
+    vehicle: VehicleView
+    grade: Grade
+    quarry: Quarry | None
+    after: int  # the evader that it is said to be after, where there are several; 0 = none
+    fate: FateView | None  # of an evader that is out of the game
+
+    @property
+    def away(self) -> float | None:
+        """The distance to its quarry [m]."""
+        position = self.vehicle.position
+        return None if self.quarry is None or position is None else distance(Vec(*position), self.quarry.place)
+
+    @property
+    def role(self) -> str:
+        """`purs`; where there are several evaders whom it is after: `→12`."""
+        if self.after:
+            return f"→{self.after}"
+        return ROLE_WORDS[self.vehicle.role] if self.vehicle.role else "?"
+
+    @property
+    def rule(self) -> str:
+        """The rule in force; of an evader that is out of the game how."""
+        return self.vehicle.rule.replace("_", " ") if self.fate is None else self.fate.words
+
+
+def _told(picture: Picture) -> list[_Told]:
+    graded, quarry, after = grades(picture), quarries(picture), dict(picture.game.quarries)
+    out = {fate.id: fate for fate in picture.game.fates if fate.out}
+    return [
+        _Told(v, graded[v.id], quarry.get(v.id), after.get(v.id, 0), out.get(v.id))
+        for v in picture.vehicles
+    ]
+
+
+def _cells(told: _Told) -> tuple[str, ...]:
+    vehicle = told.vehicle
+    health, position = vehicle.health, vehicle.position
     return (
         str(vehicle.id),
-        ROLE_WORDS[vehicle.role] if vehicle.role else "?",
-        GRADE_WORDS[grade],
+        told.role,
+        GRADE_WORDS[told.grade],
         vehicle.mode or "–",
         (health.stage.value.replace("_", " ") if health else "–"),
         f"{health.battery:.0%}" if health and health.battery >= 0 else "–",
@@ -130,20 +186,13 @@ def _cells(vehicle: VehicleView, grade: Grade, evader: Vec | None) -> tuple[str,
         age(vehicle.age_s),
         f"{-position[2]:z.0f}" if position else "–",
         f"{vehicle.groundspeed:.1f}"[:4] if vehicle.state else "–",
-        _to_evader(vehicle, evader),
-        vehicle.rule.replace("_", " ") or "–",
+        _metres(told.away),
+        told.rule or "–",
     )
 
 
-def _to_evader(vehicle: VehicleView, evader: Vec | None) -> str:
-    d = _distance(vehicle, evader)
-    return "–" if d is None else f"{d:.0f}" if d >= 100 else f"{d:.1f}"
-
-
-def _distance(vehicle: VehicleView, evader: Vec | None) -> float | None:
-    if evader is None or vehicle.position is None or vehicle.role is Role.EVADER:
-        return None
-    return distance(Vec(*vehicle.position), evader)
+def _metres(away: float | None) -> str:
+    return "–" if away is None else f"{away:.0f}" if away >= 100 else f"{away:.1f}"
 
 
 def age(seconds: float) -> str:
@@ -159,23 +208,32 @@ def age(seconds: float) -> str:
     return f"{min(seconds / 60, 999):.0f}m"
 
 
-_KEYS: dict[str, Callable[[VehicleView, Grade, Vec | None], Any]] = {
-    "id": lambda v, g, e: v.id,
-    "role": lambda v, g, e: v.role.value if v.role else None,
-    "health": lambda v, g, e: int(g),
-    "battery": lambda v, g, e: v.health.battery if v.health and v.health.battery >= 0 else None,
-    "link": lambda v, g, e: v.health.link_quality if v.health else None,
-    "age": lambda v, g, e: -v.age_s if v.age_s < inf else None,
-    "height": lambda v, g, e: v.position[2] if v.position else None,
-    "distance": lambda v, g, e: _distance(v, e),
+_KEYS: dict[str, Callable[[_Told], Any]] = {
+    "id": lambda told: told.vehicle.id,
+    "role": lambda told: _sorted_role(told),
+    "health": lambda told: int(told.grade),
+    "battery": lambda told: _share(told.vehicle.health),
+    "link": lambda told: told.vehicle.health.link_quality if told.vehicle.health else None,
+    "age": lambda told: -told.vehicle.age_s if told.vehicle.age_s < inf else None,
+    "height": lambda told: told.vehicle.position[2] if told.vehicle.position else None,
+    "distance": lambda told: told.away,
 }
+
+
+def _sorted_role(told: _Told) -> str | None:
+    """Pursuers of one evader stand together."""
+    role = told.vehicle.role
+    return None if role is None else f"{role.value} {told.after:03d}" if told.after else role.value
+
+
+def _share(health: Health | None) -> float | None:
+    return health.battery if health and health.battery >= 0 else None
 
 
 def sort_values(picture: Picture) -> dict[int, dict[str, Any]]:
     """What each vehicle is sorted by, by the columns' sort names; None where it is not known."""
-    graded, evader = grades(picture), evader_position(picture)
     return {
-        v.id: {name: key(v, graded[v.id], evader) for name, key in _KEYS.items()} for v in picture.vehicles
+        told.vehicle.id: {name: key(told) for name, key in _KEYS.items()} for told in _told(picture)
     }
 
 

@@ -10,13 +10,14 @@ Most callers want `gcs.picture.reducer.PictureReducer`, which adds alerts and co
 from __future__ import annotations
 
 from collections import Counter, deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
-from gcs.picture.current import HEALTH_OLD_S
+from gcs.picture.current import HEALTH_OLD_S, MOTION_OLD_S
 from gcs.picture.plausible import plausible
 from gcs.picture.records import TrackRecord, VehicleRecord, age_s
 from gcs.picture.station_journal import HEARD_HERE, PRESENCE, REMARK, Presence, Remark
+from gcs.picture.several import fates, goals, quarries, verdict_in_words
 from gcs.picture.team import Plans, counting
 from gcs.picture.values import GameView, LogLine, TrackView, VehicleView
 from onboard.core.math.constants import NS_PER_S
@@ -64,7 +65,7 @@ class Fleet:
         self._phase: PhaseChange | None = None
         self._outcome: Outcome | None = None
         self._plans: Plans = {}
-        self._brief: EvaderBrief | None = None
+        self._briefs: dict[int, EvaderBrief] = {}  # by evader; 0: where there is one
         self._master: Master | None = None
         self._master_ns: int | None = None
         self._masters: dict[tuple[str, int], int] = {}
@@ -79,7 +80,9 @@ class Fleet:
             self.bad_ns = now_ns
             return None
         take = _TAKERS.get(heard.topic)
-        if take is not None:
+        if heard.topic is topics.OWN_BRIEF and heard.id is not None:
+            self._briefs[heard.id] = heard.message
+        elif take is not None:
             take(self, heard.message, now_ns)
         elif heard.topic.writers == OWN_WORD and heard.id is not None:
             self._life(heard.id, 0, now_ns)
@@ -190,6 +193,11 @@ class Fleet:
         if self._setup is None or setup.scenario_hash != self._setup.scenario_hash:
             who = f"{len(setup.roster)} vehicles, from {setup.master}"
             self._say(now_ns, 0, Severity.INFO, "setup", f"game {setup.scenario}: {who}")
+        else:
+            known = {fate.id for fate in fates(self._setup, None)}
+            for fate in fates(setup, None):
+                if fate.id not in known:
+                    self._say(now_ns, 0, Severity.INFO, "out", f"evader {fate.id} {fate.words}")
         self._setup = setup
         for member in setup.roster:
             if 1 <= member.id <= MOST_VEHICLES:
@@ -205,14 +213,13 @@ class Fleet:
 
     def _on_outcome(self, outcome: Outcome, now_ns: int) -> None:
         if self._outcome is None or outcome.stamp_ns != self._outcome.stamp_ns:
-            by = f" by {outcome.captor}" if outcome.captor else ""
             reason = f": {outcome.reason}" if outcome.reason else ""
-            text = f"evader {outcome.verdict.value}{by} after {outcome.time:.1f} s{reason}"
+            text = f"{verdict_in_words(outcome)} after {outcome.time:.1f} s{reason}"
             self._say(now_ns, 0, Severity.INFO, "outcome", text)
         self._outcome = outcome
 
     def _on_brief(self, brief: EvaderBrief, now_ns: int) -> None:
-        self._brief = brief
+        self._briefs[0] = brief
 
     def quote(self, id: int, now_ns: int) -> Quote:
         """What an order to a vehicle quotes, given now: its agent's state, and the newest word of the master,
@@ -268,6 +275,7 @@ class Fleet:
         if outcome is not None and phase is not None and outcome.stamp_ns < phase.t0_ns:
             outcome = None  # cached from a game before this one
         t0_ns = phase.t0_ns if phase else 0
+        plan = None if over else counting(self._plans, now_ns)
         alive = sum(now_ns - at < 2 * NS_PER_S for at in self._masters.values())
         return GameView(
             name=self.name,
@@ -277,12 +285,20 @@ class Fleet:
             t0_ns=t0_ns,
             time_s=(now_ns - t0_ns) / NS_PER_S if t0_ns else 0.0,
             outcome=outcome,
-            target=self._brief.target if self._brief else None,
+            targets=goals(self._setup, self._briefs),
+            quarries=() if over else quarries(self._setup, plan, self._decided(now_ns)),
+            fates=fates(self._setup, outcome),
             master=self._master,
             master_age_s=age_s(self._master_ns, now_ns),
             two_masters=alive > 1,
-            plan=None if over else counting(self._plans, now_ns),
+            plan=plan,
         )
+
+    def _decided(self, now_ns: int) -> Iterator[tuple[int, int]]:
+        """Each vehicle's quarry, as its newest decision says, while it is fresh."""
+        for id, entry in self._entries.items():
+            if entry.decision is not None and age_s(entry.decision_ns, now_ns) <= MOTION_OLD_S:
+                yield id, entry.decision.quarry
 
     def vehicles(self, now_ns: int) -> tuple[VehicleView, ...]:
         """Every vehicle heard or expected, by id."""

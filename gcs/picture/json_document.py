@@ -10,7 +10,7 @@ import msgspec
 
 from gcs.picture.values import Picture
 
-FORMAT = 2  # of this document; raised when a field changes its meaning or goes
+FORMAT = 3  # of this document; raised when a field changes its meaning or goes
 LEFT_OUT = frozenset({"trail", "past_alerts"})
 
 

@@ -74,7 +74,7 @@ class PictureReducer:
             game=game,
             vehicles=vehicles,
             tracks=tracks,
-            assessment=assess(game, vehicles, tracks) if whole else None,
+            assessments=assess(game, vehicles, tracks) if whole else (),
             commands=self.book.views(now_ns),
             dropped=tuple(sorted(self.fleet.drops.items())),
             bad_age_s=self.fleet.bad_age_s(now_ns),

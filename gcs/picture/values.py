@@ -17,6 +17,7 @@ from onboard.wire.bus.messages import (
     Health,
     Master,
     Outcome,
+    OutcomeResult,
     Phase,
     Role,
     Setup,
@@ -121,6 +122,33 @@ class TrackView(Value, frozen=True):
     trail: tuple[tuple[float, float, float], ...] = ()
 
 
+class FateView(Value, frozen=True):
+    """How the game ended for one evader."""
+
+    id: int
+    verdict: OutcomeResult
+    captor: int  # id, 0 = nobody
+    time_s: float  # since t₀
+
+    @property
+    def out(self) -> bool:
+        """Whether it is out of the game: captured or at its target."""
+        return self.verdict in (OutcomeResult.CAPTURED, OutcomeResult.ARRIVED)
+
+    @property
+    def words(self) -> str:
+        """For people: `captured by 3 at 12.5 s`."""
+        by = f" by {self.captor}" if self.captor else ""
+        return f"{self.verdict.value}{by} at {self.time_s:.1f} s"
+
+
+class GoalView(Value, frozen=True):
+    """A target of an evader; ground only."""
+
+    evader: int  # id, 0 = not told whose
+    place: Triple  # [m; NED]
+
+
 class GameView(Value, frozen=True):
     """The game as its master tells it."""
 
@@ -131,11 +159,34 @@ class GameView(Value, frozen=True):
     t0_ns: int = 0
     time_s: float = 0.0  # since t₀; negative before, 0 where t₀ is not fixed
     outcome: Outcome | None = None
-    target: Triple | None = None  # the evader's; ground only
+    targets: tuple[GoalView, ...] = ()  # of all evaders, by evader
+    quarries: tuple[tuple[int, int], ...] = ()  # a pursuer's id, and the evader's that it is after
+    fates: tuple[FateView, ...] = ()  # of evaders that are out, of all when the game has ended; by id
     master: Master | None = None
     master_age_s: float = INF
     two_masters: bool = False
     plan: TeamPlan | None = None  # that the pursuers fly by
+
+    @property
+    def roles(self) -> dict[int, Role]:
+        """Everybody's role in the setup, by id."""
+        return {member.id: member.role for member in self.setup.roster} if self.setup else {}
+
+    def targets_of(self, evader: int) -> tuple[Triple, ...]:
+        """Where an evader wants to go [m; NED]; reaching any of them counts."""
+        return tuple(goal.place for goal in self.targets if goal.evader in (evader, 0))
+
+    def quarry_of(self, pursuer: int) -> int | None:
+        """The evader that a pursuer is after; None where nobody says so."""
+        return next((evader for id, evader in self.quarries if id == pursuer), None)
+
+    def hunters_of(self, evader: int) -> tuple[int, ...]:
+        """Who is after an evader."""
+        return tuple(id for id, quarry in self.quarries if quarry == evader)
+
+    def fate_of(self, evader: int) -> FateView | None:
+        """How the game ended for an evader; None where it is still in it."""
+        return next((fate for fate in self.fates if fate.id == evader), None)
 
     @property
     def clock(self) -> str:
@@ -249,8 +300,9 @@ class ProspectView(Value, frozen=True):
 
 
 class AssessmentView(Value, frozen=True):
-    """What the situation promises, by declared airspeeds and the last known positions."""
+    """What the situation of one evader promises, by declared airspeeds and the last known positions."""
 
+    evader: int  # its id
     encircled: bool  # no free ray
     gaps: tuple[tuple[float, float], ...]  # in the plane: start, width [rad], north to east
     largest_gap: float  # in the plane: its width; in space: of the largest free cap [rad]
@@ -258,7 +310,8 @@ class AssessmentView(Value, frozen=True):
     prospects: tuple[ProspectView, ...]
     captured: tuple[float, float, float] | None = None  # chance, with its 95 % interval
     word: str = ""  # go, no-go, open, unknown; "" = not judged
-    why: str = ""  # the bound, and the band
+    why: str = ""  # the bound, and the band; where it is not judged: why
+    alone: bool = True  # the only evader of its game
 
 
 class Picture(Value, frozen=True):
@@ -275,8 +328,17 @@ class Picture(Value, frozen=True):
     dropped: tuple[tuple[str, int], ...] = ()  # messages dropped here, by cause
     bad_age_s: float = INF  # since the last of them
     received: int = 0
-    assessment: AssessmentView | None = None
+    assessments: tuple[AssessmentView, ...] = ()  # of the evaders in the game, by id
 
     def vehicle(self, vehicle_id: int) -> VehicleView | None:
         """The vehicle of an id."""
         return next((v for v in self.vehicles if v.id == vehicle_id), None)
+
+    def assessment_of(self, evader: int) -> AssessmentView | None:
+        """What an evader's situation promises; None where it is not known, or it is out of the game."""
+        return next((found for found in self.assessments if found.evader == evader), None)
+
+    @property
+    def roles(self) -> dict[int, Role | None]:
+        """Everybody's role, by id: what a vehicle says of itself, else the setup."""
+        return {**self.game.roles, **{v.id: v.role for v in self.vehicles if v.role is not None}}

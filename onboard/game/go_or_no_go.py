@@ -31,9 +31,9 @@ def share(p: Estimate) -> str:
     return f"{100.0 * p.p:.0f} % ({100.0 * p.low:.0f}–{100.0 * p.high:.0f})"
 
 
-def lines(s: Situation) -> list[str]:
-    """What to expect of an engagement."""
-    found = odds(s)
+def lines(s: Situation, beyond: str = "") -> list[str]:
+    """What to expect of an engagement; the table says nothing where it is known to be `beyond` it."""
+    found = odds(s, beyond=beyond)
     word, why = headline(s, found)
     said = [f"{word}: {why}"]
     if found.beyond:

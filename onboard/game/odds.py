@@ -237,8 +237,16 @@ def of_the_rest(captured: Estimate, arrived: Estimate) -> Estimate:
     )
 
 
-def odds(s: Situation, *, changes: bool = True) -> Odds:
-    """Bound, band, table, and with `changes` what would change it. There must be a pursuer that is fit."""
+def one_each(evaders: int, targets: int) -> str:
+    """Why the table says nothing of a game with so many evaders, of which one has so many targets; "": it may."""
+    if evaders > 1:
+        return f"evaders: found {evaders}, the table's games have 1"
+    return f"targets: found {targets}, the table's games have 1" if targets > 1 else ""
+
+
+def odds(s: Situation, *, changes: bool = True, beyond: str = "") -> Odds:
+    """Bound, band, table, and with `changes` what would change it; the table says nothing where it is known to
+    be `beyond` it. There must be a pursuer that is fit."""
     way = way_out(s)
     slowest = min(member.vehicle.speed for member in s.team if member.fit)
     pitch = 0.0
@@ -247,12 +255,7 @@ def odds(s: Situation, *, changes: bool = True) -> Odds:
         pitch = max(band.pitch_max, -band.pitch_min)
     need = least_number(slowest / s.evader.speed, pitch)
     sheet = sheet_of(s)
-    if slowest >= s.evader.speed:
-        beyond = "a pursuer is as fast as the evader: the table's are slower"
-    elif not s.target.exists:
-        beyond = "no target: the table's games have one"
-    else:
-        beyond = "no games of this kind" if sheet is None else outside(s, sheet)
+    beyond = beyond or _beyond(s, sheet, slowest)
     found: dict[str, Chances] = {}
     tried: list[Change] = []
     if not beyond and sheet is not None:
@@ -265,6 +268,15 @@ def odds(s: Situation, *, changes: bool = True) -> Odds:
             if then is not None:
                 tried.append(Change(words, then.captured))
     return Odds(need, way.closed, way.gap, found, beyond, tuple(tried))
+
+
+def _beyond(s: Situation, sheet: Sheet | None, slowest: float) -> str:
+    """Why the table does not reach a situation; "" where it does."""
+    if slowest >= s.evader.speed:
+        return "a pursuer is as fast as the evader: the table's are slower"
+    if not s.target.exists:
+        return "no target: the table's games have one"
+    return "no games of this kind" if sheet is None else outside(s, sheet)
 
 
 def judgement(found: Odds, count: int) -> str:

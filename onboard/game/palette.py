@@ -19,6 +19,8 @@ PAPER = Colour("#ffffff", "#161b22")  # behind figures and tables
 GRID = Colour("#e3e7ee", "#303846")
 
 EVADER = Colour("#d1480c", "#ff8b4d")
+# Of several evaders the second, the third …: warm shades, as pursuers have none.
+EVADERS = (EVADER, Colour("#b00b3c", "#ff5c80"), Colour("#c4009b", "#ff7be3"), Colour("#8a2b0e", "#e59a78"))
 # Told apart by most people who do not see all colours; pursuer 2 has the first, pursuer 3 the second …
 PURSUERS = (
     Colour("#0068b3", "#5ab4ff"),
@@ -85,9 +87,10 @@ ACTIONS = {  # of the supervisor
 }
 
 
-def vehicle(vehicle_id: int, evader: bool) -> Colour:
-    """The colour of a vehicle, which follows from its id on the bus."""
-    return EVADER if evader else PURSUERS[(vehicle_id - 2) % len(PURSUERS)]
+def vehicle(vehicle_id: int, evader: bool, rank: int = 0) -> Colour:
+    """The colour of a vehicle: a pursuer's follows from its id on the bus, an evader's from its `rank` among
+    the evaders (0: the one with the lowest id)."""
+    return EVADERS[rank % len(EVADERS)] if evader else PURSUERS[(vehicle_id - 2) % len(PURSUERS)]
 
 
 def rule(name: str) -> Colour:
@@ -105,4 +108,4 @@ def every_colour() -> tuple[Colour, ...]:
     """All colours there are, each once; no two have the same light shade."""
     single = (INK, FAINT, PAPER, GRID, EVADER, TARGET, CAPTURE, SAFETY, FENCE, APOLLONIUS, FORCE, CONE)
     rules = tuple(Colour(value, value) for value in (*RULES.values(), *OTHER_RULES))
-    return (*single, *PURSUERS, *rules, *ACTIONS.values())
+    return (*single, *EVADERS[1:], *PURSUERS, *rules, *ACTIONS.values())
