@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from math import atan2, degrees, hypot
 
-from gcs.console.vehicle_table import GRADE_WORDS, STYLES, age, grades, quarries
 from gcs.console.status_line import spans
+from gcs.console.vehicle_table import GRADE_WORDS, STYLES, age, grades, quarries
 from gcs.picture.current import current
 from gcs.picture.team import part_in_words, part_of
 from gcs.picture.values import Picture, VehicleView
@@ -22,9 +22,7 @@ LOCKS: dict[LinkLock, Line] = {
 }
 
 
-def detail(
-    picture: Picture, selected: int | None, hidden: frozenset[str] = frozenset()
-) -> list[Line]:
+def detail(picture: Picture, selected: int | None, hidden: frozenset[str] = frozenset()) -> list[Line]:
     """Lines about the selected vehicle, the most important first; what is no longer fed says its age.
 
     Of alerts those in `hidden` alone, which are shown nowhere else.
@@ -139,8 +137,8 @@ def _distances(picture: Picture, vehicle: VehicleView) -> list[Line]:
         lines.append((f"{word} {nearest.id}: {away:.1f} m", ""))
     goals = picture.game.targets_of(vehicle.id) if vehicle.role is Role.EVADER else ()
     if goals:
-        away = ", ".join(f"{distance(here, Vec(*goal)):.1f}" for goal in goals)
-        lines.append((f"target{'s' if len(goals) > 1 else ''} {away} m away", ""))
+        each = ", ".join(f"{distance(here, Vec(*goal)):.1f}" for goal in goals)
+        lines.append((f"target{'s' if len(goals) > 1 else ''} {each} m away", ""))
     return lines
 
 

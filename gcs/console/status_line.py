@@ -52,14 +52,16 @@ def _game(picture: Picture) -> list[str]:
 
 
 def situation_in_words(picture: Picture, *, whole: bool = False) -> str:
-    """The ways out of all evaders, for people: the only one's with its odds; of several each by its id, and how
-    those that are out of the game went."""
+    """The ways out of all evaders, for people: the only one's with its odds; of several each by its id, and
+    how it ended for those that are out of the game."""
     judged = picture.assessments
     if len(judged) == 1 and judged[0].alone:
         return prospects_in_words(judged[0], whole=whole)
     told = {found.evader: prospects_in_words(found) for found in judged}
     told |= {fate.id: fate.verdict.value for fate in picture.game.fates if fate.out}
-    return "; ".join(f"evader {id} {words}" if whole else f"E{id} {words}" for id, words in sorted(told.items()))
+    return "; ".join(
+        f"evader {id} {words}" if whole else f"E{id} {words}" for id, words in sorted(told.items())
+    )
 
 
 def prospects_in_words(found: AssessmentView, *, whole: bool = False) -> str:

@@ -98,8 +98,8 @@ class Quarry(NamedTuple):
 
 
 def quarries(picture: Picture) -> dict[int, Quarry]:
-    """For everybody but evaders: the evader that it is after, as far as somebody says so, else the nearest one
-    in the game. An evader is where its own state says, else its track."""
+    """For everybody but evaders: the evader that it is after, as far as somebody says so, else the nearest
+    one in the game. An evader is where its own state says, else its track."""
     at = evader_places(picture)
     after = dict(picture.game.quarries)
     found = {}
@@ -148,7 +148,9 @@ class _Told(NamedTuple):
     def away(self) -> float | None:
         """The distance to its quarry [m]."""
         position = self.vehicle.position
-        return None if self.quarry is None or position is None else distance(Vec(*position), self.quarry.place)
+        return (
+            None if self.quarry is None or position is None else distance(Vec(*position), self.quarry.place)
+        )
 
     @property
     def role(self) -> str:
@@ -167,8 +169,7 @@ def _told(picture: Picture) -> list[_Told]:
     graded, quarry, after = grades(picture), quarries(picture), dict(picture.game.quarries)
     out = {fate.id: fate for fate in picture.game.fates if fate.out}
     return [
-        _Told(v, graded[v.id], quarry.get(v.id), after.get(v.id, 0), out.get(v.id))
-        for v in picture.vehicles
+        _Told(v, graded[v.id], quarry.get(v.id), after.get(v.id, 0), out.get(v.id)) for v in picture.vehicles
     ]
 
 
@@ -232,9 +233,7 @@ def _share(health: Health | None) -> float | None:
 
 def sort_values(picture: Picture) -> dict[int, dict[str, Any]]:
     """What each vehicle is sorted by, by the columns' sort names; None where it is not known."""
-    return {
-        told.vehicle.id: {name: key(told) for name, key in _KEYS.items()} for told in _told(picture)
-    }
+    return {told.vehicle.id: {name: key(told) for name, key in _KEYS.items()} for told in _told(picture)}
 
 
 def columns(width: int) -> tuple[Column, ...]:

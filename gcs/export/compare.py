@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcs.export.run_data import PLACE, RunData, load
+from onboard.game import sides
 from onboard.wire.bus.messages import Role
 
 NESTED = (Mapping, list, tuple)
@@ -117,26 +118,39 @@ def _figures(a: RunData, b: RunData) -> Iterator[Row]:
         near = f"{distance:.2f}" if 0.0 <= distance < 1e9 else "–"
         told.append((outcome.verdict.value, captor, f"{outcome.time:.1f}", near))
     yield from map(Row, FIGURES, *told)
+    several = sorted({fate.id for data in (a, b) for fate in data.fates if len(data.fates) > 1})
+    for id in several:
+        yield Row(f"evader {id}", _fate(a, id), _fate(b, id))
     for id in sorted(set(a.states.ids) | set(b.states.ids)):
         if Role.PURSUER in (a.roles.get(id), b.roles.get(id)):
             yield Row(f"pursuer {id} nearest [m]", _nearest(a, id), _nearest(b, id))
 
 
+def _fate(data: RunData, evader: int) -> str:
+    return next((fate.words for fate in data.fates if fate.id == evader), "–")
+
+
 def _nearest(data: RunData, id: int) -> str:
-    """A pursuer's smallest distance to the evader within the game."""
-    evader = next((i for i, role in data.roles.items() if role is Role.EVADER), 0)
+    """A pursuer's smallest distance to an evader within that one's game."""
+    found = [
+        near for evader in sides.evaders(data.roles) if (near := _nearest_to(data, id, evader)) is not None
+    ]
+    return f"{min(found):.2f}" if found else "–"
+
+
+def _nearest_to(data: RunData, id: int, evader: int) -> float | None:
     there, here = _way(data, evader), _way(data, id)
     if there is None or here is None:
-        return "–"
-    end = np.inf if data.outcome is None else data.outcome.time
+        return None
+    end = next((fate.time_s for fate in data.fates if fate.id == evader), np.inf)
     t = _common(there[0], here[0])
     t = t[(t >= 0.0) & (t <= end)]
     if not len(t):
-        return "–"
+        return None
     apart = _at(t, there) - _at(t, here)
     if data.setup is not None and data.setup.flat:
         apart = apart[:, :2]
-    return f"{np.linalg.norm(apart, axis=1).min():.2f}"
+    return float(np.linalg.norm(apart, axis=1).min())
 
 
 Way = tuple[NDArray[np.float64], NDArray[np.float64]]  # instants (n,) [s], places (n, 3) [m; NED]

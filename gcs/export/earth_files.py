@@ -77,10 +77,10 @@ def _kml_still(document: ET.Element, data: RunData) -> None:
     """Target and fence, which do not move."""
     assert data.origin is not None
     frame = Frame(data.origin.latitude_deg, data.origin.longitude_deg, data.origin.altitude_m)
-    if data.target is not None:
+    for name, goal in data.named_targets():
         mark = ET.SubElement(document, "Placemark")
-        _text(mark, "name", "target")
-        spot = frame.geodetic_from_ned(Vec(*data.target))
+        _text(mark, "name", name)
+        spot = frame.geodetic_from_ned(Vec(*goal))
         _kml_point(mark, spot.longitude_deg, spot.latitude_deg, spot.altitude_m)
     fence = data.setup.fence if data.setup is not None else None
     if fence is not None:

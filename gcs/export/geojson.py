@@ -53,9 +53,10 @@ def _still(data: RunData) -> list[Feature]:
         return _place(spot.longitude_deg, spot.latitude_deg, spot.altitude_m)
 
     found: list[Feature] = []
-    if data.target is not None:
-        place = {"type": "Point", "coordinates": at(*data.target)}
-        found.append(_feature(place, {"name": "target", "kind": "target"}))
+    for (name, goal), whose in zip(data.named_targets(), data.targets, strict=True):
+        place = {"type": "Point", "coordinates": at(*goal)}
+        told = {"name": name, "kind": "target"} | ({"evader": whose.evader} if whose.evader else {})
+        found.append(_feature(place, told))
     fence = data.setup.fence if data.setup is not None else None
     if fence is not None:
         corners = list(fence.polygon)
@@ -63,10 +64,10 @@ def _still(data: RunData) -> list[Feature]:
         twice = sum(n0 * e1 - n1 * e0 for (n0, e0), (n1, e1) in around)  # > 0: from north to east
         ring = corners[::-1] if twice > 0.0 else corners
         places = [at(north, east, -fence.altitude_max) for north, east in [*ring, ring[0]]]
-        told = {
+        about = {
             "name": "fence", "kind": "fence", "floor_m": fence.altitude_min, "ceiling_m": fence.altitude_max,
         }  # fmt: skip
-        found.append(_feature({"type": "Polygon", "coordinates": [places]}, told))
+        found.append(_feature({"type": "Polygon", "coordinates": [places]}, about))
     return found
 
 

@@ -13,7 +13,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gcs.export.tables import Table, table, with_time
+from gcs.picture.several import fates, goals, named
 from gcs.picture.station_journal import HEARD_HERE
+from gcs.picture.values import FateView, GoalView
 from gcs.recording.foxglove_layout import called
 from gcs.recording.reader import Recording
 from gcs.recording.shell import RECORDING
@@ -30,6 +32,7 @@ from onboard.wire.bus.messages import (
     Message,
     Origin,
     Outcome,
+    OwnBrief,
     PhaseChange,
     Role,
     Setup,
@@ -51,7 +54,7 @@ COLUMNS: dict[str, tuple[str, ...]] = {
     "decisions": (
         "stamp_ns", "id", "level", "module", "strategy", "rule", *(f"air_{name}" for name in VELOCITY),
         "aim_north_m", "aim_east_m", "aim_down_m", "time_to_aim_s", "miss_m", "supervisor", "reason",
-        "predictor", "predictor_sigma_m",
+        "predictor", "predictor_sigma_m", "quarry_id",
     ),
     "tracks": (
         "stamp_ns", "arrival_ns", "id", *PLACE, *VELOCITY, "sigma_m", "sigma_velocity_m_s", "sensor",
@@ -76,8 +79,9 @@ class RunData(NamedTuple):
     origin: Origin | None  # of the game frame; altitudes are above mean sea level
     scenario: Scenario | None  # with every value that was used
     setup: Setup | None
-    target: Triple | None  # [m; NED] the evader's
+    targets: tuple[GoalView, ...]  # of all evaders
     outcome: Outcome | None
+    fates: tuple[FateView, ...]  # how it ended for each evader, as far as it was said
     states: Table  # what each vehicle said of itself
     setpoints: Table  # the velocity over ground that its autopilot was sent
     decisions: Table  # and why
@@ -101,6 +105,10 @@ class RunData(NamedTuple):
                 raise ConfigError(f"--id: found vehicle {id}, expected one of {', '.join(map(str, known))}")
         kept: dict[str, Any] = {each.name: each.of(*ids) for each in self.tables}
         return self._replace(**kept)
+
+    def named_targets(self) -> list[tuple[str, Triple]]:
+        """Each target with its name for people: `target`, of several evaders `target of 12`."""
+        return named(self.targets)
 
     def called(self, id: int) -> str:
         """A vehicle for a person: `evader 1`."""
@@ -141,8 +149,9 @@ def load(run: str | os.PathLike[str]) -> RunData:
         origin=origin,
         scenario=files.scenario,
         setup=setup,
-        target=heard.target,
+        targets=goals(setup, heard.brief, heard.own_briefs),
         outcome=heard.outcome,
+        fates=fates(setup, heard.phase, heard.outcome),
         roles={**roles, **heard.roles},
         notes=(*files.notes, *recording.remarks, *heard.notes),
         **_tables(rows, zero_ns, origin),
@@ -179,7 +188,9 @@ class _Heard:
         self.t0_ns = 0
         self.setup: Setup | None = None
         self.outcome: Outcome | None = None
-        self.target: Triple | None = None
+        self.phase: PhaseChange | None = None
+        self.brief: EvaderBrief | None = None
+        self.own_briefs: dict[int, OwnBrief] = {}
         self.roles: dict[int, Role] = {}
         drops: Counter[str] = Counter()
         for entry in recording.entries():
@@ -202,7 +213,7 @@ class _Heard:
         why = (m.level.value, m.module.value, m.strategy, m.rule)
         guard = (m.supervisor.value, m.reason, m.predictor, m.predictor_sigma)
         where = (*m.velocity, *m.aim, m.time_to_aim, m.miss)
-        self.rows["decisions"].append((m.stamp_ns, m.id, *why, *where, *guard))
+        self.rows["decisions"].append((m.stamp_ns, m.id, *why, *where, *guard, m.quarry))
         self.rows["setpoints"].append((m.stamp_ns, m.id, *m.setpoint, m.supervisor.value))
 
     def track(self, m: Track, now_ns: int) -> None:
@@ -224,22 +235,24 @@ class _Heard:
         """Take in what happened."""
         self.rows["events"].append((m.stamp_ns, m.id, m.number, m.severity.value, m.kind, m.text))
 
-    def keep(self, m: Setup | PhaseChange | Outcome | EvaderBrief, now_ns: int) -> None:
+    def keep(self, m: Setup | PhaseChange | Outcome | EvaderBrief | OwnBrief, now_ns: int) -> None:
         """Take in what is told of the game."""
         if isinstance(m, Setup):
             self.setup = m
         elif isinstance(m, PhaseChange):
-            self.t0_ns = m.t0_ns or self.t0_ns
+            self.t0_ns, self.phase = m.t0_ns or self.t0_ns, m
         elif isinstance(m, Outcome):
             self.outcome = m
+        elif isinstance(m, OwnBrief):
+            self.own_briefs[m.id] = m
         else:
-            self.target = m.target
+            self.brief = m
 
 
 _TAKERS: dict[type[Message], Callable[[_Heard, Any, int], None]] = {
     State: _Heard.state, DecisionReport: _Heard.decision, Track: _Heard.track, Health: _Heard.health,
     Event: _Heard.event, Setup: _Heard.keep, PhaseChange: _Heard.keep, Outcome: _Heard.keep,
-    EvaderBrief: _Heard.keep,
+    EvaderBrief: _Heard.keep, OwnBrief: _Heard.keep,
 }  # fmt: skip
 
 
@@ -282,6 +295,7 @@ def _of_logs(folder: Path, why: str) -> RunData:
     origin = _origin(run.scenario)
     return RunData(
         name=run.name, folder=folder, t0_ns=run.t0_ns, origin=origin, scenario=run.scenario, setup=None,
-        target=run.target, outcome=None, roles={f.id: f.role for f in run.flown.values()}, notes=run.notes,
+        targets=run.targets, outcome=None, fates=(), roles={f.id: f.role for f in run.flown.values()},
+        notes=run.notes,
         **_tables({"states": rows, "truth": _truth(folder / TRUTH)}, run.t0_ns, origin),
     )  # fmt: skip

@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-KINDS: dict[str, Any] = {"stamp_ns": np.int64, "arrival_ns": np.int64, "id": np.int64, "number": np.int64}
+KINDS: dict[str, Any] = {"stamp_ns": np.int64, "arrival_ns": np.int64, "id": np.int64, "number": np.int64,
+                         "quarry_id": np.int64}
 """Columns of whole numbers; those in TEXTS are text, those in FLAGS yes or no, all others numbers."""
 TEXTS = frozenset(
     ("role", "mode", "level", "module", "strategy", "rule", "supervisor", "reason", "predictor", "sensor",

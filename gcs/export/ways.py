@@ -14,8 +14,7 @@ import numpy as np
 from gcs.export.run_data import GEODETIC, RunData
 from gcs.export.tables import Table
 from onboard.config.strict import ConfigError
-from onboard.game import palette
-from onboard.wire.bus.messages import Role
+from onboard.game import palette, sides
 
 RATE_HZ = 5.0
 KINDS = {"states": "own states", "tracks": "tracks of a sensor", "truth": "true motion"}
@@ -57,12 +56,12 @@ def ways(data: RunData) -> list[Way]:
         raise ConfigError(
             f"{data.folder}: found no origin of the game frame, expected one for places on Earth"
         )
-    found = []
+    found, shades = [], sides.colours(data.roles)
     for kind, said in KINDS.items():
         given: Table = getattr(data, kind)
         for id in given.ids:
             name = data.called(id) if kind == "states" else f"{data.called(id)}, {said}"
-            colour = palette.vehicle(id, data.roles.get(id) is Role.EVADER).light
+            colour = shades.get(id, palette.FAINT).light
             found.append(Way(id, name, kind, colour, tuple(_spots(given.of(id)))))
     if not found:
         raise ConfigError(

@@ -11,10 +11,11 @@ from typing import Any
 
 from gcs.console.command_parser import HELP_LINES, SORTS, WHOM
 from gcs.console.detail import detail as detail_lines
-from gcs.console.status_line import SIGNS, clock, log_lines, prospects_in_words, spans
+from gcs.console.status_line import SIGNS, clock, log_lines, prospects_in_words, situation_in_words, spans
 from gcs.console.vehicle_table import COLUMNS, GRADE_WORDS, Grade, rows, sort_values
 from gcs.page.frames import HEAD, ROLES, TRACK, VEHICLE
 from gcs.picture.current import current
+from gcs.picture.several import verdict_in_words
 from gcs.picture.team import band_in_words
 from gcs.picture.values import AssessmentView, CommandView, GameView, Picture, VehicleView
 from onboard.game import palette
@@ -24,10 +25,12 @@ from onboard.wire.bus.team_messages import TeamPlan
 Document = dict[str, Any]
 LOG_MOST = 200  # lines of the event log on the page
 HELP = {
-    "id": "MAVLink system id", "role": "evader, pursuer or tracker", "health": "worst of presence and alerts",
+    "id": "MAVLink system id", "role": "evader, pursuer (of several evaders: whose) or tracker",
+    "health": "worst of presence and alerts",
     "mode": "the autopilot's mode", "stage": "what the agent does with the vehicle", "batt": "battery",
     "link": "telemetry received of what is expected", "age": "since the last message of the agent [s]",
-    "hgt": "height above the origin [m]", "m/s": "speed over ground", "to ev": "distance to the evader [m]",
+    "hgt": "height above the origin [m]", "m/s": "speed over ground",
+    "to ev": "distance to the evader [m]; of several to the one that it is after, else to the nearest",
     "rule": "the rule in force, or what the supervisor does instead",
 }  # fmt: skip
 
@@ -49,7 +52,7 @@ def colours() -> Document:
 
     return {
         "ink": both(palette.INK), "faint": both(palette.FAINT), "paper": both(palette.PAPER),
-        "grid": both(palette.GRID), "evader": both(palette.EVADER),
+        "grid": both(palette.GRID), "evaders": [both(colour) for colour in palette.EVADERS],
         "pursuers": [both(colour) for colour in palette.PURSUERS],
         "target": both(palette.TARGET), "capture": both(palette.CAPTURE), "safety": both(palette.SAFETY),
         "fence": both(palette.FENCE), "apollonius": both(palette.APOLLONIUS), "force": both(palette.FORCE),
@@ -80,7 +83,8 @@ def field(picture: Picture) -> Document:
     game, setup = picture.game, picture.game.setup
     found: Document = {
         "what": "field", "game": game.name, "scenario": "", "origin": None, "fence": None, "roster": [],
-        "target": list(game.target) if game.target is not None else None, "capture": None, "safety": None,
+        "targets": [{"evader": goal.evader, "place": list(goal.place)} for goal in game.targets],
+        "capture": None, "safety": None,
         "planar": False, "flat": False, "horizon": None,
     }  # fmt: skip
     if setup is None:
@@ -117,11 +121,12 @@ def board(picture: Picture, status: str) -> Document:
     now = current(picture)
     keys = sort_values(now)
     roles = {vehicle.id: vehicle.role.value if vehicle.role else "" for vehicle in now.vehicles}
+    after = dict(now.game.quarries)
     table = [
         {
             "id": row.id, "grade": int(row.grade), "role": roles[row.id],
             "cells": [
-                roles[row.id] or cell if column.heading == "role" else cell
+                _role(roles[row.id], after.get(row.id)) or cell if column.heading == "role" else cell
                 for column, cell in zip(COLUMNS, row.cells, strict=True)
             ],
             "keys": {name: _number(value) for name, value in keys[row.id].items()},
@@ -134,7 +139,7 @@ def board(picture: Picture, status: str) -> Document:
         "game": _game(picture.game), "vehicles": table, "alerts": _alerts(picture),
         "commands": [_command(command) for command in picture.commands[-6:]],
         "log": [line[0][0] for line in log_lines(picture)[-LOG_MOST:]],
-        "assessment": _assessment(picture), "aims": [_aim(v) for v in now.vehicles if v.decision is not None],
+        "situation": _situation(picture), "aims": [_aim(v) for v in now.vehicles if v.decision is not None],
         "wind": _wind(now),
     }  # fmt: skip
 
@@ -146,9 +151,9 @@ def detail(picture: Picture, selected: int | None) -> Document:
         return found
     found["lines"] = [list(line) for line in detail_lines(picture, selected)]
     vehicle = current(picture).vehicle(selected)
-    judged = picture.assessment
-    if vehicle is not None and vehicle.role is Role.EVADER and judged is not None and judged.word:
-        found["lines"].append([f"{judged.word}: {judged.why}", "bold"])
+    judged = picture.assessment_of(selected)
+    if judged is not None and (judged.word or judged.why):
+        found["lines"].append([": ".join(filter(None, (judged.word, judged.why))), "bold"])
     decision = vehicle.decision if vehicle else None
     if decision is not None:
         found["decision"] = {
@@ -180,6 +185,11 @@ def sentence(vehicle: VehicleView | None) -> str:
     return f"{who} aims at the marked place{meets}{miss}{clipped}.{part}"
 
 
+def _role(role: str, after: int | None) -> str:
+    """`pursuer`; where there are several evaders whom it is after: `pursuer of 12`."""
+    return f"{role} of {after}" if role and after else role
+
+
 def _game(game: GameView) -> Document:
     outcome = game.outcome
     return {
@@ -189,7 +199,10 @@ def _game(game: GameView) -> Document:
         "outcome": None if outcome is None else {
             "verdict": outcome.verdict.value, "captor": outcome.captor, "time": outcome.time,
             "smallest": _number(outcome.smallest_distance), "reason": outcome.reason,
+            "words": verdict_in_words(outcome),
         },
+        "quarries": [list(pair) for pair in game.quarries],
+        "out": [{"id": fate.id, "word": fate.verdict.value} for fate in game.fates if fate.out],
         "plan": _plan(game.plan),
     }  # fmt: skip
 
@@ -225,12 +238,20 @@ def _command(command: CommandView) -> Document:
     }  # fmt: skip
 
 
-def _assessment(picture: Picture) -> Document | None:
-    found = picture.assessment
-    if found is None:
+def _situation(picture: Picture) -> Document | None:
+    """What is judged of each evader in the game, and all of it in words."""
+    if not picture.assessments:
         return None
+    only = picture.assessments[0]
     return {
-        "words": _go(found), "captured": found.captured,
+        "words": _go(only) if only.alone else situation_in_words(picture, whole=True),
+        "evaders": [_assessment(found) for found in picture.assessments],
+    }
+
+
+def _assessment(found: AssessmentView) -> Document:
+    return {
+        "evader": found.evader, "captured": found.captured,
         "encircled": found.encircled, "gaps": [list(gap) for gap in found.gaps],
         "largest_gap_deg": degrees(found.largest_gap), "target_denied": found.target_denied,
         "prospects": [

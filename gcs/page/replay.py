@@ -76,7 +76,7 @@ class Opened(NamedTuple):
 
     player: Player
     last: Picture  # at the end
-    free: list[tuple[int, float]]  # each second: instant [ns], the widest free gap [rad]
+    free: dict[int, list[tuple[int, float]]]  # by evader, each second: instant [ns], its widest gap [rad]
 
 
 def opened(
@@ -84,13 +84,13 @@ def opened(
 ) -> Opened:
     """Play through a recording for its index. It takes a while: not on an event loop."""
     player = Player(recording, limits, version)
-    free: list[tuple[int, float]] = []
+    free: dict[int, list[tuple[int, float]]] = {}
 
     def look(share: float, picture: Picture) -> None:
         tell(share)
-        if picture.assessment is not None:
-            widest = 0.0 if picture.assessment.encircled else picture.assessment.largest_gap
-            free.append((picture.now_ns, widest))
+        for found in picture.assessments:
+            widest = 0.0 if found.encircled else found.largest_gap
+            free.setdefault(found.evader, []).append((picture.now_ns, widest))
 
     return Opened(player, player.index(look), free)
 
@@ -120,7 +120,7 @@ def marks_of(recording: Recording, opened: Opened, run: Run) -> Document:
     return {"what": "marks", "marks": marks, "zero_ms": round(zero_ms), "curves": curves(run, opened.free)}
 
 
-def curves(run: Run, free: list[tuple[int, float]]) -> list[Document]:
+def curves(run: Run, free: dict[int, list[tuple[int, float]]]) -> list[Document]:
     """Distances, speeds, the free band and rules over the time since t₀ [s], thinned for a screen."""
     found: list[Document] = []
     if gaps := run.gaps():
@@ -130,14 +130,19 @@ def curves(run: Run, free: list[tuple[int, float]]) -> list[Document]:
             for name, value in (("R", run.capture_radius), ("ρ", run.safety_distance))
             if value
         ]
-        found.append({"name": "distance to the evader", "unit": "m", "lines": lines, "levels": levels})
+        nearest = "nearest evader" if len(run.evaders) > 1 else "evader"
+        found.append({"name": f"distance to the {nearest}", "unit": "m", "lines": lines, "levels": levels})
     speeds = [_line(f.id, run, f.t, f.groundspeed) for f in run.flown.values() if len(f.t) > 1]
     if speeds:
         found.append({"name": "speed over ground", "unit": "m/s", "lines": speeds, "levels": []})
     if free:
-        times = np.array([(at_ns - run.t0_ns) / NS_PER_S for at_ns, _ in free])
-        line = _line(0, run, times, np.degrees([gap for _, gap in free]))
-        found.append({"name": "widest free gap of the evader", "unit": "°", "lines": [line], "levels": []})
+        alone = len(free) == 1
+        lines = []
+        for id, each in sorted(free.items()):
+            times = np.array([(at_ns - run.t0_ns) / NS_PER_S for at_ns, _ in each])
+            lines.append(_line(0 if alone else id, run, times, np.degrees([gap for _, gap in each])))
+        name = "widest free gap of " + ("the evader" if alone else "each evader")
+        found.append({"name": name, "unit": "°", "lines": lines, "levels": []})
     if run.rules:
         rows = [
             {"id": i, "bands": [[round(b.start, 2), round(b.end, 2), b.rule] for b in bands[:CURVE_POINTS]]}

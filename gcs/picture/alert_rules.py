@@ -30,6 +30,7 @@ from onboard.wire.bus.messages import (
     Role,
     Severity,
     SupervisorAction,
+    Triple,
 )
 
 InForce = Callable[[str], bool]
@@ -121,11 +122,14 @@ def _game(picture: Picture, limits: Thresholds) -> Iterator[Finding]:
         )  # fmt: skip
     if game.phase is Phase.RUNNING and game.setup is not None:
         heard = {track.id: track.age_s for track in picture.tracks}
+        out = {fate.id for fate in game.fates if fate.out}
+        several = sum(member.role is Role.EVADER for member in game.setup.roster) > 1
         for member in game.setup.roster:
             age = heard.get(member.id, float("inf"))
-            if member.role is Role.EVADER and age > limits.track_stale_s:
+            if member.role is Role.EVADER and age > limits.track_stale_s and member.id not in out:
+                whom = f"evader {member.id}" if several else "the evader"
                 yield Finding(
-                    "track_stale", member.id, WARNING, f"no track of the evader{_since(age)}",
+                    "track_stale", member.id, WARNING, f"no track of {whom}{_since(age)}",
                     "check the sensor: pursuers fly on prediction, then hold", 0.5,
                 )  # fmt: skip
 
@@ -320,10 +324,18 @@ def _separation(picture: Picture, in_force: InForce, limits: Thresholds) -> Iter
     if keep <= 0.0:
         return
     wide = keep * limits.separation_clear
-    flying = sorted(
-        (v.position, v.id) for v in picture.vehicles
-        if v.position is not None and v.role is Role.PURSUER and v.presence is Presence.PRESENT
-    )  # fmt: skip
+    for side in (Role.PURSUER, Role.EVADER):
+        flying = sorted(
+            (v.position, v.id) for v in picture.vehicles
+            if v.position is not None and v.role is side and v.presence is Presence.PRESENT
+        )  # fmt: skip
+        yield from _too_near(flying, keep, wide, in_force)
+
+
+def _too_near(
+    flying: list[tuple[Triple, int]], keep: float, wide: float, in_force: InForce
+) -> Iterator[Finding]:
+    """Pairs of one side that are nearer than `keep` [m], or not yet `wide` apart again; places ascending."""
     for index, (place, own) in enumerate(flying):
         for other_place, other in flying[index + 1 :]:
             if other_place[0] - place[0] > wide:

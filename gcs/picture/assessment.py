@@ -1,7 +1,7 @@
 """The core's assessment of each evader's situation, from what the picture knows.
 
-Every evader sees all pursuers, so its band is that between the cones of all of them. The bound on the number and
-the odds are of a game against one evader: of several they are told of those who are after it.
+Every evader sees all pursuers, so its band is that between the cones of all of them. The bound on the number
+and the odds are of a game against one evader: of several they are told of those who are after it.
 """
 
 from __future__ import annotations

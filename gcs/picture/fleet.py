@@ -16,8 +16,8 @@ from typing import Any
 from gcs.picture.current import HEALTH_OLD_S, MOTION_OLD_S
 from gcs.picture.plausible import plausible
 from gcs.picture.records import TrackRecord, VehicleRecord, age_s
-from gcs.picture.station_journal import HEARD_HERE, PRESENCE, REMARK, Presence, Remark
 from gcs.picture.several import fates, goals, quarries, verdict_in_words
+from gcs.picture.station_journal import HEARD_HERE, PRESENCE, REMARK, Presence, Remark
 from gcs.picture.team import Plans, counting
 from gcs.picture.values import GameView, LogLine, TrackView, VehicleView
 from onboard.core.math.constants import NS_PER_S
@@ -30,6 +30,7 @@ from onboard.wire.bus.messages import (
     LinkLock,
     Master,
     Outcome,
+    OwnBrief,
     Phase,
     PhaseChange,
     Quote,
@@ -65,7 +66,8 @@ class Fleet:
         self._phase: PhaseChange | None = None
         self._outcome: Outcome | None = None
         self._plans: Plans = {}
-        self._briefs: dict[int, EvaderBrief] = {}  # by evader; 0: where there is one
+        self._brief: EvaderBrief | None = None
+        self._own_briefs: dict[int, OwnBrief] = {}  # by evader, where there are several
         self._master: Master | None = None
         self._master_ns: int | None = None
         self._masters: dict[tuple[str, int], int] = {}
@@ -80,9 +82,7 @@ class Fleet:
             self.bad_ns = now_ns
             return None
         take = _TAKERS.get(heard.topic)
-        if heard.topic is topics.OWN_BRIEF and heard.id is not None:
-            self._briefs[heard.id] = heard.message
-        elif take is not None:
+        if take is not None:
             take(self, heard.message, now_ns)
         elif heard.topic.writers == OWN_WORD and heard.id is not None:
             self._life(heard.id, 0, now_ns)
@@ -193,11 +193,6 @@ class Fleet:
         if self._setup is None or setup.scenario_hash != self._setup.scenario_hash:
             who = f"{len(setup.roster)} vehicles, from {setup.master}"
             self._say(now_ns, 0, Severity.INFO, "setup", f"game {setup.scenario}: {who}")
-        else:
-            known = {fate.id for fate in fates(self._setup, None)}
-            for fate in fates(setup, None):
-                if fate.id not in known:
-                    self._say(now_ns, 0, Severity.INFO, "out", f"evader {fate.id} {fate.words}")
         self._setup = setup
         for member in setup.roster:
             if 1 <= member.id <= MOST_VEHICLES:
@@ -209,6 +204,10 @@ class Fleet:
         if self._phase is None or self._phase.phase is not phase.phase:
             reason = f": {phase.reason}" if phase.reason else ""
             self._say(now_ns, 0, Severity.INFO, "phase", f"game {phase.phase.value}{reason}")
+        known = {fate.id for fate in fates(None, self._phase, None)}
+        for fate in fates(None, phase, None):
+            if fate.id not in known:
+                self._say(now_ns, 0, Severity.INFO, "out", f"evader {fate.id} {fate.words}")
         self._phase = phase
 
     def _on_outcome(self, outcome: Outcome, now_ns: int) -> None:
@@ -219,7 +218,10 @@ class Fleet:
         self._outcome = outcome
 
     def _on_brief(self, brief: EvaderBrief, now_ns: int) -> None:
-        self._briefs[0] = brief
+        self._brief = brief
+
+    def _on_own_brief(self, brief: OwnBrief, now_ns: int) -> None:
+        self._own_briefs[brief.id] = brief
 
     def quote(self, id: int, now_ns: int) -> Quote:
         """What an order to a vehicle quotes, given now: its agent's state, and the newest word of the master,
@@ -285,9 +287,9 @@ class Fleet:
             t0_ns=t0_ns,
             time_s=(now_ns - t0_ns) / NS_PER_S if t0_ns else 0.0,
             outcome=outcome,
-            targets=goals(self._setup, self._briefs),
+            targets=goals(self._setup, self._brief, self._own_briefs),
             quarries=() if over else quarries(self._setup, plan, self._decided(now_ns)),
-            fates=fates(self._setup, outcome),
+            fates=fates(self._setup, phase, outcome),
             master=self._master,
             master_age_s=age_s(self._master_ns, now_ns),
             two_masters=alive > 1,
@@ -326,6 +328,7 @@ _TAKERS: dict[Topic[Any], Callable[[Fleet, Any, int], None]] = {
     topics.OUTCOME: Fleet._on_outcome,
     topics.MASTER: Fleet._on_master,
     topics.EVADER_BRIEF: Fleet._on_brief,
+    topics.OWN_BRIEF: Fleet._on_own_brief,
     topics.STATE: Fleet._on_state,
     topics.DECISION: Fleet._on_decision,
     topics.PLAN: Fleet._on_plan,

@@ -29,6 +29,7 @@ def _setup(setup: Setup) -> bool:
     lengths = (setup.rules.R, setup.rules.rho, setup.rules.separation)
     sizes = (*lengths, *(member.speed for member in setup.roster))
     goals = all(_places(*one.targets) for one in setup.targets)
+    goals = goals and (setup.target is None or _sane(*setup.target))
     return goals and _sane(*sizes) and min(sizes) >= 0.0
 
 

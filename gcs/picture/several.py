@@ -1,7 +1,7 @@
 """Whose target is where, who is after whom, and how it ended for each: from the messages of a game. Pure.
 
-With one evader there is nothing to tell apart: its target may be told before its id is, and nobody is said to be
-after it, for everybody is.
+With one evader there is nothing to tell apart: its target may be told before its id is, and nobody is said
+to be after it, for everybody is.
 """
 
 from __future__ import annotations
@@ -10,21 +10,49 @@ from collections.abc import Iterable, Mapping
 
 from gcs.picture.values import FateView, GoalView
 from onboard.game import sides
-from onboard.wire.bus.messages import EvaderBrief, Outcome, OutcomeResult, Setup
+from onboard.game.scenario import Scenario, targets_of
+from onboard.wire.bus.messages import (
+    EvaderBrief,
+    Outcome,
+    OutcomeResult,
+    OwnBrief,
+    PhaseChange,
+    Setup,
+    Triple,
+)
 from onboard.wire.bus.team_messages import TeamPlan
 
 
-def goals(setup: Setup | None, briefs: Mapping[int, EvaderBrief]) -> tuple[GoalView, ...]:
-    """The targets by evader: of the briefs (that of all evaders has the key 0), else those that pursuers know."""
-    found: dict[int, tuple[tuple[float, float, float], ...]] = {}
+def goals(
+    setup: Setup | None, brief: EvaderBrief | None, own: Mapping[int, OwnBrief]
+) -> tuple[GoalView, ...]:
+    """The targets by evader: of the briefs, where there are none those that pursuers know."""
+    found: dict[int, tuple[Triple, ...]] = {}
     if setup is not None:
         found = {one.id: one.targets for one in setup.targets}
         if setup.target is not None and not found:
             found = {first_evader(setup): (setup.target,)}
-    for id, brief in briefs.items():
+    if brief is not None:
         told = brief.targets or (() if brief.target is None else (brief.target,))
-        found[id or first_evader(setup)] = told
+        found[first_evader(setup)] = told
+    found |= {id: one.targets for id, one in own.items()}
     return tuple(GoalView(evader=id, place=place) for id, told in sorted(found.items()) for place in told)
+
+
+def planned(scenario: Scenario) -> tuple[GoalView, ...]:
+    """The targets by evader, as a scenario has them; those of a plane game at the height of its flight."""
+    down = -scenario.flight.height
+    return tuple(
+        GoalView(evader=id, place=(goal.x, goal.y, down if scenario.planar else goal.z))
+        for id, spec in zip(scenario.evader_ids, scenario.evading, strict=True)
+        for goal in targets_of(spec)
+    )
+
+
+def named(targets: tuple[GoalView, ...]) -> list[tuple[str, Triple]]:
+    """Each target with its name for people: `target`, of several evaders `target of 12`."""
+    several = len({goal.evader for goal in targets}) > 1
+    return [(f"target of {goal.evader}" if several else "target", goal.place) for goal in targets]
 
 
 def first_evader(setup: Setup | None) -> int:
@@ -51,10 +79,10 @@ def quarries(
     return tuple(sorted((id, quarry) for id, quarry in found.items() if quarry))
 
 
-def fates(setup: Setup | None, outcome: Outcome | None) -> tuple[FateView, ...]:
+def fates(setup: Setup | None, phase: PhaseChange | None, outcome: Outcome | None) -> tuple[FateView, ...]:
     """How it ended for each evader whose game is over."""
     found: dict[int, FateView] = {}
-    for one in (*(setup.out if setup is not None else ()), *(outcome.evaders if outcome is not None else ())):
+    for one in (*(phase.out if phase is not None else ()), *(outcome.evaders if outcome is not None else ())):
         found[one.id] = FateView(id=one.id, verdict=one.verdict, captor=one.captor, time_s=one.time)
     if outcome is not None and not outcome.evaders and (only := evaders_of(setup)):
         found[only[0]] = FateView(

@@ -6,7 +6,7 @@ from math import degrees
 
 from onboard.core.math.constants import NS_PER_S
 from onboard.pilot.team_seat import LEASE_S, OLD_S
-from onboard.wire.bus.team_messages import PlannedPart, TeamPlan
+from onboard.wire.bus.team_messages import PlannedBand, PlannedPart, TeamPlan
 
 Plans = dict[int, tuple[TeamPlan, int]]  # by planner, with when each came [ns]
 
@@ -33,10 +33,16 @@ def part_in_words(plan: TeamPlan, part: PlannedPart) -> str:
 
 
 def band_in_words(plan: TeamPlan) -> str:
-    """Whether the evader's band is closed, and who could close it, for people."""
-    if plan.closed:
-        return f"plan of {plan.id}: band closed"
-    said = f"plan of {plan.id}: way out {degrees(plan.gap):.0f}° at {degrees(plan.bearing) % 360.0:.0f}°"
-    if plan.closer and plan.closes >= 0.0:
-        said += f", {plan.closer} could close it by T+{plan.closes:.0f} s"
+    """Whether the evader's band is closed, and who could close it, for people; of several evaders of each."""
+    if plan.bands:
+        return f"plan of {plan.id}: " + "; ".join(f"E{one.quarry} {_band(one)}" for one in plan.bands)
+    return f"plan of {plan.id}: {_band(plan)}"
+
+
+def _band(band: TeamPlan | PlannedBand) -> str:
+    if band.closed:
+        return "band closed"
+    said = f"way out {degrees(band.gap):.0f}° at {degrees(band.bearing) % 360.0:.0f}°"
+    if band.closer and band.closes >= 0.0:
+        said += f", {band.closer} could close it by T+{band.closes:.0f} s"
     return said

@@ -12,7 +12,7 @@ from typing import Any
 
 from gcs.recording.file import Run, at_once
 from gcs.recording.foxglove import WORLD
-from onboard.game import palette
+from onboard.game import palette, sides
 from onboard.wire.bus.messages import Role
 
 LAYOUT = "foxglove-layout.json"
@@ -36,7 +36,7 @@ def called(id: int, roles: Mapping[int, Role]) -> str:
 
 def layout_of_viewer(ids: Iterable[int], roles: Mapping[int, Role]) -> bytes:
     """A file to import as a layout; its topics are those of these vehicles."""
-    ids = sorted(ids)
+    ids, shades = sorted(ids), sides.colours(roles)
     panels: dict[str, Any] = {
         "3D!scene": {
             "followTf": WORLD, "followMode": "follow-none",
@@ -45,9 +45,7 @@ def layout_of_viewer(ids: Iterable[int], roles: Mapping[int, Role]) -> bytes:
         },
         "map!field": {
             "customTileUrl": "", "followTopic": "", "layer": "map", "zoomLevel": 15,
-            "topicColors": {
-                location_topic(i): palette.vehicle(i, roles.get(i) is Role.EVADER).light for i in ids
-            },
+            "topicColors": {location_topic(i): shades.get(i, palette.FAINT).light for i in ids},
             "disabledTopics": [],
         },
         "Plot!heights": {

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 import msgspec
 
+from gcs.picture.several import goals, named, verdict_in_words
 from gcs.picture.station_journal import HEARD_HERE, REMARK, SENT, Remark, Sent
 from gcs.recording import foxglove as fox
 from gcs.recording.schemas import Layout
@@ -24,12 +25,12 @@ from onboard.wire.bus.messages import (
     EvaderBrief,
     Event,
     Outcome,
+    OwnBrief,
     PhaseChange,
     Role,
     Setup,
     Severity,
     State,
-    Triple,
 )
 from onboard.wire.geodesy import Frame
 
@@ -91,7 +92,8 @@ class Views:
         self._vehicles: dict[int, _Drawn] = {}
         self._setup: Setup | None = None
         self._frame: Frame | None = None
-        self._target: Triple | None = None
+        self._brief: EvaderBrief | None = None
+        self._own_briefs: dict[int, OwnBrief] = {}
         self._changed = False  # what does not move
         self.next_ns = 0
         self._drops: Counter[str] = Counter()
@@ -132,7 +134,10 @@ class Views:
         self._frame = Frame(setup.origin.latitude_deg, setup.origin.longitude_deg, setup.origin.altitude_m)
 
     def _on_brief(self, brief: EvaderBrief) -> None:
-        self._target, self._changed = brief.target, True
+        self._brief, self._changed = brief, True
+
+    def _on_own_brief(self, brief: OwnBrief) -> None:
+        self._own_briefs[brief.id], self._changed = brief, True
 
     def _on_event(self, event: Event) -> _Line:
         return _Line(LEVELS[event.severity], event.text, f"vehicle-{event.id}")
@@ -142,7 +147,7 @@ class Views:
         return _Line(INFO, f"game {phase.phase.value}{why}", "game")
 
     def _on_outcome(self, outcome: Outcome) -> _Line:
-        return _Line(INFO, f"evader {outcome.verdict.value} after {outcome.time:.1f} s", "game")
+        return _Line(INFO, f"{verdict_in_words(outcome)} after {outcome.time:.1f} s", "game")
 
     def _on_remark(self, remark: Remark) -> _Line:
         return _Line(LEVELS[remark.severity], remark.text, "station")
@@ -230,11 +235,12 @@ class Views:
 
     def _still(self, at: fox.Time) -> Iterator[fox.Entity]:
         """What does not move: target and fence."""
-        if self._target is not None:
-            place = fox.Pose(fox.enu(self._target))
+        for number, (name, goal) in enumerate(named(goals(self._setup, self._brief, self._own_briefs))):
+            place = fox.Pose(fox.enu(goal))
             ball = fox.Sphere(place, fox.Vector3(2.0, 2.0, 2.0), TARGET)
-            text = fox.Text(place, True, 14.0, True, TARGET, "target")
-            yield fox.Entity(timestamp=at, id="target", lifetime=FOREVER, spheres=(ball,), texts=(text,))
+            text = fox.Text(place, True, 14.0, True, TARGET, name)
+            id = f"target-{number}" if number else "target"
+            yield fox.Entity(timestamp=at, id=id, lifetime=FOREVER, spheres=(ball,), texts=(text,))
         if self._setup is not None and self._setup.fence is not None:
             fence = self._setup.fence
             loops = tuple(
@@ -273,6 +279,7 @@ def _cone(apex: fox.Vector3, north: float, east: float, down: float, half_angle:
 _TAKERS: dict[topics.Topic[Any], Callable[[Views, Any], _Line | None]] = {
     topics.SETUP: Views._on_setup,
     topics.EVADER_BRIEF: Views._on_brief,
+    topics.OWN_BRIEF: Views._on_own_brief,
     topics.EVENTS: Views._on_event,
     topics.PHASE: Views._on_phase,
     topics.OUTCOME: Views._on_outcome,

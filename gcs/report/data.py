@@ -7,15 +7,17 @@ frame (north, east, down) [m]; arrays have one row per sample.
 from __future__ import annotations
 
 import json
+from math import inf
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gcs.picture.values import Alert, CommandView, LogLine
+from gcs.picture.several import named
+from gcs.picture.values import Alert, CommandView, FateView, GoalView, LogLine
 from onboard.config.strict import ConfigError
-from onboard.game import palette
+from onboard.game import palette, sides
 from onboard.game import scenario as scenarios
 from onboard.game.scenario import Scenario
 from onboard.wire.bus.messages import Fence, Member, Outcome, Role, Setup, Triple
@@ -36,6 +38,10 @@ class Flown(NamedTuple):
     airspeed: Array  # (n,) [m/s], NaN where unknown
     wind: Array  # (n, 3) [m/s; where the air moves to], NaN where unknown
     latency: Array  # (n,) [s] from the stamp to arrival at the station, NaN where unknown
+
+    def at(self, t: Array) -> Array:
+        """(m, 3) its places at these instants, between its samples on straight lines [m; NED]."""
+        return np.column_stack([np.interp(t, self.t, self.position[:, axis]) for axis in range(3)])
 
     @property
     def groundspeed(self) -> Array:
@@ -62,7 +68,7 @@ class Band(NamedTuple):
 
 
 class Gap(NamedTuple):
-    """Distance between a pursuer and the evader."""
+    """Distance between a pursuer and the evader, of several the nearest one in the game."""
 
     id: int
     t: Array  # (n,)
@@ -77,8 +83,9 @@ class Run(NamedTuple):
     notes: tuple[str, ...]  # what is missing or damaged, one line each
     scenario: Scenario | None
     setup: Setup | None
-    target: Triple | None
+    targets: tuple[GoalView, ...]  # by evader
     outcome: Outcome | None
+    fates: tuple[FateView, ...]  # how it ended for each evader, as far as it was said; by id
     phases: tuple[tuple[float, str], ...]
     flown: dict[int, Flown]  # by id
     links: dict[int, Link]
@@ -98,16 +105,27 @@ class Run(NamedTuple):
 
     def colour(self, vehicle: int) -> str:
         """A vehicle's colour on white paper, `#rrggbb`: the same in every report."""
-        flown, member = self.flown.get(vehicle), self.member(vehicle)
-        role = flown.role if flown is not None else member.role if member is not None else Role.TRACKER
-        if role is Role.TRACKER:
-            return palette.FAINT.light
-        return palette.vehicle(vehicle, role is Role.EVADER).light
+        return sides.colours(self.roles).get(vehicle, palette.FAINT).light
 
     @property
-    def evader(self) -> Flown | None:
-        """The evader, as far as somebody saw it."""
-        return next((f for f in self.flown.values() if f.role is Role.EVADER), None)
+    def roles(self) -> dict[int, Role | None]:
+        """Everybody's role, by id: of those who flew and of the setup."""
+        roster = self.setup.roster if self.setup is not None else ()
+        return {**{m.id: m.role for m in roster}, **{f.id: f.role for f in self.flown.values()}}
+
+    @property
+    def evaders(self) -> tuple[Flown, ...]:
+        """The evaders by id, as far as somebody saw them."""
+        return tuple(self.flown[id] for id in sides.evaders(self.roles) if id in self.flown)
+
+    def fate_of(self, evader: int) -> FateView | None:
+        """How the game ended for an evader; None where nobody said so."""
+        return next((fate for fate in self.fates if fate.id == evader), None)
+
+    def end_of(self, evader: int) -> float:
+        """When an evader's game ended [s]; infinite where nobody said so."""
+        fate = self.fate_of(evader)
+        return inf if fate is None else fate.time_s
 
     @property
     def capture_radius(self) -> float | None:
@@ -145,8 +163,7 @@ class Run(NamedTuple):
     def extent(self) -> tuple[tuple[float, float], tuple[float, float]]:
         """North and east limits [m] of all that was flown and of the target, with a margin."""
         places = [f.position[:, :2] for f in self.flown.values() if len(f.t)]
-        if self.target is not None:
-            places.append(np.array([self.target[:2]]))
+        places += [np.array([goal.place[:2]]) for goal in self.targets]
         all_places = np.concatenate(places) if places else np.zeros((1, 2))
         low, high = all_places.min(axis=0), all_places.max(axis=0)
         margin = max(5.0, 0.06 * float((high - low).max()))
@@ -155,32 +172,42 @@ class Run(NamedTuple):
             (float(low[1]) - margin, float(high[1]) + margin),
         )
 
+    def named_targets(self) -> list[tuple[str, Triple]]:
+        """Each target with its name for people: `target`, of several evaders `target of 12`."""
+        return named(self.targets)
+
     def gaps(self) -> tuple[Gap, ...]:
-        """Distance of every pursuer to the evader over the time that both are known."""
-        evader = self.evader
-        if evader is None:
-            return ()
+        """Distance of every pursuer to the evader over the time that both are known; of several evaders to
+        the nearest one whose game is not over, after the game to the nearest one of all."""
+        evaders = [evader for evader in self.evaders if len(evader.t) > 1]
         found = []
         for other in self.flown.values():
-            if other.role is not Role.PURSUER or len(other.t) < 2 or len(evader.t) < 2:
+            if other.role is not Role.PURSUER or len(other.t) < 2 or not evaders:
                 continue
-            inside = (evader.t >= other.t[0]) & (evader.t <= other.t[-1])
-            t = evader.t[inside]
-            there = np.column_stack([np.interp(t, other.t, other.position[:, axis]) for axis in range(3)])
-            apart = there - evader.position[inside]
-            if self.flat:
-                apart = apart[:, :2]
-            found.append(Gap(other.id, t, np.linalg.norm(apart, axis=1)))
+            t = evaders[0].t if len(evaders) == 1 else other.t
+            t = t[(t >= other.t[0]) & (t <= other.t[-1])]
+            there = other.at(t)
+            apart = np.stack([self._apart(there - evader.at(t), t, evader) for evader in evaders])
+            over = np.stack([t > self.end_of(evader.id) for evader in evaders])
+            apart = np.where(over & ~over.all(axis=0), np.inf, apart).min(axis=0)
+            known = np.isfinite(apart)
+            found.append(Gap(other.id, t[known], apart[known]))
         return tuple(found)
+
+    def _apart(self, line: Array, t: Array, evader: Flown) -> Array:
+        """Lengths of lines (n, 3) at the instants `t` to an evader, infinite while it is not known."""
+        length = np.linalg.norm(line[:, :2] if self.flat else line, axis=1)
+        return np.where((t >= evader.t[0]) & (t <= evader.t[-1]), length, np.inf)
 
     def playing(self, t: Array) -> NDArray[np.bool_]:
         """Which of these instants lie within the game: from t₀ to the outcome."""
         inside: NDArray[np.bool_] = t >= 0.0
         return inside if self.outcome is None else inside & (t <= self.outcome.time)
 
-    def at_the_end(self, flown: Flown) -> int:
-        """The sample nearest to the outcome; the last one where there is none."""
-        return len(flown.t) - 1 if self.outcome is None else int(np.abs(flown.t - self.outcome.time).argmin())
+    def at_the_end(self, evader: Flown) -> int:
+        """The sample nearest to the end of an evader's game; the last one where nobody said so."""
+        end = self.end_of(evader.id)
+        return len(evader.t) - 1 if end == inf else int(np.abs(evader.t - end).argmin())
 
     def rule_names(self) -> list[str]:
         """Every rule that was in force, in order of first appearance."""
@@ -244,7 +271,7 @@ def beside(folder: Path) -> Beside:
     scenario = None
     if (folder / "scenario.toml").exists():
         try:
-            scenario = scenarios.load(folder / "scenario.toml")
+            scenario = scenarios.load(folder / "scenario.toml", several=True)
         except ConfigError as error:
             notes.append(str(error))
     found: dict[str, dict[str, Any]] = {}

@@ -27,7 +27,7 @@ from gcs.report.drawing import (
     style,
     timed,
 )
-from gcs.report.hindsight import missed_capture
+from gcs.report.hindsight import missed_captures
 from gcs.report.space import space
 from onboard.game import palette
 
@@ -37,7 +37,11 @@ MOST_BINS = 240  # stretches of time of which latencies are told
 def figures(run: Run) -> list[Drawing]:
     """All figures that the run has values for, in the page's order."""
     with style():
-        return [drawing for maker in MAKERS if (drawing := maker(run)) is not None]
+        found: list[Drawing] = []
+        for maker in MAKERS:
+            made = maker(run)
+            found += made if isinstance(made, list) else [made] if made is not None else []
+        return found
 
 
 def plan(run: Run) -> Drawing | None:
@@ -69,16 +73,19 @@ def plan(run: Run) -> Drawing | None:
                 str(vehicle), path[0], (5, 5), textcoords="offset points", color=colour, clip_on=True
             )
     note = "North is up; ids stand at the start (open circles), filled circles are the end of the recording."
-    evader, radius = run.evader, run.capture_radius
-    if evader is not None and radius is not None:
-        spot = evader.position[run.at_the_end(evader)]
-        axes.add_patch(Circle((spot[1], spot[0]), radius, fill=False, ec=palette.CAPTURE.light))
+    radius = run.capture_radius
+    if run.evaders and radius is not None:
+        for evader in run.evaders:
+            spot = evader.position[run.at_the_end(evader)]
+            axes.add_patch(Circle((spot[1], spot[0]), radius, fill=False, ec=palette.CAPTURE.light))
         label = f"capture radius R = {radius:g} m"
         axes.plot([], [], "o", mfc="none", mec=palette.CAPTURE.light, ms=9, ls="", label=label)
-        note += " The ring is the capture radius around the evader at the end of the game."
-    if run.target is not None:
-        north_target, east_target, _ = run.target
-        axes.plot(east_target, north_target, "*", color=palette.TARGET.light, ms=14, ls="", label="target")
+        each = "each evader at the end of its" if len(run.evaders) > 1 else "the evader at the end of the"
+        note += f" The ring is the capture radius around {each} game."
+    for name, place in run.named_targets():
+        axes.plot(place[1], place[0], "*", color=palette.TARGET.light, ms=14, ls="", label=name)
+        if len(run.targets) > 1:
+            axes.annotate(name, (place[1], place[0]), (6, -10), textcoords="offset points", clip_on=True)
     axes.set(xlabel="east [m]", ylabel="north [m]")
     axes.update_datalim([(west, south), (east, north)])
     axes.margins(0)
@@ -88,7 +95,7 @@ def plan(run: Run) -> Drawing | None:
 
 
 def distances(run: Run) -> Drawing | None:
-    """Distance of each pursuer to the evader."""
+    """Distance of each pursuer to the evader, of several to the nearest."""
     gaps = [gap for gap in run.gaps() if len(gap.t)]
     if not gaps:
         return None
@@ -103,7 +110,11 @@ def distances(run: Run) -> Drawing | None:
     axes.set_ylim(bottom=0)
     legend_below(figure, axes)
     note = f"{'Horizontal distance' if run.flat else 'Distance'} of each pursuer."
-    return Drawing("distances", "Distances to the evader", note, figure, (Panel(axes, "time", "m", series),))
+    several = len(run.evaders) > 1
+    if several:
+        note = f"{note[:-1]} to the nearest evader that is in the game."
+    title = "Distances to the nearest evader" if several else "Distances to the evader"
+    return Drawing("distances", title, note, figure, (Panel(axes, "time", "m", series),))
 
 
 def rules(run: Run) -> Drawing | None:
@@ -288,7 +299,8 @@ def _name_rows(axes: Any, run: Run, vehicles: list[int]) -> None:
     axes.grid(axis="y", visible=False)
 
 
-MAKERS: tuple[Callable[[Run], Drawing | None], ...] = (
-    plan, space, distances, missed_capture, rules, speeds, heights, wind, links, latencies,
+MAKERS: tuple[Callable[[Run], Drawing | list[Drawing] | None], ...] = (
+    plan, space, distances, missed_captures, rules, speeds, heights, wind, links, latencies,
 )  # fmt: skip
-NAMES = tuple(maker.__name__ for maker in MAKERS)
+NAMES = tuple(maker.__name__ for maker in MAKERS if maker is not missed_captures)
+NAMED_LIKE = ("missed_capture*",)  # patterns of the names of those of which there may be several

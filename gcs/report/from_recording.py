@@ -29,9 +29,9 @@ SILENCE_S = 1.0  # a rule is taken to be in force for so long after its last rep
 
 
 class _OpenBand:
-    def __init__(self, stamp_ns: int, rule: str, why: str) -> None:
+    def __init__(self, stamp_ns: int, rule: str, why: str, quarry: int) -> None:
         self.start_ns = self.end_ns = stamp_ns
-        self.rule, self.why = rule, why
+        self.rule, self.why, self.quarry = rule, why, quarry
 
     def closed(self, zero_ns: int) -> Band:
         """The band in seconds since the instant `zero_ns`."""
@@ -89,7 +89,8 @@ class _Collector:
     def _decision(self, decision: DecisionReport) -> None:
         vehicle = self._vehicle(decision.id)
         why = f"{decision.strategy}, {decision.level.value}, {decision.module.value}"
-        _extend(vehicle.bands, decision.stamp_ns, decision.rule, why)
+        why += f", after evader {decision.quarry}" if decision.quarry else ""
+        _extend(vehicle.bands, decision.stamp_ns, decision.rule, why, decision.quarry)
         guarded = "" if decision.supervisor is SupervisorAction.OK else decision.supervisor.value
         _extend(vehicle.guards, decision.stamp_ns, guarded, decision.reason)
 
@@ -98,13 +99,13 @@ class _Collector:
         self._vehicle(health.id).health.append((health.stamp_ns, health.link_quality, battery))
 
 
-def _extend(bands: list[_OpenBand], stamp_ns: int, rule: str, why: str) -> None:
+def _extend(bands: list[_OpenBand], stamp_ns: int, rule: str, why: str, quarry: int = 0) -> None:
     """One more report: the band goes on, or ends where another begins; silence ends it too."""
     fresh = bool(bands) and stamp_ns - bands[-1].end_ns < SILENCE_S * NS_PER_S
     if fresh:
         bands[-1].end_ns = stamp_ns
-    if not fresh or bands[-1].rule != rule:
-        bands.append(_OpenBand(stamp_ns, rule, why))
+    if not fresh or (bands[-1].rule, bands[-1].quarry) != (rule, quarry):
+        bands.append(_OpenBand(stamp_ns, rule, why, quarry))
 
 
 def from_recording(
@@ -141,8 +142,9 @@ def from_recording(
         notes=tuple(notes),
         scenario=files.scenario,
         setup=setup,
-        target=picture.game.target,
+        targets=picture.game.targets,
         outcome=collector.outcome,
+        fates=picture.game.fates,
         phases=tuple(((at - zero_ns) / NS_PER_S, phase) for at, phase in collector.phases),
         flown=flown,
         links=links,

@@ -8,10 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
+from gcs.picture.several import planned
 from gcs.report.data import Array, Beside, Flown, Link, Run, thinned
 from onboard.config.strict import ConfigError
 from onboard.core.math.constants import NS_PER_S
-from onboard.wire.bus.messages import Role, Triple
+from onboard.wire.bus.messages import Role
 from onboard.wire.geodesy import Frame
 from onboard.wire.mavlink.tlog import read_tlog
 from onboard.wire.mavlink.values import AirData, GlobalPosition, SysStatus, Wind
@@ -56,18 +57,15 @@ def from_tlogs(folder: Path, files: Beside, why: str) -> Run:
     flown = {i: thinned(_flown(i, roles[i], log, zero_ns, frame)) for i, log in logs.items()}
     links = {i: _link(log, zero_ns) for i, log in logs.items() if log.batteries}
     scenario = files.scenario
-    target: Triple | None = None
-    if scenario is not None and scenario.evader.target is not None:
-        north, east, *height = scenario.evader.target
-        target = (north, east, -(height[0] if height else scenario.flight.height))
     return Run(
         name=scenario.name if scenario is not None else folder.name,
         folder=folder if folder.is_dir() else folder.parent,
         notes=tuple(notes),
         scenario=scenario,
         setup=None,
-        target=target,
+        targets=planned(scenario) if scenario is not None else (),
         outcome=None,
+        fates=(),
         phases=(),
         flown=flown,
         links=links,
@@ -115,9 +113,9 @@ def _frame(files: Beside, logs: dict[int, _Log]) -> Frame:
 
 
 def _roles(files: Beside, logs: dict[int, _Log]) -> dict[int, Role]:
-    """Of the scenario's ids; by habit the evader is 1."""
-    evader = files.scenario.ids[0] if files.scenario is not None else 1
-    return {i: Role.EVADER if i == evader else Role.PURSUER for i in logs}
+    """Of the scenario; by habit the evader is 1."""
+    evaders = files.scenario.evader_ids if files.scenario is not None else (1,)
+    return {i: Role.EVADER if i in evaders else Role.PURSUER for i in logs}
 
 
 def _flown(vehicle: int, role: Role, log: _Log, zero_ns: int, frame: Frame) -> Flown:

@@ -1,4 +1,4 @@
-"""The figure that says why the evader was not captured."""
+"""The figures that say why an evader was not captured: one of each."""
 
 from __future__ import annotations
 
@@ -7,15 +7,20 @@ from matplotlib.figure import Figure
 
 from gcs.report import theme
 from gcs.report.data import Array, Flown, Run
-from gcs.report.drawing import INK, WIDTH, Drawing, Panel, curve, legend_below
+from gcs.report.drawing import WIDTH, Drawing, Panel, curve, legend_below
 from onboard.game.hindsight import Ways, missed
 from onboard.game.hindsight_sketch import Marks, draw_map, draw_moment, note
 from onboard.wire.bus.messages import OutcomeResult, Role
 
 
-def missed_capture(run: Run) -> Drawing | None:
+def missed_captures(run: Run) -> list[Drawing]:
+    """A figure of each evader that was not captured, as far as enough is known."""
+    return [found for evader in run.evaders if (found := _missed(run, evader)) is not None]
+
+
+def _missed(run: Run, evader: Flown) -> Drawing | None:
     """When it was too late, who could have met the evader last, and where; None after a capture."""
-    ways, ids = ways_of(run)
+    ways, ids = ways_of(run, evader)
     if ways is None:
         return None
     found = missed(ways)
@@ -23,9 +28,8 @@ def missed_capture(run: Run) -> Drawing | None:
     above, below = figure.subplots(2, 1, height_ratios=(2.2, 1.0))
     above.set_gid("a0")
     below.set_gid("a1")
-    evader = run.evader
-    own = INK if evader is None else run.colour(evader.id)
-    marks = Marks(ids, tuple(run.colour(id) for id in ids), own, run.target)
+    goals = tuple(goal.place for goal in run.targets if goal.evader in (evader.id, 0))
+    marks = Marks(ids, tuple(run.colour(id) for id in ids), run.colour(evader.id), goals)
     draw_map(above, ways, found, marks)
     series = tuple(curve(below, run, id, (found.instants, found.spare[:, k])) for k, id in enumerate(ids))
     for line in below.lines:
@@ -34,23 +38,25 @@ def missed_capture(run: Run) -> Drawing | None:
     below.set_xlabel(theme.clock(run))
     legend_below(figure, above)
     panels = (Panel(above, "plan", "m"), Panel(below, "time", "m", series))
-    return Drawing("missed_capture", "Why it was not captured", note(found, ids), figure, panels)
+    alone = len(run.evaders) == 1
+    name, whom = ("missed_capture", "it") if alone else (f"missed_capture_{evader.id}", f"evader {evader.id}")
+    return Drawing(name, f"Why {whom} was not captured", note(found, ids), figure, panels)
 
 
-def ways_of(run: Run) -> tuple[Ways | None, tuple[int, ...]]:
-    """The game as it was flown, in the air: None where the evader was captured, or too little is known."""
-    evader, setup, outcome = run.evader, run.setup, run.outcome
-    captured = outcome is not None and outcome.verdict is OutcomeResult.CAPTURED
-    if evader is None or setup is None or outcome is None or captured:
+def ways_of(run: Run, evader: Flown) -> tuple[Ways | None, tuple[int, ...]]:
+    """The game of an evader as it was flown, in the air, with all pursuers, for any could have met it: None
+    where it was captured, or too little is known."""
+    setup, fate = run.setup, run.fate_of(evader.id)
+    if setup is None or fate is None or fate.verdict is OutcomeResult.CAPTURED:
         return None, ()
     speeds = {member.id: member.speed for member in setup.roster}
     team = [f for f in run.flown.values() if f.role is Role.PURSUER and len(f.t) > 1 and speeds.get(f.id)]
-    inside = run.playing(evader.t)
+    inside = (evader.t >= 0.0) & (evader.t <= fate.time_s)
     t = evader.t[inside]
     if len(t) < 2 or not team or not speeds.get(evader.id):
         return None, ()
     drift = _drift(evader, t)
-    places = np.stack([_at(f, t) - drift for f in team])
+    places = np.stack([f.at(t) - drift for f in team])
     ids = tuple(f.id for f in team)
     return Ways(
         t,
@@ -61,10 +67,6 @@ def ways_of(run: Run) -> tuple[Ways | None, tuple[int, ...]]:
         float(setup.rules.R),
         run.flat,
     ), ids
-
-
-def _at(flown: Flown, t: Array) -> Array:
-    return np.column_stack([np.interp(t, flown.t, flown.position[:, axis]) for axis in range(3)])
 
 
 def _drift(evader: Flown, t: Array) -> Array:

@@ -34,6 +34,7 @@ def page(run: Run, drawings: list[Drawing]) -> str:
     """The whole file: the figures as SVG, the tables, the style sheet and the script."""
     tables = [
         ("glossary", "Glossary", GLOSSARY, glossary(run)),
+        ("evaders", "Evaders", "", evaders(run)),
         ("vehicles", "Vehicles", "", vehicles(run)),
         ("commands", "Commands", CONFIRMED, commands(run)),
         ("alerts", "Alerts", "", alerts(run)),
@@ -177,6 +178,8 @@ def facts(run: Run) -> str:
         found.append((f"{run.capture_radius:g} m", "capture radius R"))
     if run.safety_distance is not None:
         found.append((f"{run.safety_distance:g} m", "safety distance ρ"))
+    if len(run.evaders) > 1:
+        found.append((str(len(run.evaders)), "evaders"))
     pursuers = sum(f.role is Role.PURSUER for f in run.flown.values())
     found.append((str(pursuers), "pursuer" if pursuers == 1 else "pursuers"))
     worst = sum(alert.severity is Severity.ERROR for alert in run.alerts)
@@ -185,6 +188,29 @@ def facts(run: Run) -> str:
     )
     boxes = "".join(f"<div><b>{escape(value)}</b><span>{escape(what)}</span></div>" for value, what in found)
     return f"<div class='facts'>{boxes}</div>\n"
+
+
+def evaders(run: Run) -> str:
+    """How the game ended for each evader, where there are several."""
+    if len(run.evaders) < 2:
+        return ""
+    smallest = {one.id: one.smallest_distance for one in (run.outcome.evaders if run.outcome else ())}
+    rows = []
+    for flown in run.evaders:
+        fate, near = run.fate_of(flown.id), smallest.get(flown.id, -1.0)
+        goals = [goal.place for goal in run.targets if goal.evader == flown.id]
+        rows.append(
+            [
+                _dot(run.colour(flown.id)) + escape(run.role_of(flown.id)),
+                escape("; ".join(f"{n:.0f}, {e:.0f}, {-d:.0f}" for n, e, d in goals)) or "none",
+                fate.verdict.value if fate is not None else "not told",
+                f"pursuer {fate.captor}" if fate is not None and fate.captor else "",
+                f"{fate.time_s:.1f}" if fate is not None else "",
+                f"{near:.2f}" if near >= 0.0 else "",
+            ]
+        )
+    heads = ["evader", "targets: north, east, up m", "how it ended", "by", "at s", "nearest pursuer m"]
+    return _table(heads, rows, numbers=(4, 5))
 
 
 def vehicles(run: Run) -> str:
@@ -211,7 +237,7 @@ def vehicles(run: Run) -> str:
                 {"state": "its own state", "track": "tracks alone", "tlog": "telemetry log"}[flown.source],
             ]
         )
-    heads = ["vehicle", "strategy", "declared m/s", "mean over ground m/s", "nearest to evader m"]
+    heads = ["vehicle", "strategy", "declared m/s", "mean over ground m/s", "nearest to an evader m"]
     heads += ["age ms, median / 99 %", "battery %", "known from"]
     return _table(heads, rows, numbers=(2, 3, 4, 5, 6))
 

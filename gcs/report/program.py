@@ -10,7 +10,7 @@ from gcs.recording.reader import Recording
 from gcs.recording.shell import RECORDING
 from gcs.report.data import Run, beside
 from gcs.report.drawing import write_png
-from gcs.report.figures import NAMES, figures
+from gcs.report.figures import NAMED_LIKE, NAMES, figures
 from gcs.report.from_recording import from_recording
 from gcs.report.from_tlog import from_tlogs
 from gcs.report.page import page
@@ -70,8 +70,9 @@ def write_report(
     html, room = folder / f"{before}{PAGE}", folder / f"{before}{FIGURES}"
     try:
         room.mkdir(exist_ok=True)
-        for name in NAMES:
-            (room / f"{name}.png").unlink(missing_ok=True)  # of an earlier report
+        for name in (*NAMES, *NAMED_LIKE):
+            for old in room.glob(f"{name}.png"):
+                old.unlink()  # of an earlier report
         drawings = figures(values)
         write_whole(html, page(values, drawings).encode())
         pictures = [room / f"{drawing.name}.png" for drawing in drawings]

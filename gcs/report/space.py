@@ -67,10 +67,10 @@ def space(run: Run) -> Drawing | None:
         scene.line(way, color=colour, lw=1.9, label=run.role_of(vehicle))
         scene.mark(way[0], "o", color=colour, mfc=PAPER, ms=5)
         scene.mark(way[-1], "o", color=colour, ms=6)
-    if run.target is not None:
-        target = _upright(np.array([run.target]))[0]
+    for name, place in run.named_targets():
+        target = _upright(np.array([place]))[0]
         scene.line(np.array([target * (1, 1, 0) + (0, 0, low), target]), color=FAINT, lw=0.8, ls=":")
-        scene.mark(target, "*", color=palette.TARGET.light, ms=13, ls="", label="target")
+        scene.mark(target, "*", color=palette.TARGET.light, ms=13, ls="", label=name)
     legend_below(figure, axes)
     note = "Open circles are the start, filled circles the end; faint lines are shadows on the floor."
     if box.stretch > 1.0:
@@ -106,7 +106,8 @@ def _box(run: Run) -> Box:
     """All that was flown, the target and the floor; the drawing is as high as the first view needs."""
     (south, north), (west, east) = run.extent
     heights = np.concatenate([-f.position[:, 2] for f in run.flown.values()])
-    top = max(float(heights.max()), -run.target[2] if run.target is not None else 0.0)
+    goals = [goal.place for goal in run.targets]
+    top = max([float(heights.max()), *(-goal[2] for goal in goals)] if goals else [float(heights.max()), 0.0])
     low = np.array([west, south, min(0.0, float(heights.min()))])
     high = np.array([east, north, max(top, low[2] + 1.0)])
     wide = max(east - west, north - south)
@@ -114,7 +115,7 @@ def _box(run: Run) -> Box:
     width = WIDTH * POINTS
     floor_corners = [(e, n, low[2]) for e in (west, east) for n in (south, north)]
     ways = [_upright(np.array(thin(f.position, 40))) for f in run.flown.values()]
-    ends = [(west, south, high[2])] + ([tuple(_upright(np.array([run.target]))[0])] if run.target else [])
+    ends = [(west, south, high[2]), *(tuple(_upright(np.array([goal]))[0]) for goal in goals)]
     around = np.round(np.concatenate([floor_corners, ends, *ways]), 2)
     loose = Box(low, high, stretch, around, (width, 1e6))
     needed = float(np.ptp(projected(around, loose, HEADING, ELEVATION)[:, 1])) + 2.0 * MARGIN[1]

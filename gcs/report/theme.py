@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from gcs.picture.several import verdict_in_words
 from gcs.picture.terminal_text import printable
 from gcs.report.data import Run
 from onboard.core.route.choice import CHOICE, ChoiceRule
@@ -63,6 +64,8 @@ def verdict(run: Run) -> str:
     if outcome is None:
         told = run.summary.get("verdict") or run.summary.get("outcome")
         return f"Outcome: {told}" if isinstance(told, str) else "No outcome was recorded"
+    if len(outcome.evaders) > 1:
+        return f"{verdict_in_words(outcome)} after {outcome.time:.1f} s"
     who = f" by pursuer {outcome.captor}" if outcome.captor else ""
     return f"Evader {outcome.verdict.value}{who} after {outcome.time:.1f} s"
 

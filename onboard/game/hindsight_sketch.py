@@ -25,7 +25,7 @@ class Marks(NamedTuple):
     ids: tuple[int, ...]  # of the pursuers, in order
     colours: tuple[str, ...]  # theirs
     evader: str
-    target: tuple[float, float, float] | None  # [m; NED]
+    targets: tuple[tuple[float, float, float], ...]  # [m; NED]
 
 
 def note(found: Missed, ids: tuple[int, ...]) -> str:
@@ -50,9 +50,9 @@ def draw_map(axes: Any, ways: Ways, found: Missed, marks: Marks) -> None:
     if found.who >= 0:
         axes.plot(found.place[1], found.place[0], "X", color=palette.CAPTURE.light, ms=10, ls="",
                   label="where the last chance was")  # fmt: skip
-    if marks.target is not None:
-        north, east, _ = marks.target
-        axes.plot(east, north, "*", color=palette.TARGET.light, ms=14, ls="", label="target")
+    for k, (north, east, _) in enumerate(marks.targets):
+        label = "" if k else "target" if len(marks.targets) == 1 else "targets"
+        axes.plot(east, north, "*", color=palette.TARGET.light, ms=14, ls="", label=label)
     axes.set(xlabel="east [m]", ylabel="north [m]")
     wide = max(float(np.ptp(ways.pursuers[:, at, axis])) for axis in range(2))
     wide = 0.6 * wide + float(ways.speeds.max()) * max(0.0, late) + 2.0 * ways.R

@@ -238,15 +238,15 @@ def of_the_rest(captured: Estimate, arrived: Estimate) -> Estimate:
 
 
 def one_each(evaders: int, targets: int) -> str:
-    """Why the table says nothing of a game with so many evaders, of which one has so many targets; "": it may."""
+    """Why the table says nothing of so many evaders, of which one has so many targets; "": it may."""
     if evaders > 1:
         return f"evaders: found {evaders}, the table's games have 1"
     return f"targets: found {targets}, the table's games have 1" if targets > 1 else ""
 
 
 def odds(s: Situation, *, changes: bool = True, beyond: str = "") -> Odds:
-    """Bound, band, table, and with `changes` what would change it; the table says nothing where it is known to
-    be `beyond` it. There must be a pursuer that is fit."""
+    """Bound, band, table, and with `changes` what would change it; the table says nothing where it is known
+    to be `beyond` it. There must be a pursuer that is fit."""
     way = way_out(s)
     slowest = min(member.vehicle.speed for member in s.team if member.fit)
     pitch = 0.0

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from onboard.game import palette
 from onboard.game.hindsight import Ways, in_words, missed
 from onboard.game.hindsight_sketch import Marks, draw_map, draw_moment
-from onboard.game.scenario import Scenario, vec
+from onboard.game.scenario import Scenario, targets_of
 from onboard.runtime.whole_files import whole_or_nothing
 from sim_bridge.campaign.plane_in_wind import climate_of, wind_at
 
@@ -40,10 +40,9 @@ def why_not(scenario: Scenario, ways: Ways, path: Path) -> str:
     """
     found = missed(ways)
     ids = tuple(scenario.ids[1:])
-    goal = scenario.evader.target
-    target = None if goal is None else vec(goal)
+    targets = tuple((goal.x, goal.y, goal.z) for goal in targets_of(scenario.evader))
     colours = tuple(palette.vehicle(id, False).light for id in ids)
-    marks = Marks(ids, colours, palette.vehicle(scenario.ids[0], True).light, target)
+    marks = Marks(ids, colours, palette.vehicle(scenario.ids[0], True).light, targets)
     figure = Figure(figsize=(9.0, 7.6), layout="constrained")
     FigureCanvasAgg(figure)
     above, below = figure.subplots(2, 1, height_ratios=(2.2, 1.0))

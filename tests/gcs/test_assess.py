@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from gcs.picture.assessment import engagement_in
+from gcs.picture.assessment import engagements_in
 from gcs.picture.reducer import PictureReducer
 from gcs.programs import assess_file
 from onboard.game.odds import features
@@ -26,8 +26,7 @@ def test_the_game_on_the_bus_is_the_same_engagement() -> None:
         reducer.apply(item.key, item.payload, item.stamp_ns)
         now = item.stamp_ns
     picture = reducer.picture(now)
-    found = engagement_in(picture.game, picture.vehicles, picture.tracks)
-    assert found is not None
+    (found,) = engagements_in(picture.game, picture.vehicles, picture.tracks).values()
     assert len(found.team) >= 1
     assert found.evader.speed > 0.0
     if found.target.exists:

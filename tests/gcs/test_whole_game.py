@@ -60,8 +60,8 @@ async def test_the_picture_of_a_running_game_is_whole_and_calm():
         assert picture.game.setup is not None
         assert picture.game.setup.scenario == "chase"
         assert {t.id for t in picture.tracks} == {1, 2, 3, 4, 5, 6}
-        assert picture.assessment is not None
-        assert len(picture.assessment.prospects) == 5
+        (judged,) = picture.assessments
+        assert len(judged.prospects) == 5
         assert picture.alerts == ()
         assert picture.dropped == ()
 

@@ -153,11 +153,9 @@ setInterval(watch, 200);
 function drawBoard(board) {
   const { game } = board;
   $("game").textContent = game.scenario || (game.phase ? game.name : `game ${game.name}: no master heard`);
-  $("phase").textContent = game.outcome
-    ? `evader ${game.outcome.verdict}${game.outcome.captor ? ` by ${game.outcome.captor}` : ""}`
-    : game.phase.toUpperCase();
+  $("phase").textContent = game.outcome ? game.outcome.words : game.phase.toUpperCase();
   $("clock").textContent = game.clock;
-  $("odds").textContent = board.assessment && !game.outcome ? board.assessment.words : "";
+  $("odds").textContent = board.situation && !game.outcome ? board.situation.words : "";
   $("plan").textContent = game.plan ? game.plan.words : "";
   $("status").textContent = board.status;
   table.setRows(board.vehicles, page.colours);

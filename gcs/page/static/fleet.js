@@ -3,6 +3,7 @@ import {
   BufferAttribute, BufferGeometry, ConeGeometry, DynamicDrawUsage, Group, InstancedMesh, LineBasicMaterial,
   LineSegments, MeshBasicMaterial, MeshLambertMaterial, Object3D, SphereGeometry, BoxGeometry, CylinderGeometry,
 } from "three";
+import { isEvader, knowEvaders } from "colours";
 import { tint } from "paint";
 import { Trails } from "trails";
 
@@ -29,10 +30,11 @@ export class Fleet {
     this.trails = new Trails();
     this.group.add(this.trails.lines);
     this.vehicles = [];
-    this.evaders = new Set(); // their ids
+    this.out = new Set(); // ids of evaders that are out of the game
     this.tracks = [];
     this.one = new Object3D();
     this.one.rotation.order = "YXZ";
+    this.expected = []; // ids of evaders, by the setup
     this.grow(16);
   }
 
@@ -85,7 +87,7 @@ export class Fleet {
   colourOf(key) {
     const id = Number(key.slice(1));
     if (key[0] === "t") return this.colours.faint;
-    return this.colours.vehicle(id, this.evaders.has(id) || id === 1);
+    return this.colours.vehicle(id, isEvader(id));
   }
 
   // Show these; `scale(x, y, z)` is the size of a body there [m].
@@ -94,10 +96,8 @@ export class Fleet {
     const need = Math.max(vehicles.length + tracks.length, tracks.length);
     if (need > this.capacity) this.grow(Math.max(need, 2 * this.capacity));
     const counts = { evader: 0, pursuer: 0, tracker: 0 };
-    const evaders = new Set(vehicles.filter((v) => roles[v.role] === "evader").map((v) => v.id));
-    const known = evaders.size === this.evaders.size && [...evaders].every((id) => this.evaders.has(id));
-    this.evaders = evaders;
-    if (!known) this.trails.setColour(this.trails.colour);
+    const evaders = [...vehicles.filter((v) => roles[v.role] === "evader").map((v) => v.id), ...this.expected];
+    if (knowEvaders(new Set(evaders))) this.trails.setColour(this.trails.colour);
     for (const v of vehicles) {
       const kind = counts[roles[v.role]] === undefined ? "pursuer" : roles[v.role];
       const mesh = this.meshes[kind];
@@ -106,7 +106,7 @@ export class Fleet {
       this.one.scale.setScalar(scale(v.x, v.y, v.z));
       this.one.updateMatrix();
       mesh.setMatrixAt(counts[kind], this.one.matrix);
-      mesh.setColorAt(counts[kind], tint(v.fed ? this.colours.vehicle(v.id, kind === "evader") : this.colours.faint));
+      mesh.setColorAt(counts[kind], tint(v.fed && !this.out.has(v.id) ? this.colours.vehicle(v.id, kind === "evader") : this.colours.faint));
       counts[kind] += 1;
     }
     for (const kind of Object.keys(counts)) {
@@ -121,7 +121,6 @@ export class Fleet {
 
   showTracks(tracks, scale) {
     const mesh = this.meshes.track;
-    const shade = tint(this.colours.evader);
     tracks.forEach((t, i) => {
       const least = 0.25 * scale(t.x, t.y, t.z);
       this.one.position.set(t.x, t.y, t.z);
@@ -130,7 +129,7 @@ export class Fleet {
       this.one.scale.set(radius(t.sx), radius(t.sy), radius(t.sz));
       this.one.updateMatrix();
       mesh.setMatrixAt(i, this.one.matrix);
-      mesh.setColorAt(i, shade);
+      mesh.setColorAt(i, tint(this.colours.vehicle(t.id, true)));
     });
     mesh.count = tracks.length;
     mesh.instanceMatrix.needsUpdate = true;

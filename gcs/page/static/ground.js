@@ -4,7 +4,7 @@ import {
   LineBasicMaterial, LineDashedMaterial, LineLoop, LineSegments, Mesh, RingGeometry, SphereGeometry, Vector3,
 } from "three";
 import { place } from "frames";
-import { dashes, paint, plain, tint, veil } from "paint";
+import { dashes, dots, paint, plain, tint, veil } from "paint";
 
 function points(list) {
   const geometry = new BufferGeometry();
@@ -62,7 +62,9 @@ export class Ground {
   constructor() {
     this.group = new Group();
     this.still = new Group();
-    this.near = new Group(); // spheres around the evader
+    this.near = new Group(); // spheres around evaders
+    this.evaders = new Map(); // where they are
+    this.chases = new Group();
     this.chosen = new Group(); // of the selected vehicle
     const aiming = new LineDashedMaterial({ vertexColors: true, transparent: true, dashSize: 1, gapSize: 0.6 });
     this.aims = new LineSegments(new BufferGeometry(), aiming); // in one drawing, whatever their number
@@ -72,7 +74,7 @@ export class Ground {
     this.gaps = new Group();
     this.fans = new Group();
     this.expected = []; // places at the fans' marks, for labels
-    this.group.add(this.still, this.near, this.chosen, this.aims, this.gaps, this.fans);
+    this.group.add(this.still, this.near, this.chosen, this.aims, this.chases, this.gaps, this.fans);
   }
 
   setColours(colours) {
@@ -92,10 +94,8 @@ export class Ground {
     grid.material = paint(`grid ${colours.dark}`, () => new LineBasicMaterial({ vertexColors: true, transparent: true, opacity: colours.dark ? 0.5 : 0.9 }));
     this.still.add(grid);
     if (field.fence) this.drawFence(field.fence);
-    if (field.target) this.drawTarget(field);
-    if (field.capture) this.near.add(this.shell(field.capture, colours.capture, field.planar, false));
-    if (field.safety) this.near.add(this.shell(field.safety, colours.safety, field.planar, true));
-    this.near.visible = false;
+    for (const goal of field.targets) this.drawTarget(field, goal.place);
+    this.setEvaders(this.evaders);
   }
 
   shell(radius, colour, planar, dashed) {
@@ -119,8 +119,8 @@ export class Ground {
     });
   }
 
-  drawTarget(field) {
-    const [x, y, z] = place(field.target);
+  drawTarget(field, goal) {
+    const [x, y, z] = place(goal);
     const { colours } = this;
     const radius = Math.max(field.capture || 0, this.reach / 60);
     const disc = new Mesh(new RingGeometry(radius * 0.7, radius, 48), veil(colours.target, 0.9));
@@ -133,11 +133,32 @@ export class Ground {
     }
   }
 
-  // Where the evader is, for its spheres; null where unknown.
-  setEvader(at) {
-    this.near.visible = at !== null;
-    if (at) this.near.position.set(...at);
-    this.evader = at;
+  // Where evaders are, by id, for their spheres.
+  setEvaders(evaders) {
+    this.evaders = evaders;
+    if (!this.field || !this.colours) return;
+    const { capture, safety, planar } = this.field;
+    while (this.near.children.length < evaders.size) {
+      const spheres = new Group();
+      if (capture) spheres.add(this.shell(capture, this.colours.capture, planar, false));
+      if (safety) spheres.add(this.shell(safety, this.colours.safety, planar, true));
+      this.near.add(spheres);
+    }
+    const places = [...evaders.values()];
+    this.near.children.forEach((spheres, i) => {
+      spheres.visible = i < places.length;
+      if (spheres.visible) spheres.position.set(...places[i]);
+    });
+  }
+
+  // Thin lines from each pursuer to the evader that it is after, where there are several.
+  setChases(after, where) {
+    clear(this.chases);
+    for (const [id, evader] of after) {
+      const [from, to] = [where.get(id), where.get(evader) || this.evaders.get(evader)];
+      if (!from || !to) continue;
+      this.chases.add(dashed(new Line(points([from, to]), dots(this.colours.vehicle(evader, true))), this.reach / 150));
+    }
   }
 
   // All aims in one drawing; that of the selected vehicle is opaque, and its place marked.
@@ -178,12 +199,17 @@ export class Ground {
     this.aims.geometry = geometry;
   }
 
-  setGaps(assessment) {
+  setGaps(judged) {
     clear(this.gaps);
-    if (!assessment || !this.evader || !this.field) return;
+    if (!this.field) return;
+    for (const { evader, gaps } of judged) {
+      if (this.evaders.has(evader)) this.drawGaps(gaps, this.evaders.get(evader));
+    }
+  }
+
+  drawGaps(gaps, [x, y, z]) {
     const radius = Math.max((this.field.safety || 0) * 1.6, this.reach / 12);
-    const [x, y, z] = this.evader;
-    for (const [start, width] of assessment.gaps) {
+    for (const [start, width] of gaps) {
       const ring = new RingGeometry(radius * 0.82, radius, 48, 1, Math.PI / 2 - start - width, width);
       const mesh = new Mesh(ring, veil(this.colours.free, 0.55));
       mesh.rotation.x = -Math.PI / 2;
@@ -197,8 +223,8 @@ export class Ground {
     clear(this.fans);
     this.expected = [];
     if (!this.colours) return;
-    const colour = this.colours.evader;
     for (const fan of fans) {
+      const colour = this.colours.vehicle(fan.id, true);
       const way = fan.rows.map(([after, n, e, d, sigma]) => ({ after, sigma, at: place([n, e, d]) }));
       this.fans.add(new Line(points(way.map((each) => each.at)), plain(colour)));
       for (const times of [1, 2]) this.fans.add(new Mesh(strip(way, times), veil(colour, 0.16)));

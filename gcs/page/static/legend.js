@@ -22,15 +22,16 @@ const sector = (fill) => [["path", { d: "M3 8L31 1V15Z", fill, "fill-opacity": 0
 export function entries(c) {
   const [evader, pursuer] = [c.vehicle(1, true), c.vehicle(2, false)];
   return [
-    [[["path", { d: "M10 1L24 8L10 15Z", fill: evader }]], "evader, nose ahead; pursuers: other colours"],
+    [[["path", { d: "M10 1L24 8L10 15Z", fill: evader }]], "evader, nose ahead; grey: out of the game; pursuers: other colours"],
     [[line(pursuer)], "way flown; the thin line down is the height"],
     [[line(pursuer, "3 3")], "aim of the rule in force"],
-    [[ring(c.target, 6), ["path", { d: "M11 8H23M17 2V14", stroke: c.target }]], "target of the evader"],
+    [[line(evader, "1 3")], "of several evaders: who is after which"],
+    [[ring(c.target, 6), ["path", { d: "M11 8H23M17 2V14", stroke: c.target }]], "target of an evader"],
     [[ring(c.capture, 4), ring(c.safety, 7, "3 2")], "capture radius R; dashed: safety distance ρ"],
-    [[ring(evader, 4), ring(evader, 7, "3 2")], "evader after 1, 2, 4 s: 1σ; dashed: 2σ"],
+    [[ring(evader, 4), ring(evader, 7, "3 2")], "an evader after 1, 2, 4 s: 1σ; dashed: 2σ"],
     [[ring(c.apollonius, 7)], "Apollonius: both can be there at one time"],
     [sector(c.cone), "headings blocked for the selected vehicle"],
-    [[["path", { d: "M5 12A13 13 0 0 1 29 12", stroke: c.free, "stroke-width": 4, "stroke-opacity": 0.6 }]], "ways out of the evader: its free headings"],
+    [[["path", { d: "M5 12A13 13 0 0 1 29 12", stroke: c.free, "stroke-width": 4, "stroke-opacity": 0.6 }]], "ways out of an evader: its free headings"],
     [[["rect", { x: 3, y: 3, width: 28, height: 10, stroke: c.fence, "stroke-width": 1.6 }]], "fence"],
   ];
 }

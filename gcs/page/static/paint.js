@@ -17,5 +17,7 @@ export const veil = (colour, opacity) => paint(
   () => new MeshBasicMaterial({ color: colour, transparent: true, opacity, side: DoubleSide, depthWrite: false }),
 );
 
+export const dots = (colour) => paint(`dots ${colour}`, () => new LineDashedMaterial({ color: colour, dashSize: 0.3, gapSize: 1, transparent: true, opacity: 0.75 }));
+
 // For lines whose `lineDistance` is counted in dashes.
 export const dashes = (colour) => paint(`dashes ${colour}`, () => new LineDashedMaterial({ color: colour, dashSize: 1, gapSize: 0.65 }));

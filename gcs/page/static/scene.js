@@ -8,6 +8,7 @@ import { Fleet } from "fleet";
 import { Ground, round } from "ground";
 import { place } from "frames";
 import { Names } from "names";
+import { severalEvaders } from "colours";
 
 const BODY_PX = 22; // length of a vehicle on the screen, where that is more than
 const BODY_M = 2; // its length in the world
@@ -104,6 +105,7 @@ export class Scene {
 
   setField(field) {
     this.field = field;
+    this.fleet.expected = (field.roster || []).filter(({ role }) => role === "evader").map(({ id }) => id);
     this.ground.setField(field, this.reach);
     this.fitted = false;
     this.dirty = true;
@@ -124,8 +126,7 @@ export class Scene {
     for (const v of frame.vehicles) if (v.fed) trails.extend(`v${v.id}`, this.where.get(v.id));
     for (const t of frame.tracks) if (t.age < OLD_S) trails.extend(`t${t.id}`, [t.x, t.y, t.z]);
     trails.end(frame.ms);
-    const evader = frame.vehicles.find((v) => roles[v.role] === "evader") || frame.tracks[0];
-    this.ground.setEvader(evader ? [evader.x, evader.y, evader.z] : null);
+    this.ground.setEvaders(this.evaders());
     if (!this.fitted && frame.vehicles.length) this.fit();
     if (this.following !== null) this.follow();
     this.fleet.show(frame.vehicles, frame.tracks, (x, y, z) => this.bodySize(x, y, z), roles);
@@ -133,11 +134,27 @@ export class Scene {
     this.dirty = true;
   }
 
+  // Where the evaders in the game are, by id: by their own word, else by their tracks.
+  evaders() {
+    const { vehicles, tracks } = this.frame;
+    const told = vehicles.filter((v) => this.roles[v.role] === "evader");
+    const seen = told.length ? tracks.filter((t) => this.fleet.expected.includes(t.id)) : tracks;
+    const found = new Map([...seen, ...told].map((v) => [v.id, [v.x, v.y, v.z]]));
+    const playing = [...found].filter(([id]) => !this.fleet.out.has(id));
+    return playing.length ? new Map(playing) : found;
+  }
+
   setBoard(board) {
     this.board = board;
-    this.parts = new Map(((board.game && board.game.plan && board.game.plan.parts) || []).map((part) => [part.id, part.role]));
+    const game = board.game || {};
+    this.out = new Map((game.out || []).map(({ id, word }) => [id, word]));
+    this.fleet.out = severalEvaders() ? new Set(this.out.keys()) : new Set();
+    this.after = new Map(game.quarries || []);
+    if (this.frame) this.ground.setEvaders(this.evaders());
+    this.parts = new Map(((game.plan && game.plan.parts) || []).map((part) => [part.id, part.role]));
     this.ground.setAims(this.shown.aims ? board.aims : [], this.where, this.selected);
-    this.ground.setGaps(this.shown.shapes ? board.assessment : null);
+    this.ground.setChases(this.shown.aims ? this.after : new Map(), this.where);
+    this.ground.setGaps(this.shown.shapes && board.situation ? board.situation.evaders : []);
     this.wait();
   }
 
@@ -195,7 +212,7 @@ export class Scene {
   fit() {
     const places = [...this.where.values()];
     if (this.frame) for (const t of this.frame.tracks) places.push([t.x, t.y, t.z]);
-    if (this.field && this.field.target) places.push(place(this.field.target));
+    if (this.field) for (const goal of this.field.targets) places.push(place(goal.place));
     if (!places.length && this.field && this.field.fence) {
       for (const [n, e] of this.field.fence.polygon) places.push([e, 0, -n]);
     }
@@ -307,9 +324,7 @@ export class Scene {
     for (const v of crowd ? [...vehicles.filter(first), ...vehicles.filter((v) => !first(v))] : vehicles) {
       const at = this.onScreen(v.x, v.y, v.z);
       if (!at) continue;
-      const evader = this.roles[v.role] === "evader";
-      const part = evader ? "evader" : (this.parts && this.parts.get(v.id)) || "";
-      const name = part ? `${v.id} ${part}` : String(v.id);
+      const name = this.nameOf(v);
       const how = { away: v.id === this.selected ? 19 : 12, must: !crowd || first(v) };
       this.name(pen, v.fed ? name : `${name} ?`, at, v.fed ? colours.ink : colours.faint, how);
       if (v.id === this.selected) {
@@ -320,14 +335,23 @@ export class Scene {
         pen.stroke();
       }
     }
-    if (this.field && this.field.target) {
-      const at = this.onScreen(...place(this.field.target));
-      if (at) this.name(pen, "target", at, colours.ink);
+    for (const goal of this.field ? this.field.targets : []) {
+      const at = this.onScreen(...place(goal.place));
+      if (at) this.name(pen, severalEvaders() && goal.evader ? `target of ${goal.evader}` : "target", at, colours.ink);
     }
     this.ground.expected.forEach(({ after, at: [x, y, z] }) => {
       const at = this.onScreen(x, y, z);
       if (at) this.name(pen, `+${after} s`, at, colours.faint, { away: 6, must: false });
     });
+  }
+
+  // A vehicle's id with what it is there for: `12 evader`, `4 ring`, of several evaders `4 ring → 12`.
+  nameOf(v) {
+    const evader = this.roles[v.role] === "evader";
+    const out = this.out && severalEvaders() ? this.out.get(v.id) : undefined;
+    const part = evader ? out || "evader" : (this.parts && this.parts.get(v.id)) || "";
+    const after = this.after && this.after.get(v.id);
+    return [v.id, part, after ? `→ ${after}` : ""].filter(Boolean).join(" ");
   }
 
   drawScale(pen) {

@@ -79,7 +79,7 @@ def test_ten_seconds_after_the_bridge_was_killed_no_cell_claims_what_it_fed(play
         assert row["stage"] == "held"
         assert row["rule"].startswith("END")  # what is in force, and no rule
     assert re.fullmatch(r"T\+[34]\.\d s when its master was last heard, 1\d s ago", played[1].game.clock)
-    assert played[1].assessment is None
+    assert played[1].assessments == ()
 
 
 @pytest.mark.game

@@ -47,11 +47,11 @@ def test_the_odds_are_the_consoles_words():
     tower = Tower()
     tower.hear(setup(), phase(Phase.RUNNING), state(1), state(2), state(3))
     found = AssessmentView(
-        encircled=False, gaps=((0.1, 0.6),), largest_gap=0.6, target_denied=True, prospects=(),
+        evader=1, encircled=False, gaps=((0.1, 0.6),), largest_gap=0.6, target_denied=True, prospects=(),
         captured=(0.85, 0.8, 0.89),
     )  # fmt: skip
-    told = documents.board(replace(tower.picture, assessment=found), "")
-    assert told["assessment"]["words"] == "widest way out 34°, chance of capture 85 % (80–89), target denied"
+    told = documents.board(replace(tower.picture, assessments=(found,)), "")
+    assert told["situation"]["words"] == "widest way out 34°, chance of capture 85 % (80–89), target denied"
     assert told["game"]["plan"] is None
 
 
@@ -63,15 +63,15 @@ def test_go_or_no_go_stands_first_with_the_odds_or_with_bound_and_band():
     )  # fmt: skip
     for id, place in ((2, (80.0, 0.0, -50.0)), (3, (-50.0, 70.0, -50.0)), (4, (-40.0, -80.0, -50.0))):
         flat.hear(state(id, position=place))
-    found = documents.board(flat.picture, "")["assessment"]
-    assert flat.picture.assessment.word in {"go", "no-go", "open", "unknown"}
-    assert found["words"].startswith(f"{flat.picture.assessment.word}: ")
-    assert "bound: " in flat.picture.assessment.why
+    found, (judged,) = documents.board(flat.picture, "")["situation"], flat.picture.assessments
+    assert judged.word in {"go", "no-go", "open", "unknown"}
+    assert found["words"].startswith(f"{judged.word}: ")
+    assert "bound: " in judged.why
     told = documents.detail(flat.picture, 1)["lines"]
-    assert [f"{flat.picture.assessment.word}: {flat.picture.assessment.why}", "bold"] in told
+    assert [f"{judged.word}: {judged.why}", "bold"] in told
     space = Tower()
     space.hear(setup(3, pursuer_speed=8.0), phase(Phase.RUNNING), state(1), state(2), state(3))
-    words = documents.board(space.picture, "")["assessment"]["words"]
+    words = documents.board(space.picture, "")["situation"]["words"]
     word, _, why = words.partition(": ")
     assert word == "no-go"
     assert why.startswith("bound: ")

@@ -203,11 +203,10 @@ def test_the_assessment_names_who_can_intercept_and_who_denies_the_target():
     tower.hear(setup(3, pursuer_speed=6.0, planar=True), phase(Phase.RUNNING, START_NS))
     tower.hear(messages.EvaderBrief((500.0, 0.0, 0.0), START_NS))
     tower.hear(state(1, position=(0.0, 0.0, 0.0)))
-    assert tower.picture.assessment is None  # no pursuer is known yet
+    assert tower.picture.assessments == ()  # no pursuer is known yet
     tower.hear(state(2, position=(300.0, 0.0, 0.0), velocity=(0.0, 0.0, 0.0)))
     tower.hear(state(3, position=(-300.0, 0.0, 0.0), velocity=(0.0, 0.0, 0.0)))
-    found = tower.picture.assessment
-    assert found is not None
+    (found,) = tower.picture.assessments
     can = {p.id: (p.intercepts, p.denies_target) for p in found.prospects}
     assert can == {2: (True, True), 3: (False, False)}
     assert found.target_denied
