@@ -13,7 +13,7 @@ from gcs.console.vehicle_table import GRADE_WORDS, STYLES, Grade, grades
 from gcs.picture.current import MOTION_OLD_S, current
 from gcs.picture.values import Picture, Presence, VehicleView
 from onboard.game import palette, sides
-from onboard.wire.bus.messages import Role
+from onboard.wire.bus.messages import Role, Setup
 
 Run = tuple[str, str]  # text, style
 ARROWS = "↑↗→↘↓↙←↖"
@@ -21,6 +21,7 @@ BRAILLE = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))  # [row][colu
 MOST_DOTS = 2000  # of one line or circle
 FAR = 1e9  # [dots] what lies farther off is not drawn: Apollonius circles have no greatest radius
 FAINT = palette.FAINT.dark  # of those that are on no side
+NAME_MOST = 12  # characters of a zone's name
 MARGIN = 0.15  # share of the view kept free when it is fitted
 
 
@@ -188,10 +189,8 @@ def plan(
     """Rows of styled text, `height` of them, each `width` wide."""
     canvas = _Canvas(width, height, view)
     setup = picture.game.setup
-    if setup is not None and setup.fence is not None:
-        corners = setup.fence.polygon
-        for a, b in zip(corners, corners[1:] + corners[:1], strict=True):
-            canvas.line(a, b, "dim", gap=2)
+    if setup is not None:
+        _limits(canvas, setup)
     chosen = picture.vehicle(selected) if selected is not None else None
     now, shades = current(picture), {id: c.dark for id, c in sides.colours(picture.roles).items()}
     if options.circles:
@@ -224,6 +223,18 @@ def plan(
             canvas.sign(vehicle.position[0], vehicle.position[1], label, style)
     _scale(canvas)
     return canvas.rows()
+
+
+def _limits(canvas: _Canvas, setup: Setup) -> None:
+    """The fence in dots, zones in lines."""
+    edges = [(setup.fence.polygon, "dim", 2)] if setup.fence is not None else []
+    edges += [(zone.polygon, palette.ZONE.dark, 1) for zone in setup.zones]
+    for corners, style, gap in edges:
+        for a, b in zip(corners, corners[1:] + corners[:1], strict=True):
+            canvas.line(a, b, style, gap=gap)
+    for zone in setup.zones:
+        north, east = (sum(axis) / len(zone.polygon) for axis in zip(*zone.polygon, strict=True))
+        canvas.sign(north, east, zone.name[:NAME_MOST], f"dim {palette.ZONE.dark}")
 
 
 def _chases(canvas: _Canvas, picture: Picture, selected: int | None, shades: dict[int, str]) -> None:
@@ -292,5 +303,6 @@ LEGEND = (
     ("2!", f"an alert about it ({GRADE_WORDS[Grade.WARN]} or {GRADE_WORDS[Grade.ERROR]})"),
     ("✕2", "where it was last: lost, or its position is old"),
     ("+1", "a track of somebody who does not speak here"),
+    ("⣏⣹", "a zone, with its name: everybody keeps out; the fence is dotted"),
     ("◎", "the evader's target; of several evaders with its id"),
 )

@@ -57,7 +57,7 @@ def situation_in_words(picture: Picture, *, whole: bool = False) -> str:
     judged = picture.assessments
     if len(judged) == 1 and judged[0].alone:
         return prospects_in_words(judged[0], whole=whole)
-    told = {found.evader: prospects_in_words(found) for found in judged}
+    told = {found.evader: prospects_in_words(found, whole=whole) for found in judged}
     told |= {fate.id: fate.verdict.value for fate in picture.game.fates if fate.out}
     return "; ".join(
         f"evader {id} {words}" if whole else f"E{id} {words}" for id, words in sorted(told.items())

@@ -13,16 +13,20 @@ from xml.etree import ElementTree as ET
 
 from gcs.export.run_data import RunData
 from gcs.export.ways import KINDS, Ruled, Way, iso, ruled, ways
+from onboard.core.geometry.zones import ENDLESS
 from onboard.core.math.vectors import Vec
+from onboard.game import palette
+from onboard.wire.bus.messages import Zone
 from onboard.wire.geodesy import Frame
 
 GX = "http://www.google.com/kml/ext/2.2"
 KML = "http://www.opengis.net/kml/2.2"
+ENDLESS_DRAWN_M = 500.0  # height of a zone without end on a globe
 GPX = "http://www.topografix.com/GPX/1/1"
 
 
 def as_kml(data: RunData) -> dict[str, bytes]:
-    """One file: ways with instants, rules with the time that they were in force, target and fence."""
+    """One file: ways with instants, rules with the time that they were in force, targets, fence and zones."""
     found = ways(data)
     root = ET.Element("kml", {"xmlns": KML, "xmlns:gx": GX})
     document = ET.SubElement(root, "Document")
@@ -74,7 +78,7 @@ def _kml_rules(document: ET.Element, data: RunData) -> None:
 
 
 def _kml_still(document: ET.Element, data: RunData) -> None:
-    """Target and fence, which do not move."""
+    """Targets, fence and zones, which do not move."""
     assert data.origin is not None
     frame = Frame(data.origin.latitude_deg, data.origin.longitude_deg, data.origin.altitude_m)
     for name, goal in data.named_targets():
@@ -88,10 +92,29 @@ def _kml_still(document: ET.Element, data: RunData) -> None:
         _text(mark, "name", f"fence, {fence.altitude_min:g} to {fence.altitude_max:g} m above the origin")
         line = ET.SubElement(mark, "LineString")
         _text(line, "altitudeMode", "absolute")
-        corners = [*fence.polygon, fence.polygon[0]]
-        spots = [frame.geodetic_from_ned(Vec(n, e, -fence.altitude_max)) for n, e in corners]
-        _text(line, "coordinates", " ".join(f"{s.longitude_deg:.8f},{s.latitude_deg:.8f},{s.altitude_m:.3f}"
-                                            for s in spots))  # fmt: skip
+        _text(line, "coordinates", _kml_ring(frame, fence.polygon, fence.altitude_max))
+    for zone in data.setup.zones if data.setup is not None else ():
+        mark = ET.SubElement(document, "Placemark")
+        _text(mark, "name", f"zone {zone.name}, {_levels(zone)}")
+        area = ET.SubElement(mark, "Polygon")
+        if zone.high < ENDLESS:
+            _text(area, "extrude", "1")
+            _text(area, "altitudeMode", "absolute")
+        else:
+            _text(area, "altitudeMode", "clampToGround")
+        ring = ET.SubElement(ET.SubElement(area, "outerBoundaryIs"), "LinearRing")
+        _text(ring, "coordinates", _kml_ring(frame, zone.polygon, zone.high if zone.high < ENDLESS else 0.0))
+
+
+def _levels(zone: Zone) -> str:
+    low = f"from {zone.low:g} m" if zone.low > -ENDLESS else "from the ground"
+    return f"{low} up" + (f" to {zone.high:g} m above the origin" if zone.high < ENDLESS else " without end")
+
+
+def _kml_ring(frame: Frame, polygon: tuple[tuple[float, float], ...], up: float) -> str:
+    """The corners of a closed ring at a height above the origin [m]."""
+    spots = [frame.geodetic_from_ned(Vec(n, e, -up)) for n, e in [*polygon, polygon[0]]]
+    return " ".join(f"{s.longitude_deg:.8f},{s.latitude_deg:.8f},{s.altitude_m:.3f}" for s in spots)
 
 
 def _kml_point(mark: ET.Element, longitude: float, latitude: float, altitude: float) -> None:
@@ -136,15 +159,61 @@ def _gpx_spot(root: ET.Element, tag: str, band: Ruled) -> None:
 
 
 def as_czml(data: RunData) -> dict[str, bytes]:
-    """One file: each way moves through its time, with its rule and its setpoint."""
+    """One file: each way moves through its time, with its rule and its setpoint; targets, fence and
+    zones stand."""
     found = ways(data)
     begin = iso(min(way.spots[0].stamp_ns for way in found))
     end = iso(max(way.spots[-1].stamp_ns for way in found))
     clock = {"interval": f"{begin}/{end}", "currentTime": begin, "multiplier": 1}
     packets: list[dict[str, Any]] = [{"id": "document", "name": data.name, "version": "1.0", "clock": clock}]
     bands = ruled(data)
+    packets += _czml_still(data)
     packets += [_packet(way, data, [band for band in bands if band.id == way.id]) for way in found]
     return {"run.czml": json.dumps(packets, separators=(",", ":"), ensure_ascii=False).encode()}
+
+
+def _czml_still(data: RunData) -> list[dict[str, Any]]:
+    """Targets as points, zones and fence as prisms."""
+    assert data.origin is not None
+    frame = Frame(data.origin.latitude_deg, data.origin.longitude_deg, data.origin.altitude_m)
+    found: list[dict[str, Any]] = []
+    for number, (name, goal) in enumerate(data.named_targets()):
+        found.append({
+            "id": f"target-{number}", "name": name,
+            "position": {"cartographicDegrees": _degrees(frame, goal[0], goal[1], -goal[2])},
+            "point": {"pixelSize": 12, "color": {"rgba": _rgba(palette.TARGET, 255)}},
+            "label": {"text": name, "font": "12px sans-serif", "pixelOffset": {"cartesian2": [12, -12]}},
+        })  # fmt: skip
+    if data.setup is None:
+        return found
+    prisms = [(f"zone-{number}", zone.name, zone.polygon, (zone.low, zone.high), palette.ZONE)
+              for number, zone in enumerate(data.setup.zones)]  # fmt: skip
+    if data.setup.fence is not None:
+        fence = data.setup.fence
+        band = (fence.altitude_min, fence.altitude_max)
+        prisms.append(("fence", "fence", fence.polygon, band, palette.FENCE))
+    for id, name, polygon, (low, high), colour in prisms:
+        low, high = max(low, 0.0), high if high < ENDLESS else ENDLESS_DRAWN_M
+        corners = [value for n, e in polygon for value in _degrees(frame, n, e, low)]
+        found.append({
+            "id": id, "name": name,
+            "polygon": {
+                "positions": {"cartographicDegrees": corners}, "height": frame.origin.altitude_m + low,
+                "extrudedHeight": frame.origin.altitude_m + high, "fill": id != "fence", "outline": True,
+                "material": {"solidColor": {"color": {"rgba": _rgba(colour, 80)}}},
+                "outlineColor": {"rgba": _rgba(colour, 255)},
+            },
+        })  # fmt: skip
+    return found
+
+
+def _degrees(frame: Frame, north: float, east: float, up: float) -> list[float]:
+    spot = frame.geodetic_from_ned(Vec(north, east, -up))
+    return [round(spot.longitude_deg, 8), round(spot.latitude_deg, 8), round(spot.altitude_m, 3)]
+
+
+def _rgba(colour: palette.Colour, alpha: int) -> list[int]:
+    return [*(int(colour.light[part : part + 2], 16) for part in (1, 3, 5)), alpha]
 
 
 def _packet(way: Way, data: RunData, bands: list[Ruled]) -> dict[str, Any]:

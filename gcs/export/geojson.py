@@ -11,6 +11,7 @@ from typing import Any
 
 from gcs.export.run_data import RunData
 from gcs.export.ways import iso, ruled, ways
+from onboard.core.geometry.zones import ENDLESS
 from onboard.core.math.vectors import Vec
 from onboard.wire.geodesy import Frame
 
@@ -43,7 +44,7 @@ def as_geojson(data: RunData) -> dict[str, bytes]:
 
 
 def _still(data: RunData) -> list[Feature]:
-    """Target and fence, which do not move. The fence's ring runs against the clock, as the RFC asks."""
+    """Targets, fence and zones, which do not move. Rings run against the clock, as the RFC asks."""
     if data.origin is None:
         return []
     frame = Frame(data.origin.latitude_deg, data.origin.longitude_deg, data.origin.altitude_m)
@@ -57,16 +58,22 @@ def _still(data: RunData) -> list[Feature]:
         place = {"type": "Point", "coordinates": at(*goal)}
         told = {"name": name, "kind": "target"} | ({"evader": whose.evader} if whose.evader else {})
         found.append(_feature(place, told))
-    fence = data.setup.fence if data.setup is not None else None
-    if fence is not None:
-        corners = list(fence.polygon)
+    if data.setup is None:
+        return found
+    prisms = [(zone.name, "zone", zone.polygon, zone.low, zone.high) for zone in data.setup.zones]
+    if data.setup.fence is not None:
+        fence = data.setup.fence
+        prisms.append(("fence", "fence", fence.polygon, fence.altitude_min, fence.altitude_max))
+    for name, kind, corners, low, high in prisms:
         around = zip(corners, [*corners[1:], corners[0]], strict=True)
         twice = sum(n0 * e1 - n1 * e0 for (n0, e0), (n1, e1) in around)  # > 0: from north to east
         ring = corners[::-1] if twice > 0.0 else corners
-        places = [at(north, east, -fence.altitude_max) for north, east in [*ring, ring[0]]]
-        about = {
-            "name": "fence", "kind": "fence", "floor_m": fence.altitude_min, "ceiling_m": fence.altitude_max,
-        }  # fmt: skip
+        up = next((level for level in (high, low) if abs(level) < ENDLESS), 0.0)
+        places = [at(north, east, -up) for north, east in [*ring, ring[0]]]
+        levels = {"floor_m": low, "ceiling_m": high}
+        about = {"name": name, "kind": kind} | {
+            key: level for key, level in levels.items() if abs(level) < ENDLESS
+        }
         found.append(_feature({"type": "Polygon", "coordinates": [places]}, about))
     return found
 

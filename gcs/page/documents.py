@@ -18,8 +18,9 @@ from gcs.picture.current import current
 from gcs.picture.several import verdict_in_words
 from gcs.picture.team import band_in_words
 from gcs.picture.values import AssessmentView, CommandView, GameView, Picture, VehicleView
+from onboard.core.geometry.zones import ENDLESS
 from onboard.game import palette
-from onboard.wire.bus.messages import CommandKind, Role, SupervisorAction
+from onboard.wire.bus.messages import CommandKind, Role, Setup, SupervisorAction
 from onboard.wire.bus.team_messages import TeamPlan
 
 Document = dict[str, Any]
@@ -55,7 +56,8 @@ def colours() -> Document:
         "grid": both(palette.GRID), "evaders": [both(colour) for colour in palette.EVADERS],
         "pursuers": [both(colour) for colour in palette.PURSUERS],
         "target": both(palette.TARGET), "capture": both(palette.CAPTURE), "safety": both(palette.SAFETY),
-        "fence": both(palette.FENCE), "apollonius": both(palette.APOLLONIUS), "force": both(palette.FORCE),
+        "fence": both(palette.FENCE), "zone": both(palette.ZONE),
+        "apollonius": both(palette.APOLLONIUS), "force": both(palette.FORCE),
         "cone": both(palette.CONE), "rules": dict(palette.RULES), "other_rules": list(palette.OTHER_RULES),
         "actions": {name: both(colour) for name, colour in palette.ACTIONS.items()},
     }  # fmt: skip
@@ -82,7 +84,8 @@ def field(picture: Picture) -> Document:
     """The game's ground: origin, fence, target, distances; empty lists and nulls where not told."""
     game, setup = picture.game, picture.game.setup
     found: Document = {
-        "what": "field", "game": game.name, "scenario": "", "origin": None, "fence": None, "roster": [],
+        "what": "field", "game": game.name, "scenario": "", "origin": None, "fence": None, "zones": [],
+        "roster": [],
         "targets": [{"evader": goal.evader, "place": list(goal.place)} for goal in game.targets],
         "capture": None, "safety": None,
         "planar": False, "flat": False, "horizon": None,
@@ -100,13 +103,26 @@ def field(picture: Picture) -> Document:
             for m in setup.roster
         ],
     }  # fmt: skip
-    if setup.fence is not None:
-        fence = setup.fence
-        found["fence"] = {
+    return found | limits(setup)
+
+
+def limits(setup: Setup | None) -> Document:
+    """Fence and zones; a zone without end up or down has null there."""
+    fence = setup.fence if setup is not None else None
+    return {
+        "fence": None if fence is None else {
             "polygon": [list(corner) for corner in fence.polygon],
             "floor": fence.altitude_min, "ceiling": fence.altitude_max,
-        }  # fmt: skip
-    return found
+        },
+        "zones": [
+            {
+                "name": zone.name, "polygon": [list(corner) for corner in zone.polygon],
+                "floor": zone.low if zone.low > -ENDLESS else None,
+                "ceiling": zone.high if zone.high < ENDLESS else None,
+            }
+            for zone in (setup.zones if setup is not None else ())
+        ],
+    }  # fmt: skip
 
 
 def trails(picture: Picture) -> Document:

@@ -50,9 +50,9 @@ def assess(
 
 
 def _out(game: GameView, evader: int) -> bool:
-    """Whether an evader's game is over while others' may still run."""
+    """Whether of several evaders this one is out of the game."""
     fate = game.fate_of(evader)
-    return fate is not None and fate.out and len(game.fates) < len(evaders_of(game.setup))
+    return fate is not None and fate.out and len(evaders_of(game.setup)) > 1
 
 
 def _assessed(game: GameView, id: int, known: Players, alone: bool) -> AssessmentView:
@@ -117,7 +117,8 @@ def _odds(
     found = odds(situation, changes=False, beyond=beyond_one(game, id))
     chance = found.chances.get(DEFAULT)
     share = None if chance is None else (chance.captured.p, chance.captured.low, chance.captured.high)
-    return *headline(situation, found), share
+    word, why = headline(situation, found)
+    return word, why if alone else f"by those after it: {why}", share
 
 
 def beyond_one(game: GameView, id: int) -> str:

@@ -206,7 +206,7 @@ class Fleet:
             self._say(now_ns, 0, Severity.INFO, "phase", f"game {phase.phase.value}{reason}")
         known = {fate.id for fate in fates(None, self._phase, None)}
         for fate in fates(None, phase, None):
-            if fate.id not in known:
+            if fate.out and fate.id not in known:
                 self._say(now_ns, 0, Severity.INFO, "out", f"evader {fate.id} {fate.words}")
         self._phase = phase
 
@@ -278,6 +278,7 @@ class Fleet:
             outcome = None  # cached from a game before this one
         t0_ns = phase.t0_ns if phase else 0
         plan = None if over else counting(self._plans, now_ns)
+        known = fates(self._setup, phase, outcome)
         alive = sum(now_ns - at < 2 * NS_PER_S for at in self._masters.values())
         return GameView(
             name=self.name,
@@ -288,8 +289,8 @@ class Fleet:
             time_s=(now_ns - t0_ns) / NS_PER_S if t0_ns else 0.0,
             outcome=outcome,
             targets=goals(self._setup, self._brief, self._own_briefs),
-            quarries=() if over else quarries(self._setup, plan, self._decided(now_ns)),
-            fates=fates(self._setup, phase, outcome),
+            quarries=() if over else quarries(self._setup, plan, self._decided(now_ns), known),
+            fates=known,
             master=self._master,
             master_age_s=age_s(self._master_ns, now_ns),
             two_masters=alive > 1,

@@ -6,7 +6,7 @@ to be after it, for everybody is.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 from gcs.picture.values import FateView, GoalView
 from onboard.game import sides
@@ -66,17 +66,19 @@ def evaders_of(setup: Setup | None) -> tuple[int, ...]:
 
 
 def quarries(
-    setup: Setup | None, plan: TeamPlan | None, decided: Iterable[tuple[int, int]]
+    setup: Setup | None, plan: TeamPlan | None, decided: Iterable[tuple[int, int]], known: Sequence[FateView]
 ) -> tuple[tuple[int, int], ...]:
     """Each pursuer with its quarry, where there are several evaders: as its decision says, else as the plan
-    does. `decided` has ids and the quarries of decisions that are fresh (0: none)."""
+    does. `decided` has ids and the quarries of decisions that are fresh (0: none). Nobody is after one that
+    is `known` to be out."""
     if len(evaders_of(setup)) < 2:
         return ()
     found: dict[int, int] = {}
     if plan is not None and len(plan.quarries) == len(plan.parts):
         found = {part.id: quarry for part, quarry in zip(plan.parts, plan.quarries, strict=True)}
     found |= {id: quarry for id, quarry in decided if quarry}
-    return tuple(sorted((id, quarry) for id, quarry in found.items() if quarry))
+    over = {fate.id for fate in known if fate.out} | {0}
+    return tuple(sorted((id, quarry) for id, quarry in found.items() if quarry not in over))
 
 
 def fates(setup: Setup | None, phase: PhaseChange | None, outcome: Outcome | None) -> tuple[FateView, ...]:

@@ -17,6 +17,7 @@ from gcs.picture.several import goals, named, verdict_in_words
 from gcs.picture.station_journal import HEARD_HERE, REMARK, SENT, Remark, Sent
 from gcs.recording import foxglove as fox
 from gcs.recording.schemas import Layout
+from onboard.core.geometry.zones import ENDLESS
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec
 from onboard.wire.bus import topics
@@ -51,6 +52,8 @@ COLORS = {
 }
 TARGET = fox.Color(0.0, 0.62, 0.45)
 FENCE = fox.Color(0.8, 0.47, 0.65)
+ZONE = fox.Color(0.61, 0.24, 0.21)
+ENDLESS_DRAWN_M = 200.0  # height of a zone without end
 INFO = 2
 LEVELS = {Severity.INFO: INFO, Severity.WARNING: 3, Severity.ERROR: 4}
 FOREVER = fox.Time(0, 0)
@@ -234,27 +237,42 @@ class Views:
         )
 
     def _still(self, at: fox.Time) -> Iterator[fox.Entity]:
-        """What does not move: target and fence."""
+        """What does not move: targets, fence and zones."""
         for number, (name, goal) in enumerate(named(goals(self._setup, self._brief, self._own_briefs))):
             place = fox.Pose(fox.enu(goal))
             ball = fox.Sphere(place, fox.Vector3(2.0, 2.0, 2.0), TARGET)
             text = fox.Text(place, True, 14.0, True, TARGET, name)
             id = f"target-{number}" if number else "target"
             yield fox.Entity(timestamp=at, id=id, lifetime=FOREVER, spheres=(ball,), texts=(text,))
-        if self._setup is not None and self._setup.fence is not None:
+        if self._setup is None:
+            return
+        if self._setup.fence is not None:
             fence = self._setup.fence
-            loops = tuple(
-                fox.Line(
-                    1,
-                    fox.Pose(fox.Vector3(0, 0, 0)),
-                    1.0,
-                    True,
-                    tuple(fox.Vector3(east, north, height) for north, east in fence.polygon),
-                    FENCE,
-                )
-                for height in (fence.altitude_min, fence.altitude_max)
-            )
+            loops = _loops(fence.polygon, (fence.altitude_min, fence.altitude_max), FENCE)
             yield fox.Entity(timestamp=at, id="fence", lifetime=FOREVER, lines=loops)
+        for number, zone in enumerate(self._setup.zones):
+            low, high = max(0.0, zone.low), zone.high if zone.high < ENDLESS else ENDLESS_DRAWN_M
+            edges = (
+                _line(0, (fox.Vector3(e, n, low), fox.Vector3(e, n, high)), ZONE) for n, e in zone.polygon
+            )
+            lines = (*_loops(zone.polygon, (low, high), ZONE), *edges)
+            north, east = zone.polygon[0]
+            place = fox.Pose(fox.Vector3(east, north, high))
+            text = fox.Text(place, True, 14.0, True, ZONE, zone.name)
+            yield fox.Entity(timestamp=at, id=f"zone-{number}", lifetime=FOREVER, lines=lines, texts=(text,))
+
+
+def _loops(
+    polygon: tuple[tuple[float, float], ...], heights: tuple[float, ...], color: fox.Color
+) -> tuple[fox.Line, ...]:
+    """The outline of a polygon at these heights."""
+    rings = [tuple(fox.Vector3(east, north, height) for north, east in polygon) for height in heights]
+    return tuple(_line(1, ring, color) for ring in rings)
+
+
+def _line(kind: int, points: tuple[fox.Vector3, ...], color: fox.Color) -> fox.Line:
+    """A strip (0) or a loop (1) of lines."""
+    return fox.Line(kind, fox.Pose(fox.Vector3(0, 0, 0)), 1.0, True, points, color)
 
 
 def _trail(at: fox.Time, name: str, points: tuple[fox.Vector3, ...], color: fox.Color) -> fox.Entity:

@@ -20,7 +20,7 @@ from onboard.config.strict import ConfigError
 from onboard.game import palette, sides
 from onboard.game import scenario as scenarios
 from onboard.game.scenario import Scenario
-from onboard.wire.bus.messages import Fence, Member, Outcome, Role, Setup, Triple
+from onboard.wire.bus.messages import Fence, Member, Outcome, Role, Setup, Triple, Zone
 
 Array = NDArray[np.float64]
 MOST_POINTS = 4000  # a vehicle's samples are thinned to so many
@@ -145,6 +145,11 @@ class Run(NamedTuple):
     def fence(self) -> Fence | None:
         """The geofence of the setup; None where there is none."""
         return self.setup.fence if self.setup is not None else None
+
+    @property
+    def zones(self) -> tuple[Zone, ...]:
+        """What everybody keeps out of."""
+        return self.setup.zones if self.setup is not None else ()
 
     @property
     def flat(self) -> bool:

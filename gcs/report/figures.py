@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Circle, Patch
+from matplotlib.patches import Circle, Patch, Polygon
 
 from gcs.report import theme
 from gcs.report.data import Array, Band, Run
@@ -61,6 +61,10 @@ def plan(run: Run) -> Drawing | None:
         fence = Line2D(*corners[:, ::-1].T, color=palette.FENCE.light, ls="--", lw=1)
         fence.set_label("geofence" if seen else "")
         axes.add_artist(fence)  # which leaves the limits to what was flown
+    for number, zone in enumerate(run.zones):
+        area = Polygon(np.array(zone.polygon)[:, ::-1], fc=f"{palette.ZONE.light}33", ec=palette.ZONE.light)
+        area.set_label("" if number else "zone: everybody keeps out")
+        axes.add_artist(area)
     named: list[Array] = []
     for vehicle, flown in sorted(run.flown.items()):
         colour, path = run.colour(vehicle), flown.position[:, [1, 0]]

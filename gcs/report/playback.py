@@ -42,7 +42,7 @@ def scene_of(run: Run) -> Document | None:
 
 
 def _field(run: Run) -> Document:
-    setup, fence = run.setup, run.fence
+    setup = run.setup
     origin = None
     if setup is not None:
         origin = [setup.origin.latitude_deg, setup.origin.longitude_deg, setup.origin.altitude_m]
@@ -51,11 +51,7 @@ def _field(run: Run) -> Document:
         "roster": [{"id": id, "role": flown.role.value} for id, flown in sorted(run.flown.items())],
         "capture": run.capture_radius, "safety": run.safety_distance, "flat": run.flat,
         "planar": bool(setup.rules.planar) if setup is not None else run.flat, "origin": origin,
-        "fence": None if fence is None else {
-            "polygon": [list(corner) for corner in fence.polygon],
-            "floor": fence.altitude_min, "ceiling": fence.altitude_max,
-        },
-    }  # fmt: skip
+    } | documents.limits(setup)  # fmt: skip
 
 
 def _marks(run: Run, begin: float, end: float) -> list[dict[str, Any]]:

@@ -36,6 +36,7 @@ TARGET = Colour("#b8860b", "#ffd54a")
 CAPTURE = Colour("#2f3641", "#d5dae3")  # the capture radius R
 SAFETY = Colour("#8a8a8a", "#8f8f8f")  # the safety distance ρ
 FENCE = Colour("#7b8794", "#8b98a8")  # the geofence
+ZONE = Colour("#9c3d36", "#d9827a")  # no-fly zones and obstacles
 APOLLONIUS = Colour("#0899a8", "#3fd5e6")  # Apollonius circles
 FORCE = Colour("#9467bd", "#b99be0")  # the resultant force F_res
 CONE = Colour("#c47f2e", "#e8b06c")  # headings that a pursuer blocks
@@ -106,6 +107,6 @@ def action(name: str) -> Colour:
 
 def every_colour() -> tuple[Colour, ...]:
     """All colours there are, each once; no two have the same light shade."""
-    single = (INK, FAINT, PAPER, GRID, EVADER, TARGET, CAPTURE, SAFETY, FENCE, APOLLONIUS, FORCE, CONE)
+    single = (INK, FAINT, PAPER, GRID, EVADER, TARGET, CAPTURE, SAFETY, FENCE, ZONE, APOLLONIUS, FORCE, CONE)
     rules = tuple(Colour(value, value) for value in (*RULES.values(), *OTHER_RULES))
     return (*single, *EVADERS[1:], *PURSUERS, *rules, *ACTIONS.values())

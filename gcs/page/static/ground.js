@@ -65,6 +65,7 @@ export class Ground {
     this.near = new Group(); // spheres around evaders
     this.evaders = new Map(); // where they are
     this.chases = new Group();
+    this.zones = [];
     this.chosen = new Group(); // of the selected vehicle
     const aiming = new LineDashedMaterial({ vertexColors: true, transparent: true, dashSize: 1, gapSize: 0.6 });
     this.aims = new LineSegments(new BufferGeometry(), aiming); // in one drawing, whatever their number
@@ -87,13 +88,15 @@ export class Ground {
     this.reach = reach;
     clear(this.still);
     clear(this.near);
+    this.zones = []; // names and their places
     const { colours } = this;
     const cell = round(reach / 10);
     const grid = new GridHelper(cell * 40, 40, colours.faint, colours.grid);
     grid.material.dispose();
     grid.material = paint(`grid ${colours.dark}`, () => new LineBasicMaterial({ vertexColors: true, transparent: true, opacity: colours.dark ? 0.5 : 0.9 }));
     this.still.add(grid);
-    if (field.fence) this.drawFence(field.fence);
+    if (field.fence) this.drawWalls(field.fence, colours.fence, 0.08);
+    for (const zone of field.zones) this.drawZone(zone);
     for (const goal of field.targets) this.drawTarget(field, goal.place);
     this.setEvaders(this.evaders);
   }
@@ -105,18 +108,37 @@ export class Ground {
     return group;
   }
 
-  drawFence(fence) {
-    const { colours } = this;
-    const corners = fence.polygon.map(([north, east]) => [east, -north]);
-    for (const height of [fence.floor, fence.ceiling]) {
-      this.still.add(new LineLoop(points(corners.map(([x, z]) => [x, height, z])), plain(colours.fence)));
+  // The walls of a prism.
+  drawWalls({ polygon, floor, ceiling }, colour, opacity) {
+    const corners = polygon.map(([north, east]) => [east, -north]);
+    for (const height of new Set([floor, ceiling])) {
+      this.still.add(new LineLoop(points(corners.map(([x, z]) => [x, height, z])), plain(colour)));
     }
+    if (floor === ceiling) return;
     corners.forEach(([x, z], i) => {
       const [u, w] = corners[(i + 1) % corners.length];
-      const wall = points([[x, fence.floor, z], [u, fence.floor, w], [u, fence.ceiling, w], [x, fence.floor, z], [u, fence.ceiling, w], [x, fence.ceiling, z]]);
-      this.still.add(new Mesh(wall, veil(colours.fence, 0.08)));
-      this.still.add(new Line(points([[x, fence.floor, z], [x, fence.ceiling, z]]), plain(colours.fence)));
+      const wall = points([[x, floor, z], [u, floor, w], [u, ceiling, w], [x, floor, z], [u, ceiling, w], [x, ceiling, z]]);
+      this.still.add(new Mesh(wall, veil(colour, opacity)));
+      this.still.add(new Line(points([[x, floor, z], [x, ceiling, z]]), plain(colour)));
     });
+  }
+
+  // A zone with its floor and ceiling; in the plane it lies on the ground, without an end it is as high as the
+  // fence, or as what is seen.
+  drawZone(zone) {
+    const { colours, field, reach } = this;
+    const floor = zone.floor === null ? 0 : zone.floor;
+    const end = Math.max(floor, field.fence && !field.planar ? field.fence.ceiling : round(reach / 2));
+    const ceiling = field.planar ? floor : zone.ceiling === null ? end : zone.ceiling;
+    this.drawWalls({ polygon: zone.polygon, floor, ceiling }, colours.zone, 0.2);
+    const corners = zone.polygon.map(([north, east]) => [east, -north]);
+    for (const height of new Set([floor, ceiling])) {
+      const [first, ...others] = corners.map(([x, z]) => [x, height, z]); // it is convex
+      const lid = others.slice(1).flatMap((corner, i) => [first, others[i], corner]);
+      this.still.add(new Mesh(points(lid), veil(colours.zone, 0.2)));
+    }
+    const middle = [0, 1].map((axis) => corners.reduce((sum, corner) => sum + corner[axis], 0) / corners.length);
+    this.zones.push({ name: zone.name, at: [middle[0], ceiling, middle[1]] });
   }
 
   drawTarget(field, goal) {

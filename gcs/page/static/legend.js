@@ -32,7 +32,8 @@ export function entries(c) {
     [[ring(c.apollonius, 7)], "Apollonius: both can be there at one time"],
     [sector(c.cone), "headings blocked for the selected vehicle"],
     [[["path", { d: "M5 12A13 13 0 0 1 29 12", stroke: c.free, "stroke-width": 4, "stroke-opacity": 0.6 }]], "ways out of an evader: its free headings"],
-    [[["rect", { x: 3, y: 3, width: 28, height: 10, stroke: c.fence, "stroke-width": 1.6 }]], "fence"],
+    [[["rect", { x: 3, y: 3, width: 28, height: 10, stroke: c.fence, "stroke-width": 1.6 }]], "fence: nobody leaves it"],
+    [[["rect", { x: 8, y: 2, width: 18, height: 12, stroke: c.zone, fill: c.zone, "fill-opacity": 0.35, "stroke-width": 1.6 }]], "zone: everybody keeps out"],
   ];
 }
 

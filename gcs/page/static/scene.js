@@ -208,7 +208,7 @@ export class Scene {
     return (2 * away * Math.tan((this.perspective.fov * Math.PI) / 360)) / this.height;
   }
 
-  // Put everything into view: vehicles, tracks, target; the fence where nobody is there yet.
+  // Put everything into view: vehicles, tracks, targets; the fence where nobody is there yet.
   fit() {
     const places = [...this.where.values()];
     if (this.frame) for (const t of this.frame.tracks) places.push([t.x, t.y, t.z]);
@@ -338,6 +338,10 @@ export class Scene {
     for (const goal of this.field ? this.field.targets : []) {
       const at = this.onScreen(...place(goal.place));
       if (at) this.name(pen, severalEvaders() && goal.evader ? `target of ${goal.evader}` : "target", at, colours.ink);
+    }
+    for (const zone of this.ground.zones) {
+      const at = this.onScreen(...zone.at);
+      if (at) this.name(pen, zone.name, at, colours.faint, { away: 6, must: false });
     }
     this.ground.expected.forEach(({ after, at: [x, y, z] }) => {
       const at = this.onScreen(x, y, z);

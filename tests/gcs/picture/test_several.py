@@ -1,0 +1,196 @@
+"""Several evaders and several targets in the picture, the console and the words of the page."""
+
+from __future__ import annotations
+
+import pytest
+from msgspec.structs import replace
+
+from gcs.console import plan
+from gcs.console.detail import detail
+from gcs.console.plain_lines import status
+from gcs.console.status_line import log_lines, status_line
+from gcs.console.vehicle_table import rows
+from gcs.page import documents
+from gcs.picture.assessment import assess as assessments
+from gcs.picture.assessment import beyond_one, engagements_in
+from gcs.picture.reducer import PictureReducer
+from gcs.picture.values import Picture
+from onboard.core.geometry.assessment import assess
+from onboard.core.math.constants import NS_PER_S
+from onboard.core.math.states import Vehicle
+from onboard.core.math.vectors import ZERO, Vec, sub
+from onboard.game import palette, sides
+from onboard.game.go_or_no_go import lines
+from onboard.wire.bus.messages import EvaderOutcome, OutcomeResult, Phase, Role, Setup
+from tests.support.chase_messages import EPOCH_NS
+from tests.support.sample_messages import Tower, phase, setup, state
+from tests.support.three_on_ten import AFTER, EVADERS, TARGETS, R, flight
+
+
+def at(since_t0_s: float) -> Picture:
+    """The picture then."""
+    reducer, end_ns = PictureReducer("field"), EPOCH_NS + round((2.0 + since_t0_s) * NS_PER_S)
+    for item in flight():
+        if item.stamp_ns > end_ns:
+            break
+        reducer.apply(*item)
+    return reducer.picture(end_ns)
+
+
+@pytest.fixture(scope="module")
+def early() -> Picture:
+    return at(5.0)
+
+
+@pytest.fixture(scope="module")
+def late() -> Picture:
+    """Evader 1 is captured."""
+    return at(14.0)
+
+
+@pytest.fixture(scope="module")
+def over() -> Picture:
+    return at(60.0)
+
+
+def test_every_evader_has_its_own_targets_and_hunters(early: Picture) -> None:
+    game = early.game
+    assert {id: game.targets_of(id) for id in EVADERS} == TARGETS
+    assert dict(game.quarries) == AFTER
+    assert game.hunters_of(13) == (9, 10, 11)
+    assert game.quarry_of(1) is None
+
+
+def test_every_evader_is_judged_against_all_pursuers(early: Picture) -> None:
+    """By the core's own judgement of the states that were heard; in space of the eight nearest."""
+    rules = early.game.setup.rules
+    moving = {
+        v.id: Vehicle(Vec(*v.state.position), sub(Vec(*v.state.velocity), Vec(*v.state.wind)),
+                      12.0 if v.id in EVADERS else 9.0)
+        for v in early.vehicles
+    }  # fmt: skip
+    assert [found.evader for found in early.assessments] == list(EVADERS)
+    for found in early.assessments:
+        evader = moving[found.evader]
+        nearest = sorted(AFTER, key=lambda id: _apart(early, id, found.evader))[:8]
+        team = tuple(moving[id] for id in nearest)
+        alone = assess(evader, team, rules.rho, False, ZERO, bool(rules.planar))
+        assert found.largest_gap == pytest.approx(2.0 * alone.cap.radius)
+        assert {p.id for p in found.prospects} == set(nearest)
+
+
+def test_an_evader_that_is_out_is_hunted_and_judged_no_more(late: Picture) -> None:
+    fate = late.game.fate_of(1)
+    assert fate is not None
+    assert (fate.out, fate.words) == (True, f"captured by 2 at {fate.time_s:.1f} s")
+    assert [found.evader for found in late.assessments] == [12, 13]
+    assert 1 not in {quarry for _, quarry in late.game.quarries}
+    assert set(dict(late.game.quarries)) == set(AFTER), "who was after it is after another one"
+    assert any("evader 1 captured by 2" in line[0][0] for line in log_lines(late))
+    assert not any(alert.kind == "track_stale" for alert in late.alerts)
+
+
+def test_a_track_that_ends_is_missed_of_those_alone_that_are_in_the_game() -> None:
+    tower = Tower()
+    roles = {1: Role.EVADER, 4: Role.EVADER}
+    roster = [replace(m, role=roles.get(m.id, Role.PURSUER)) for m in setup(4).roster]
+    several = replace(setup(4), roster=tuple(roster))
+    running = phase(Phase.RUNNING, tower.now_ns)
+    tower.hear(several, running)
+    tower.fly(3.0, 1, 2, 3, 4)
+    assert {"track_stale:1", "track_stale:4"} <= tower.alerts()
+    tower.hear(replace(running, out=(EvaderOutcome(1, OutcomeResult.CAPTURED, 1.0, 2, 1.0),)))
+    tower.fly(6.0, 1, 2, 3, 4)
+    assert "track_stale:1" not in tower.alerts()
+    assert "no track of evader 4" in next(a.text for a in tower.picture.alerts if a.id == 4)
+
+
+def test_the_table_names_whom_each_is_after(early: Picture, late: Picture) -> None:
+    told = {row.id: row.cells for row in rows(early, "role", False)}
+    assert told[6][1] == "→12"
+    assert float(told[6][10]) == pytest.approx(_apart(early, 6, 12), abs=0.6)
+    order = [row.id for row in rows(early, "role", False)]
+    assert order == [1, 12, 13, *(id for quarry in EVADERS for id in AFTER if AFTER[id] == quarry)]
+    assert {row.id: row.cells for row in rows(late, "id", False)}[1][11].startswith("captured by 2 at ")
+
+
+def _apart(picture: Picture, a: int, b: int) -> float:
+    places = [picture.vehicle(id).position for id in (a, b)]
+    return sum((x - y) ** 2 for x, y in zip(*places, strict=True)) ** 0.5
+
+
+def test_the_words_keep_evaders_apart(early: Picture, late: Picture, over: Picture) -> None:
+    head = status_line(late, "", "", 300)[0][0]
+    assert "E1 captured; E12 gap " in head
+    assert "plan of 2: E12 way out" in head
+    assert "3 evaders: 1 captured, 1 arrived, 1 escaped" in status_line(over, "", "", 300)[0][0]
+    assert any(text.startswith("after it: ") for text, _ in detail(late, 13))
+    assert any(text == "after evader 12" for text, _ in detail(early, 6))
+    assert any(text.startswith("evader 12 ") and "closing" in text for text, _ in detail(early, 6))
+    assert any(text.startswith("targets ") and text.count(",") == 1 for text, _ in detail(early, 12))
+    assert any("E12 way out" in line for line in status(late))
+
+
+def test_where_the_odds_say_nothing_they_say_why(early: Picture) -> None:
+    """The table's games have one evader: the bound is told of those who are after it, a chance is not."""
+    for found in early.assessments:
+        assert found.captured is None
+        assert found.why.startswith("by those after it: bound: ")
+    judged = engagements_in(early.game, early.vehicles, early.tracks)
+    assert {id: len(situation.team) for id, situation in judged.items()} == {1: 4, 12: 3, 13: 3}
+    told = lines(judged[12], beyond_one(early.game, 12))
+    assert told[1].strip() == "the table of odds says nothing here: evaders: found 3, the table's games have 1"
+    silent = replace(early, game=replace(early.game, quarries=()))
+    told = assessments(silent.game, silent.vehicles, silent.tracks)
+    assert {found.why for found in told} == {"no odds: whom each pursuer is after is not told"}
+
+
+def test_the_map_of_the_console_has_all_of_them(late: Picture) -> None:
+    view = plan.fitted(plan.START, late, 100, 40)
+    text = "\n".join("".join(part for part, _ in row) for row in plan.plan(late, view, 100, 40, None))
+    for sign in ("E12", "E13", "captured", "◎12", "◎13", "◎1", "village", "mast"):
+        assert sign in text, sign
+    assert text.count("◎12") == 2
+
+
+def test_two_evaders_too_near_each_other_are_an_alert() -> None:
+    tower = Tower()
+    both = replace(setup(3, separation=10.0), roster=tuple(
+        replace(member, role=Role.PURSUER if member.id == 3 else Role.EVADER) for member in setup(3).roster
+    ))  # fmt: skip
+    tower.hear(both)
+    for id, east in ((1, 0.0), (2, 6.0), (3, 3.0)):
+        role = Role.PURSUER if id == 3 else Role.EVADER
+        tower.hear(state(id, tower.now_ns, role=role, position=(0.0, east, -50.0)))
+    tower.wait(0.2)
+    assert {name for name in tower.alerts() if name.startswith("separation")} == {"separation:1:2"}
+
+
+def test_colours_tell_evaders_apart() -> None:
+    roles = {id: Role.EVADER for id in EVADERS} | {id: Role.PURSUER for id in AFTER} | {99: None}
+    found = sides.colours(roles)
+    assert found[1] == palette.EVADER
+    assert len({found[id] for id in EVADERS}) == 3
+    assert not {found[id] for id in EVADERS} & {found[id] for id in AFTER}
+    assert found[99] == palette.FAINT
+    assert sides.colours({7: Role.EVADER})[7] == palette.EVADER, "the only one has the same, whatever its id"
+
+
+def test_the_page_is_told_all_of_it(late: Picture, over: Picture) -> None:
+    field, board = documents.field(late), documents.board(late, "")
+    assert [goal["evader"] for goal in field["targets"]] == [1, 12, 12, 13]
+    assert [zone["name"] for zone in field["zones"]] == ["mast", "village"]
+    assert [(zone["floor"], zone["ceiling"]) for zone in field["zones"]] == [(None, 90.0), (None, None)]
+    assert [found["evader"] for found in board["situation"]["evaders"]] == [12, 13]
+    assert board["situation"]["words"].startswith("evader 1 captured; evader 12 widest way out ")
+    assert board["game"]["out"] == [{"id": 1, "word": "captured"}]
+    assert {row["id"]: row["cells"][1] for row in board["vehicles"]}[6] == "pursuer of 12"
+    assert documents.board(over, "")["game"]["outcome"]["words"].startswith("3 evaders: ")
+    assert over.game.setup.rules.R == R
+
+
+def test_what_pursuers_know_of_targets_counts_where_no_brief_was_heard() -> None:
+    tower = Tower()
+    known: Setup = replace(setup(3), target=(500.0, 0.0, -50.0))
+    tower.hear(known)
+    assert [(goal.evader, goal.place) for goal in tower.picture.game.targets] == [(1, (500.0, 0.0, -50.0))]
