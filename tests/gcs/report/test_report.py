@@ -296,8 +296,7 @@ def test_a_recording_alone_is_enough(copy: Path) -> None:
 def test_an_evader_known_by_tracks_alone_still_has_distances(tmp_path: Path) -> None:
     unseen = [item for item in flight() if not item.key.endswith("vehicles/1/state")]
     values = read_run(make_run(tmp_path / "run", unseen))
-    assert values.evader is not None
-    assert values.evader.source == "track"
+    assert [evader.source for evader in values.evaders] == ["track"]
     assert min(gap.distance.min() for gap in values.gaps()) < 5.0
 
 
