@@ -96,8 +96,10 @@ def goal_in_words(goal: PlannedGoal) -> str:
     """A goal and its reason, for people; "" where there is none."""
     if goal.goal is TeamGoal.NONE:
         return ""
-    about = f" {goal.target}" if goal.goal is TeamGoal.DENY and goal.target else ""
-    return f"{goal.goal.value}{about}" + (f", as {goal.why}" if goal.why else "")
+    what: str = goal.goal.value
+    if goal.goal is TeamGoal.DENY and goal.target:
+        what = f"deny target {goal.target}"
+    return what + (f", as {goal.why}" if goal.why else "")
 
 
 def _place(scene: Scene, kind: Node, index: int) -> tuple[Vec, float, float]:
@@ -164,7 +166,7 @@ def worth_saying(known: Known) -> list[str]:
             if best is not None:
                 said.append(edge_in_words(known, best))
             elif name == "denies":
-                said.append(f"nobody denies target {target + 1}")
+                said.append(f"nobody alone is first at target {target + 1}")
     said += [edge_in_words(known, e) for e in known.edges if e.relation >= CUSTOM][:OWN_MOST]
     goal = goal_of(known.model, known.choice, known.evader)
     return [*said, f"goal: {goal_in_words(goal)}"]

@@ -57,6 +57,16 @@ def planner(name: str) -> Planner:
     return found
 
 
+def trouble(name: str) -> str:
+    """Why a strategy of this name cannot have its team's knowledge; "" where it can, or is no team's."""
+    try:
+        if is_team(name):
+            strategy(name)
+    except ConfigError as error:
+        return str(error)
+    return ""
+
+
 @cache
 def model(name: str) -> Model:
     """What a team of this name knows; the core's own for `team` and `team:plain`. Raises ConfigError."""

@@ -110,7 +110,7 @@ class Viewpoint:
         self.id = id
         self.side = side
         self.strategy = evader_named(strategy) if side is Side.EVADER else pursuer_named(strategy)
-        known = (EVADERS if side is Side.EVADER else PURSUERS).get(self.strategy)
+        known = (EVADERS if side is Side.EVADER else PURSUERS).get(self.strategy.partition(":")[0])
         self.part = IDLE  # of the team's plan, where there is one
         self.why = ""  # whose plan that is, in words
         self.hunt: Hunt | None = None  # of a pursuer that has a choice of evaders or of their targets

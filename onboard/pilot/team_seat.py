@@ -13,6 +13,7 @@ from collections.abc import Mapping
 from math import inf
 from typing import NamedTuple
 
+from onboard.core.game.rules import NO_TARGET, Target
 from onboard.core.game.views import level, told
 from onboard.core.math.states import Mate, Vehicle, VehicleLimits
 from onboard.core.math.vectors import Vec, sub
@@ -29,7 +30,7 @@ from onboard.core.strategy.team.plan_types import (
     Situation,
     nearest_staged,
 )
-from onboard.core.strategy.team.planner import EVERY, no_plan, plan
+from onboard.core.strategy.team.planner import EVERY, Planner, engaged, no_plan, plan
 from onboard.core.strategy.team.quarry import Quarry, quarries_of
 from onboard.pilot.setup import Crowd, GameSetup, Own, Side
 
@@ -58,6 +59,7 @@ class Field(NamedTuple):
     team: tuple[int, ...]  # ids of the members, in the roster's order
     heights: Heights
     sigma: float  # stated error of the evader's track [m]
+    planner: Planner = engaged  # what the team does once the evader has set out
 
 
 class Dated(NamedTuple):
@@ -70,6 +72,15 @@ class Dated(NamedTuple):
     bands: tuple[tuple[int, Band], ...] = ()  # of several evaders: each one's, by its id
 
 
+class Thought(NamedTuple):
+    """What a plan against one evader was made of."""
+
+    evader: int  # id
+    situation: Situation
+    before: Plan
+    made: Plan
+
+
 class TeamSeat:
     """The seat of vehicle `id`."""
 
@@ -79,6 +90,7 @@ class TeamSeat:
         self._heard: dict[int, Dated] = {}  # by planner
         self._planned_at = -1e9
         self._began = inf  # when it first looked at its team
+        self.thoughts: tuple[Thought, ...] = ()  # of the last plan of its own
 
     def heard(self, dated: Dated) -> None:
         """A mate's plan came; one of another team is left out, and one overtaken."""
@@ -132,7 +144,10 @@ class TeamSeat:
         if newest is None:
             newest = Dated(self.id, no_plan(situation.team, known.t), known.now)
         if known.crowd is None:
-            made = Dated(self.id, plan(situation, newest.plan), known.now)
+            before = newest.plan
+            made = Dated(self.id, plan(situation, before, self.field.planner), known.now)
+            evading = next((p.id for p in self.field.game.opponents(Side.PURSUER)), 0)
+            self.thoughts = (Thought(evading, situation, before, made.plan),)
         else:
             made = self._against_all(situation, newest, known, known.crowd)
         self._heard[self.id] = made
@@ -147,14 +162,17 @@ class TeamSeat:
         given = quarries_of(team, crowd.quarries, previous, game.rules, game.rules.horizon - known.t)
         bands = dict(before.bands)
         plans: dict[int, Plan] = {}
+        thoughts = []
         for index, quarry in enumerate(crowd.quarries):
             if quarry.live:
                 mine = tuple(m._replace(fit=m.fit and q == index) for m, q in zip(team, given, strict=True))
-                alone = against(situation, quarry, mine)
+                alone = against(situation, quarry, mine, targets_told(game, evaders[index]))
                 last = before.plan._replace(band=bands.get(evaders[index], OPEN))
-                plans[index] = plan(alone, last)
+                plans[index] = plan(alone, last, self.field.planner)
+                thoughts.append(Thought(evaders[index], alone, last, plans[index]))
         if not plans:
             return before._replace(planner=self.id, at=known.now)
+        self.thoughts = tuple(thoughts)
         whole = max(plans.values(), key=lambda one: (not one.band.closed, one.band.gap))
         parts = tuple(plans.get(q, whole).assignments[i] for i, q in enumerate(given))
         ids = tuple(0 if q == NOBODY else evaders[q] for q in given)
@@ -162,11 +180,21 @@ class TeamSeat:
         return Dated(self.id, whole._replace(assignments=parts), known.now, ids, each)
 
 
-def against(situation: Situation, quarry: Quarry, team: tuple[Member, ...]) -> Situation:
+def targets_told(game: GameSetup, evader: int) -> tuple[Target, ...]:
+    """An evader's targets as its pursuers know them; one that does not exist where they know none."""
+    planar = game.rules.planar
+    known = (told(one, game.rules) for one in game.targets_of(evader))
+    found = tuple(one._replace(position=level(one.position, planar)) for one in known)
+    return found or (NO_TARGET,)
+
+
+def against(
+    situation: Situation, quarry: Quarry, team: tuple[Member, ...], targets: tuple[Target, ...]
+) -> Situation:
     """The situation of those who are after one of several evaders."""
     return situation._replace(
         evader=quarry.vehicle, evader_limits=quarry.limits, target=quarry.target, team=team,
-        expected=quarry.vehicle.position,
+        expected=quarry.vehicle.position, targets=targets,
     )  # fmt: skip
 
 
@@ -207,4 +235,5 @@ def situation_of(id: int, field: Field, known: Known, evader: Vehicle) -> Situat
         Margin(DELAY_S, field.sigma),
         evader.position,
         nearest_staged(game.rules),
+        targets_told(game, evading.id) if evading is not None and game.goals else (NO_TARGET,),
     )

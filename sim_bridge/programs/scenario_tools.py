@@ -15,6 +15,7 @@ from onboard.game.go_or_no_go import lines as odds_lines
 from onboard.game.scenario import Scenario
 from sim_bridge.plane_game.setup import conditions_of, turn_rate_of, vehicles_of
 from sim_bridge.programs.scenario_band import band_lines
+from sim_bridge.programs.scenario_knowledge import denies, knowledge_lines
 
 TEMPLATE = """\
 # A scenario of Apollonius. Metres, metres a second, degrees where a key ends in _deg.
@@ -102,6 +103,7 @@ def check(scenario: Scenario) -> str:
     rules, target, _ = conditions_of(scenario)
     evader, *pursuers = vehicles_of(scenario)
     seen = assess(evader, tuple(pursuers), rules.rho, target.exists, target.position, rules.planar)
+    denied = denies(scenario)
     lines = [
         f"{scenario.name}: {len(pursuers)} pursuers, {'plane' if rules.planar else 'in space'}, "
         f"R = {rules.R:g} m, ρ = {rules.rho:g} m, horizon {rules.horizon:g} s",
@@ -115,15 +117,15 @@ def check(scenario: Scenario) -> str:
         if index:
             prospect = seen.prospects[index - 1]
             meets = f"in {prospect.time:.1f} s" if prospect.intercepts else "no"
-            denies = ("yes" if prospect.denies_target else "no") if target.exists else "–"
+            held = ("yes" if denied[index - 1] else "no") if target.exists else "–"
             row += (
                 f"   {distance(pursuers[index - 1].position, evader.position):7.1f} m"
                 f"  {spec.speed / evader.speed:5.2f}  {degrees(prospect.half_angle):8.1f}°"
-                f"   {meets:>10s}  {denies}"
+                f"   {meets:>10s}  {held}"
             )
         lines.append(row)
     lines += ["", *odds_lines(engagement_of(scenario)), *_freedom(scenario)]
-    lines += [*band_lines(scenario), *_duration(scenario)]
+    lines += [*band_lines(scenario), *knowledge_lines(scenario), *_duration(scenario)]
     return "\n".join(lines)
 
 

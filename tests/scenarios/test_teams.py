@@ -12,12 +12,14 @@ from onboard.core.strategy.team.flying import TEAM
 from onboard.game.scenario import Flight, Kind, Parameters, Scenario, VehicleSpec
 from onboard.pilot.predictor_choice import Predicting
 from onboard.wire.bus import topics
+from onboard.wire.bus.knowledge_messages import Knowledge, TeamGoal
 from onboard.wire.bus.messages import DecisionLevel, DecisionReport
 from onboard.wire.bus.team_messages import PartReason, TeamPlan, TeamRole
 from tests.support.small_scenarios import lossy
 from tests.support.virtual_time import virtual
 from tests.support.whole_games import WholeGame, choose_mode, flies, game_of, under_way
 
+TARGET_REACHED = "somebody is at the target before the evader, or nearly"
 KEEPER, MATE, LAST = 2, 3, 4
 CHASE = {rule.id.name.lower() for rule in TEAM if rule.id not in STRATEGIC}  # of who has no other part
 
@@ -47,12 +49,15 @@ class Heard:
     def __init__(self, game: WholeGame) -> None:
         self.plans: list[tuple[float, TeamPlan]] = []
         self.decisions: list[tuple[float, DecisionReport]] = []
+        self.known: list[Knowledge] = []
         drops: Counter[str] = Counter()
 
         def take(sample: tuple[str, bytes]) -> None:
             heard = topics.TOPICS.heard(*sample, drops)
             if heard is not None and heard.topic is topics.PLAN:
                 self.plans.append((game.now, heard.message))  # type: ignore[arg-type]
+            elif heard is not None and heard.topic is topics.KNOWLEDGE:
+                self.known.append(heard.message)  # type: ignore[arg-type]
             elif heard is not None and heard.topic is topics.DECISION:
                 self.decisions.append((game.now, heard.message))  # type: ignore[arg-type]
 
@@ -84,10 +89,20 @@ async def test_two_guard_the_target_one_chases_and_everybody_says_why() -> None:
             assert said.level is DecisionLevel.STRATEGIC
             assert said.rule in {"guard_target", "block_corridor"}
             assert f"in the plan of {KEEPER}: " in said.reason
+            assert said.reason.endswith("; goal: deny target 1, as " + TARGET_REACHED)
         chaser = heard.of(LAST, 2.0)[-1]
         assert chaser.level is DecisionLevel.TACTICAL
         assert chaser.rule in CHASE
         assert chaser.reason.startswith(f"chaser in the plan of {KEEPER}")
+        known = heard.known[-1]
+        assert 5 <= len(heard.known) <= 7  # once a second
+        assert (known.id, known.quarry, known.goal.goal) == (KEEPER, 1, TeamGoal.DENY)
+        held = {edge.relation: known.nodes[edge.source].name for edge in known.edges}
+        assert held["covers"] in {f"pursuer {KEEPER}", f"pursuer {MATE}"}
+        assert held["threatens"] == "evader 1"
+        assert [event.text for event in game.events if event.kind == "goal"] == [
+            f"deny target 1, as {TARGET_REACHED}"
+        ]
 
 
 @virtual
@@ -165,6 +180,6 @@ async def test_without_the_bus_each_flies_on_the_last_plan_and_then_alone() -> N
         assert heard.role(follower) == (TeamRole.RESERVE, PartReason.LOST)
         bus.mend()  # type: ignore[attr-defined]
         await game.forward(3.0)
-        assert core.flight.decision.why.endswith(heard.role(follower)[1].value)
+        assert f": {heard.role(follower)[1].value}; goal: " in core.flight.decision.why
         told = [event.text for event in game.events if event.id == follower and event.kind == "planner"]
         assert told == ["2 plans for the team", "no plan: chases alone", "2 plans for the team"]

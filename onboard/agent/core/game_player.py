@@ -12,7 +12,7 @@ from onboard.agent.core.journal import Journal
 from onboard.agent.core.part import PartState, Way
 from onboard.agent.core.participation import Participation, is_out
 from onboard.agent.core.readiness import lacking
-from onboard.agent.core.team_talk import TEAM, TeamTalk
+from onboard.agent.core.team_talk import TeamTalk
 from onboard.agent.core.to_place import approach_of, own_state
 from onboard.agent.core.vehicle_link import VehicleLink
 from onboard.autopilot.base import Stage
@@ -22,6 +22,8 @@ from onboard.core.math.states import Mate, MateState, carried
 from onboard.core.math.vectors import Vec
 from onboard.core.strategy.knowledge import Decision
 from onboard.core.strategy.team.plan_types import Heights
+from onboard.game import team_knowledge
+from onboard.game.team_knowledge import is_team
 from onboard.game.track_watch import TrackWatch
 from onboard.game.trials import in_words
 from onboard.pilot.approach import Approach
@@ -295,6 +297,7 @@ class GamePlayer:
             self.flying = None
         hovers, own = self._vehicle.hovers, self._vehicle.limits
         why = limits.contradiction(self.config, setup, hovers, own) or strategy_error
+        why = why or team_knowledge.trouble(self._strategy_of(setup))
         if why:
             if why != self.why_not:
                 self._journal.error("setup_refused", why)
@@ -308,16 +311,16 @@ class GamePlayer:
         self.policy = limits.policy_of(self.config, setup, hovers, own)
         self.strategy = self._strategy_of(setup)
         mates = (m.id for m in setup.roster if m.role is self.config.role and m.id != self.config.id)
-        self._bus.follow(tuple(mates), self.strategy == TEAM)
+        self._bus.follow(tuple(mates), is_team(self.strategy))
         several = sum(member.role is Role.EVADER for member in setup.roster) > 1
         self._bus.brief_alone(several and self.side is Side.EVADER)
         game = limits.game_setup(self.config, setup, self._bus.targets, hovers, own)
         opponents = [player.id for player in game.opponents(self.side)]
         self._memory = Memory(self.config.prediction, opponents)
         self._team = None
-        if self.strategy == TEAM:
-            field, where = self._field(setup, game), self.config.game
-            self._team = TeamTalk(self.config.id, where, field, self._bus, self._out, self._journal)
+        if is_team(self.strategy):
+            field, model = self._field(setup, game), team_knowledge.model(self.strategy)
+            self._team = TeamTalk(self.config, field, model, self._bus, self._out, self._journal)
         viewpoint = Viewpoint(self.config.id, self.side, self.strategy)
         if self.side is Side.PURSUER:
             viewpoint.hunt = hunt_of(self.config.id, game)
@@ -329,12 +332,13 @@ class GamePlayer:
         """What a seat in the team reckons with: all pursuers whose strategy is the plan's."""
         team = tuple(
             m.id for m in setup.roster
-            if m.role is Role.PURSUER and (m.strategy == TEAM or m.id == self.config.id)
+            if m.role is Role.PURSUER and (is_team(m.strategy) or m.id == self.config.id)
         )  # fmt: skip
         fences = self.policy.fences
         floor = max((fence.low for fence in fences), default=Heights().floor)
         ceiling = min((fence.high for fence in fences), default=Heights().ceiling)
-        return Field(game, team, Heights(floor, ceiling), setup.track_sigma)
+        planner = team_knowledge.planner(self.strategy)
+        return Field(game, team, Heights(floor, ceiling), setup.track_sigma, planner)
 
     def _approach(self, setup: Setup, game: GameSetup) -> Approach | None:
         member = limits.member_of(setup, self.config.id)

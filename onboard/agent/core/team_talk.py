@@ -4,21 +4,28 @@ from __future__ import annotations
 
 from math import inf, isfinite
 
+from onboard.agent.config import AgentConfig
 from onboard.agent.core.bus_view import BusView
 from onboard.agent.core.events import Instant, Outbox, Publish
 from onboard.agent.core.journal import Journal
 from onboard.core.math.vectors import Vec
+from onboard.core.strategy.semantic.model import Model
 from onboard.core.strategy.team.plan_types import NOBODY, Assignment, Band, Plan, Reason, Role
+from onboard.game.knowledge_words import goal_in_words, goal_of, known_of
+from onboard.game.knowledge_words import message as message_of
 from onboard.pilot.pilot import Question
 from onboard.pilot.setup import Crowd
 from onboard.pilot.team_seat import Dated, Field, Known, TeamSeat
+from onboard.wire.bus.knowledge_messages import PlannedGoal
 from onboard.wire.bus.team_messages import PartReason, PlannedBand, PlannedPart, TeamPlan, TeamRole
-from onboard.wire.bus.topics import PLAN
+from onboard.wire.bus.topics import KNOWLEDGE, PLAN
 
-TEAM = "team"  # name of the strategy whose pursuers fly by a plan
+KNOWLEDGE_EVERY = 2  # plans, from one word of what is known to the next: a second
 
 
-def said(dated: Dated, team: tuple[int, ...], stamp_ns: int, nonce: int) -> TeamPlan:
+def said(
+    dated: Dated, team: tuple[int, ...], stamp_ns: int, nonce: int, goals: tuple[PlannedGoal, ...] = ()
+) -> TeamPlan:
     """A plan as it goes over the bus; `team` are the ids of its members in their order."""
     made, planner = dated.plan, dated.planner
     band = made.band
@@ -54,6 +61,7 @@ def said(dated: Dated, team: tuple[int, ...], stamp_ns: int, nonce: int) -> Team
             )
             for id, one in dated.bands
         ),
+        goals=goals,
     )  # fmt: skip
 
 
@@ -93,8 +101,17 @@ def _band(told: TeamPlan | PlannedBand, team: tuple[int, ...]) -> Band:
 class TeamTalk:
     """Joins one member's seat with the bus."""
 
-    def __init__(self, id: int, game: str, field: Field, bus: BusView, out: Outbox, journal: Journal) -> None:
+    def __init__(
+        self, config: AgentConfig, field: Field, model: Model, bus: BusView, out: Outbox, journal: Journal
+    ) -> None:
+        """`model` is what the team knows, by which the field's planner plans."""
+        id, game = config.id, config.game
         self.seat = TeamSeat(id, field)
+        self._model = model
+        self._known_key = KNOWLEDGE.key(game, id)
+        self._plans = 0  # made so far
+        self._own: tuple[PlannedGoal, ...] = ()  # the goals of the last of them
+        self._goals = ""  # in words, as they were told last
         self.fit = False  # whether this vehicle follows the game
         self._key, self._bus, self._out, self._journal = PLAN.key(game, id), bus, out, journal
         bus.plans.clear()  # of another game
@@ -123,7 +140,18 @@ class TeamTalk:
             return ""
         part = dated.plan.assignments[self.seat.field.team.index(self.seat.id)]
         reason = PartReason[part.reason.name].value
-        return f"{part.role.name.lower()} in the plan of {dated.planner}" + (f": {reason}" if reason else "")
+        whose = f"{part.role.name.lower()} in the plan of {dated.planner}" + (f": {reason}" if reason else "")
+        goal = self._goal_of(dated)
+        return f"{whose}; goal: {goal}" if goal else whose
+
+    def _goal_of(self, dated: Dated) -> str:
+        """What the plan that counts has this member's group after, in words."""
+        message = self._taken.get(dated.planner)
+        goals = self._own if dated.planner == self.seat.id else () if message is None else message.goals
+        pairs = zip(self.seat.field.team, dated.quarries, strict=False)
+        quarry = next((quarry for id, quarry in pairs if id == self.seat.id), 0)
+        mine = next((goal for goal in goals if quarry in (0, goal.quarry)), None)
+        return "" if mine is None else goal_in_words(mine)
 
     @property
     def quarries(self) -> tuple[int, dict[int, int]]:
@@ -143,8 +171,26 @@ class TeamTalk:
         mates = bus.mates_at(now.s)
         made = seat.work(Known(now.s, t, question.own, self.fit, mates, bus.unfit, evader, crowd))
         if made is not None:
-            message = said(made, seat.field.team, now.wall_ns, self._bus.nonce)
+            self._own = tuple(
+                goal_of(self._model, thought.made.choice, thought.evader) for thought in seat.thoughts
+            )
+            message = said(made, seat.field.team, now.wall_ns, self._bus.nonce, self._own)
             self._out.put(Publish(self._key, PLAN.encode(message), PLAN.delivery))
+            if self._plans % KNOWLEDGE_EVERY == 0:
+                self._say_known(now)
+            self._plans += 1
+
+    def _say_known(self, now: Instant) -> None:
+        """Say what the last plan was made of; and what the team is after, where that has changed."""
+        seat = self.seat
+        for evader, situation, before, made in seat.thoughts:
+            known = known_of(situation, before, self._model, evader, seat.field.team)
+            told = message_of(known._replace(choice=made.choice), seat.id, now.wall_ns, self._bus.nonce)
+            self._out.put(Publish(self._known_key, KNOWLEDGE.encode(told), KNOWLEDGE.delivery))
+        goals = "; ".join(filter(None, map(goal_in_words, self._own)))
+        if goals != self._goals:
+            self._goals = goals
+            self._journal.info("goal", goals or "no goal")
 
     def _tell(self, now: float) -> None:
         """Say whose plan counts where that has changed."""
