@@ -7,13 +7,11 @@ benchmarks/results/campaign.md.
 
 from __future__ import annotations
 
-import io
 import json
 import os
 import shlex
 import subprocess
 import sys
-import tarfile
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Annotated, NamedTuple
@@ -113,8 +111,8 @@ def beside(players: list[Player], rounds: int, games: int) -> tuple[list[Sum], t
 def unpacked(commit: str, folder: Path) -> Path:
     """The project as of a commit, in a folder."""
     data = subprocess.run(["git", "archive", commit], cwd=ROOT, check=True, capture_output=True).stdout
-    with tarfile.open(fileobj=io.BytesIO(data)) as archive:
-        archive.extractall(folder, filter="data")
+    folder.mkdir(exist_ok=True)
+    subprocess.run(["tar", "--extract", "--directory", str(folder)], input=data, check=True)
     return folder
 
 
