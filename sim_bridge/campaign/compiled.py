@@ -50,6 +50,7 @@ KERNELS = (
     "onboard.core.math.angles",
     "onboard.core.geometry.apollonius",
     "onboard.core.geometry.cones",
+    "onboard.core.geometry.rims",
     "onboard.core.geometry.edges",
     "onboard.core.geometry.free_ray",
     "onboard.core.geometry.zones",

@@ -11,10 +11,10 @@ from math import sqrt
 from typing import NamedTuple
 
 from onboard.core.geometry.cones import EDGE, Cone, Ray, is_free, perpendicular
+from onboard.core.geometry.rims import Crossing, Rim, blend, crossing, nearer_crossing, on_edge, point, rim_of
 from onboard.core.math.each import each, few_or_many, table
-from onboard.core.math.vectors import TINY, ZERO, Vec, add, along, cross, dot, sub, unit
+from onboard.core.math.vectors import TINY, Vec, along, cross, dot, unit
 
-FIRM = 1e-6  # where edges cross flatter, rounding may decide
 TRIES = 12  # of pairs of cones that may decide
 
 
@@ -43,32 +43,6 @@ def _clear(x: float, y: float, z: float, edges: tuple[Edge, ...]) -> bool:
     return True
 
 
-class Rim(NamedTuple):
-    """The same of many cones, with its distance."""
-
-    x: float  # axis
-    y: float
-    z: float
-    cos: float  # of the half-angle
-    sin: float
-    limit: float  # cosine to the axis up to which a ray is free
-    level: float  # cosine of the angle from the axis to the preferred direction
-    n: float  # sine of that angle
-    near: float  # cosine of the angle from the preferred direction to the edge; −3 where nothing is blocked
-
-
-def rim_of(cone: Cone, _index: int, preferred: Vec) -> Rim:
-    """The edge of a cone (for `table`)."""
-    (ax, ay, az), c, s = cone
-    px, py, pz = preferred
-    level = ax * px + ay * py + az * pz
-    x = px - level * ax
-    y = py - level * ay
-    z = pz - level * az
-    n = sqrt(x * x + y * y + z * z)
-    return Rim(ax, ay, az, c, s, c + EDGE * s, level, n, level * c + n * s if c <= 1.0 else -3.0)
-
-
 def _deepest(u: Vec, edges: Sequence[Rim], count: int) -> int:
     """The cone in which a ray lies deepest, −1 if it is free."""
     x, y, z = u
@@ -90,78 +64,6 @@ def _first(x: float, y: float, z: float, edges: Sequence[Rim], count: int) -> in
         if x * ax + y * ay + z * az > limit:
             return k
     return -1
-
-
-class Crossing(NamedTuple):
-    """Where the edges of two cones cross: at along + across and along − across."""
-
-    exists: bool
-    along: Vec  # in the plane of the axes
-    across: Vec  # perpendicular to it, to the right-handed side of the first axis and the second
-    level: float  # the cosines of the angles to the preferred direction are level + rise and level − rise
-    rise: float
-    certain: bool  # nothing outside both cones is nearer to the preferred direction than the nearer point
-
-
-NO_CROSSING = Crossing(False, ZERO, ZERO, -3.0, 0.0, False)
-
-
-def _crossing(one: Rim, two: Rim, preferred: Vec) -> Crossing:
-    """Where two edges cross.
-
-    The nearer point is certain by the multipliers of Lagrange: p = μ u + λ₁ a₁ + λ₂ a₂ with none of them
-    negative makes p·v ≤ p·u for every v with a·v ≤ a·u for both axes.
-    """
-    ax, ay, az, ac, _sine, _limit, pa, _n, _near = one
-    bx, by, bz, bc, _sine2, _limit2, pb, _n2, _near2 = two
-    px, py, pz = preferred
-    c = ax * bx + ay * by + az * bz
-    k = 1.0 - c * c
-    if k <= TINY:
-        return NO_CROSSING
-    alpha = (ac - bc * c) / k
-    beta = (bc - ac * c) / k
-    square = 1.0 - alpha * alpha - beta * beta - 2.0 * alpha * beta * c
-    if square < 0.0:
-        return NO_CROSSING
-    t = sqrt(square / k)
-    x = t * (ay * bz - az * by)
-    y = t * (az * bx - ax * bz)
-    z = t * (ax * by - ay * bx)
-    level = alpha * pa + beta * pb
-    rise = px * x + py * y + pz * z
-    lx = ax * alpha + bx * beta
-    ly = ay * alpha + by * beta
-    lz = az * alpha + bz * beta
-    # Nearly parallel axes magnify rounding: make the candidates unit vectors again.
-    n = sqrt(square + lx * lx + ly * ly + lz * lz)
-    if abs(n - 1.0) > 1e-14:
-        n = max(n, TINY)
-        x, y, z = x / n, y / n, z / n
-        lx, ly, lz = lx / n, ly / n, lz / n
-    high = abs(rise)
-    toward_one = (pa - pb * c) * square >= high * alpha * k
-    toward_two = (pb - pa * c) * square >= high * beta * k
-    certain = k > FIRM and square > FIRM and toward_one and toward_two
-    return Crossing(True, Vec(lx, ly, lz), Vec(x, y, z), level, rise, certain)
-
-
-def _on_edge(edge: Rim, preferred: Vec) -> Ray:
-    """The point of a cone's edge nearest to the preferred direction."""
-    ax, ay, az, ac, sine, _limit, pa, n, near = edge
-    px, py, pz = preferred
-    x = px - pa * ax
-    y = py - pa * ay
-    z = pz - pa * az
-    if n < 1e-3:
-        # On the axis every point of the edge is as near: take any. Near it, rounding turns the
-        # side out of the perpendicular: make it so again.
-        axis = Vec(ax, ay, az)
-        side = perpendicular(axis) if n <= TINY else Vec(x / n, y / n, z / n)
-        side = unit(_blend(side, 1.0, axis, -dot(side, axis)), preferred)
-        return Ray(True, unit(_blend(axis, ac, side, sine), preferred), near)
-    k = sine / n
-    return Ray(True, Vec(ax * ac + x * k, ay * ac + y * k, az * ac + z * k), near)
 
 
 def free_ray(preferred: Vec, cones: tuple[Cone, ...]) -> Ray:
@@ -214,8 +116,8 @@ def _by_pairs(cones: tuple[Cone, ...], preferred: Vec) -> Ray:
             # side out of the perpendicular: make it so again.
             axis = Vec(ax, ay, az)
             side = perpendicular(axis) if n <= TINY else Vec(x / n, y / n, z / n)
-            side = unit(_blend(side, 1.0, axis, -dot(side, axis)), preferred)
-            u = unit(_blend(axis, ac, side, sine), preferred)
+            side = unit(blend(side, 1.0, axis, -dot(side, axis)), preferred)
+            u = unit(blend(axis, ac, side, sine), preferred)
         else:
             k = sine / n
             u = Vec(ax * ac + x * k, ay * ac + y * k, az * ac + z * k)
@@ -273,7 +175,7 @@ def _decided_by_two(preferred: Vec, edges: Sequence[Rim], count: int) -> Ray:
     j = -1
     if i < 0 or edges[i].cos < -1.0:
         return nothing
-    ray = _on_edge(edges[i], preferred)
+    ray = on_edge(edges[i], preferred)
     for _ in range(TRIES):
         k = _deepest(ray.direction, edges, count)
         if k < 0:
@@ -284,17 +186,17 @@ def _decided_by_two(preferred: Vec, edges: Sequence[Rim], count: int) -> Ray:
             return nothing
         one = i
         if edge.level > edge.cos:
-            alone = _on_edge(edge, preferred)
+            alone = on_edge(edge, preferred)
             u = alone.direction
             if _outside(u, edges[i]) and (j < 0 or _outside(u, edges[j])):
                 found = alone
                 one = -1
         if not found.exists:
-            found = _nearer_crossing(edges[max(i, k)], edges[min(i, k)], preferred)
+            found = nearer_crossing(edges[max(i, k)], edges[min(i, k)], preferred)
             if found.exists and j >= 0 and not _outside(found.direction, edges[j]):
                 found = nothing
         if not found.exists and j >= 0:
-            found = _nearer_crossing(edges[max(j, k)], edges[min(j, k)], preferred)
+            found = nearer_crossing(edges[max(j, k)], edges[min(j, k)], preferred)
             one = j
             if found.exists and not _outside(found.direction, edges[i]):
                 found = nothing
@@ -310,49 +212,60 @@ def _outside(u: Vec, edge: Rim) -> bool:
     return u.x * edge.x + u.y * edge.y + u.z * edge.z <= edge.limit
 
 
-def _nearer_crossing(one: Rim, two: Rim, preferred: Vec) -> Ray:
-    """The crossing of two edges nearer to the preferred direction, where that is certain."""
-    found = _crossing(one, two, preferred)
-    if not found.certain:
-        return Ray(False, preferred, -2.0)
-    if found.rise < 0.0:
-        return Ray(True, unit(sub(found.along, found.across), preferred), found.level - found.rise)
-    return Ray(True, unit(add(found.along, found.across), preferred), found.level + found.rise)
-
-
 def _round_edges(preferred: Vec, edges: Sequence[Rim], count: int) -> Ray:
     """The nearest free ray of all edges, going round each both ways from one blocked arc's end to the next.
 
     The nearest edge comes first. Of n cones that takes some n² steps where all pairs of edges take n³.
     """
     best = Ray(False, preferred, -2.0)
-    i = _next_nearest(2.0, -1, edges, count)
-    while i >= 0 and edges[i].near > best.closeness:  # no point of an edge is nearer than its nearest
-        near = _on_edge(edges[i], preferred)
+    order = _nearest_four(2.0, -1, edges, count)
+    while order.first >= 0 and edges[order.first].near > best.closeness:  # no point of an edge is nearer
+        i = order.first
+        near = on_edge(edges[i], preferred)
         u = near.direction
         first = _first(u.x, u.y, u.z, edges, count)
         if first < 0:
             return near
-        blocked = _crossing(edges[i], edges[first], preferred)
+        blocked = crossing(edges[i], edges[first], preferred)
         for side in (1.0, -1.0):
             walk = Walk(i, near.direction, side, best.closeness)
             found = _end_of_blocked(preferred, edges, count, walk, blocked)
             if found.exists:
                 best = found
-        i = _next_nearest(edges[i].near, i, edges, count)
+        if order.second >= 0:
+            order = Order(order.second, order.third, order.fourth, -1)
+        else:
+            order = _nearest_four(edges[i].near, i, edges, count)
     return best
 
 
-def _next_nearest(near: float, index: int, edges: Sequence[Rim], count: int) -> int:
-    """The edge that comes after edge `index`, the nearest first; −1 after the last."""
-    found = -1
-    most = -2.5
+class Order(NamedTuple):
+    """Edges one after another, the nearest first; −1 where there are no more."""
+
+    first: int
+    second: int
+    third: int
+    fourth: int
+
+
+def _nearest_four(near: float, index: int, edges: Sequence[Rim], count: int) -> Order:
+    """The edges that come after edge `index`, `near` to the preferred direction."""
+    a, b, c, d = -1, -1, -1, -1
+    far_a, far_b, far_c, far_d = -2.5, -2.5, -2.5, -2.5
     for k in range(count):
         other = edges[k].near
-        if other > most and (other < near or (other == near and k > index)):
-            most = other
-            found = k
-    return found
+        if other > far_d and (other < near or (other == near and k > index)):
+            if other > far_b:
+                c, far_c, d, far_d = b, far_b, c, far_c
+                if other > far_a:
+                    a, far_a, b, far_b = k, other, a, far_a
+                else:
+                    b, far_b = k, other
+            elif other > far_c:
+                c, far_c, d, far_d = k, other, c, far_c
+            else:
+                d, far_d = k, other
+    return Order(a, b, c, d)
 
 
 class Walk(NamedTuple):
@@ -385,9 +298,5 @@ def _end_of_blocked(preferred: Vec, edges: Sequence[Rim], count: int, walk: Walk
         s = turned
         k = _first(u.x, u.y, u.z, edges, count)
         if k < 0:
-            return Ray(True, unit(u, preferred), closeness)
-        blocked = _crossing(edge, edges[k], preferred)
-
-
-def _blend(a: Vec, k: float, b: Vec, m: float) -> Vec:
-    return Vec(a.x * k + b.x * m, a.y * k + b.y * m, a.z * k + b.z * m)
+            return point(blocked, walk.side, preferred)
+        blocked = crossing(edge, edges[k], preferred)
