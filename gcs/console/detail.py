@@ -7,10 +7,12 @@ from math import atan2, degrees, hypot
 from gcs.console.status_line import spans
 from gcs.console.vehicle_table import GRADE_WORDS, STYLES, age, grades, quarries
 from gcs.picture.current import current
+from gcs.picture.knowledge import goals_of
 from gcs.picture.team import part_in_words, part_of
 from gcs.picture.values import Picture, VehicleView
 from onboard.core.math.vectors import Vec, distance, dot, norm, scale, sub
 from onboard.game import sides
+from onboard.game.knowledge_words import goal_in_words
 from onboard.wire.bus.messages import LinkLock, Role, SupervisorAction
 
 Line = tuple[str, str]  # text, style
@@ -45,6 +47,7 @@ def detail(picture: Picture, selected: int | None, hidden: frozenset[str] = froz
         lines.append((f"waits for {', '.join(vehicle.health.lacks)}", "yellow"))
     lines += _side(picture, vehicle)
     lines += _part(picture, vehicle)
+    lines += _goal(picture, vehicle)
     lines += _decision(vehicle)
     lines += _distances(picture, vehicle)
     lines += _prospect(picture, vehicle)
@@ -94,6 +97,17 @@ def _part(picture: Picture, vehicle: VehicleView) -> list[Line]:
     plan = picture.game.plan
     part = part_of(plan, vehicle.id)
     return [] if plan is None or part is None else [(part_in_words(plan, part), "bold")]
+
+
+def _goal(picture: Picture, vehicle: VehicleView) -> list[Line]:
+    """What the team is after against an evader: at the evader, and at those who are after it."""
+    found = goals_of(picture.game)
+    only = next(iter(found)) if len(found) == 1 and len(picture.game.evaders) == 1 else 0
+    if vehicle.role is Role.EVADER:
+        goal, whose = found.get(vehicle.id), "the pursuers' goal"
+    else:
+        goal, whose = found.get(picture.game.quarry_of(vehicle.id) or only), "the team's goal"
+    return [(f"{whose}: {goal_in_words(goal)}", "")] if goal is not None else []
 
 
 def _decision(vehicle: VehicleView) -> list[Line]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from gcs.console.status_line import clock
 from gcs.console.vehicle_table import GRADE_WORDS, age, grades
 from gcs.picture.current import current
+from gcs.picture.knowledge import goal_lines
 from gcs.picture.team import band_in_words, part_of
 from gcs.picture.terminal_text import printable
 from gcs.picture.values import LogLine, Picture
@@ -61,7 +62,7 @@ def status(picture: Picture) -> list[str]:
     said = f"{at} STATUS {name} {phase} {game.clock}, {len(picture.vehicles)} vehicles, {alerts} alerts"
     if game.plan is not None:
         said += f", {band_in_words(game.plan)}"
-    lines = [said]
+    lines = [said, *(f"{at} STATUS {text}" for text in goal_lines(game))]
     graded = grades(picture)
     for vehicle in picture.vehicles:
         health = vehicle.health

@@ -5,11 +5,13 @@ from __future__ import annotations
 from datetime import UTC, datetime
 from math import degrees
 
+from gcs.picture.knowledge import goal_lines, told
 from gcs.picture.several import verdict_in_words
 from gcs.picture.team import band_in_words
 from gcs.picture.terminal_text import cut
 from gcs.picture.values import AssessmentView, CommandView, LegState, LogLine, Picture, Presence
 from onboard.core.math.constants import NS_PER_S
+from onboard.game.knowledge_words import goal_in_words
 from onboard.wire.bus.messages import Severity
 
 Runs = list[tuple[str, str]]
@@ -80,7 +82,8 @@ def _fleet(picture: Picture) -> str:
 
 
 def alert_lines(picture: Picture, width: int, height: int) -> list[Runs]:
-    """Open commands first, then alerts, with what to do where there is room for it."""
+    """Open commands first, then alerts, with what to do where there is room for it; below, where there is
+    room, what the team is after."""
     commands = [command for command in picture.commands if _shown(command, picture)]
     lines = [_command(command) for command in commands]
     of_kind = {f"unconfirmed_{command.kind.value}": at for at, command in enumerate(commands)}
@@ -93,6 +96,8 @@ def alert_lines(picture: Picture, width: int, height: int) -> list[Runs]:
         lines.append([(f"{sign} {alert.text}", style), (f"  → {alert.advice}", "dim")])
     if not lines:
         lines.append([("no alerts", "dim")])
+    goals = [[(text, "dim")] for text in goal_lines(picture.game)]
+    lines += goals[: max(0, height - len(lines))] if height > 0 else goals
     if len(lines) > height > 0:
         hidden = len(lines) - height + 1
         lines = [*lines[: height - 1], [(f"… and {hidden} more", "bold yellow")]]
@@ -163,14 +168,27 @@ def spans(ids: list[int]) -> str:
     return ",".join(str(a) if a == b else f"{a}-{b}" for a, b in found) if found != [[0, 0]] else "–"
 
 
-def whole_text(picture: Picture, selected: int | None, told: list[tuple[str, str]]) -> Runs:
-    """Alerts with what to do, the selected vehicle and the log, the newest first; lines may be long."""
+def known_lines(picture: Picture) -> list[str]:
+    """What the team's planner knows: of each evader the goal, then what holds with its strength."""
+    lines = []
+    for word in picture.game.knowledge:
+        lines.append(f"evader {word.quarry}: {goal_in_words(word.goal) or 'no goal'}")
+        lines += [f"  {edge.words} ({edge.strength:.2f})" for edge in told(word)]
+    return lines
+
+
+def whole_text(picture: Picture, selected: int | None, detail: list[tuple[str, str]]) -> Runs:
+    """Alerts with what to do, the selected vehicle, what the team knows and the log, the newest first; lines
+    may be long."""
     runs: Runs = [(f"Alerts at {clock(picture.now_ns)}\n", "bold")]
     for line in alert_lines(picture, 0, 0):
         runs += [*line, ("\n", "")]
-    if told and selected is not None:
+    if detail and selected is not None:
         runs.append(("\nVehicle\n", "bold"))
-        runs += [(f"{text}\n", style) for text, style in told]
+        runs += [(f"{text}\n", style) for text, style in detail]
+    if known := known_lines(picture):
+        runs.append(("\nWhat the team knows\n", "bold"))
+        runs += [(f"{text}\n", "") for text in known]
     runs.append(("\nEvents, the newest first (UTC)\n", "bold"))
     for line in reversed(log_lines(picture)):
         runs += [*line, ("\n", "")]

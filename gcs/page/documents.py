@@ -15,11 +15,13 @@ from gcs.console.status_line import SIGNS, clock, log_lines, prospects_in_words,
 from gcs.console.vehicle_table import COLUMNS, GRADE_WORDS, Grade, rows, sort_values
 from gcs.page.frames import HEAD, ROLES, TRACK, VEHICLE
 from gcs.picture.current import current
-from gcs.picture.several import verdict_in_words
+from gcs.picture.knowledge import arcs, goals_of, told
+from gcs.picture.several import named, verdict_in_words
 from gcs.picture.team import band_in_words
-from gcs.picture.values import AssessmentView, CommandView, GameView, Picture, VehicleView
+from gcs.picture.values import AssessmentView, CommandView, GameView, GoalView, Picture, VehicleView
 from onboard.core.geometry.zones import ENDLESS
 from onboard.game import palette
+from onboard.game.knowledge_words import goal_in_words
 from onboard.wire.bus.messages import CommandKind, Role, Setup, SupervisorAction
 from onboard.wire.bus.team_messages import TeamPlan
 
@@ -32,7 +34,7 @@ HELP = {
     "link": "telemetry received of what is expected", "age": "since the last message of the agent [s]",
     "hgt": "height above the origin [m]", "m/s": "speed over ground",
     "to ev": "distance to the evader [m]; of several to the one that it is after, else to the nearest",
-    "rule": "the rule in force, or what the supervisor does instead",
+    "rule": "the rule in force, or what the supervisor does instead; of an evader that is out: how",
 }  # fmt: skip
 
 
@@ -86,7 +88,7 @@ def field(picture: Picture) -> Document:
     found: Document = {
         "what": "field", "game": game.name, "scenario": "", "origin": None, "fence": None, "zones": [],
         "roster": [],
-        "targets": [{"evader": goal.evader, "place": list(goal.place)} for goal in game.targets],
+        "targets": targets(game.targets),
         "capture": None, "safety": None,
         "planar": False, "flat": False, "horizon": None,
     }  # fmt: skip
@@ -104,6 +106,14 @@ def field(picture: Picture) -> Document:
         ],
     }  # fmt: skip
     return found | limits(setup)
+
+
+def targets(goals: tuple[GoalView, ...]) -> list[Document]:
+    """Targets with their names, and whose they are."""
+    return [
+        {"evader": goal.evader, "name": name, "place": list(place)}
+        for goal, (name, place) in zip(goals, named(goals), strict=True)
+    ]
 
 
 def limits(setup: Setup | None) -> Document:
@@ -156,7 +166,7 @@ def board(picture: Picture, status: str) -> Document:
         "commands": [_command(command) for command in picture.commands[-6:]],
         "log": [line[0][0] for line in log_lines(picture)[-LOG_MOST:]],
         "situation": _situation(picture), "aims": [_aim(v) for v in now.vehicles if v.decision is not None],
-        "wind": _wind(now),
+        "wind": _wind(now), "knowledge": _knowledge(picture.game),
     }  # fmt: skip
 
 
@@ -202,8 +212,8 @@ def sentence(vehicle: VehicleView | None) -> str:
 
 
 def _role(role: str, after: int | None) -> str:
-    """`pursuer`; where there are several evaders whom it is after: `pursuer of 12`."""
-    return f"{role} of {after}" if role and after else role
+    """`pursuer`; where there are several evaders whom it is after: `after 12`."""
+    return f"after {after}" if role and after else role
 
 
 def _game(game: GameView) -> Document:
@@ -228,6 +238,23 @@ def _plan(plan: TeamPlan | None) -> Document | None:
         return None
     parts = [{"id": part.id, "role": part.role.value} for part in plan.parts]
     return {"words": band_in_words(plan), "parts": parts}
+
+
+def _knowledge(game: GameView) -> list[Document]:
+    """Of each evader the team's goal and why, what holds with its strength, and arcs to draw."""
+    found: dict[int, Document] = {
+        id: {"evader": id, "goal": goal_in_words(goal), "lines": [], "arcs": []}
+        for id, goal in goals_of(game).items()
+    }
+    for word in game.knowledge:
+        one = found.setdefault(word.quarry, {"evader": word.quarry, "goal": goal_in_words(word.goal)})
+        one["lines"] = [{"words": edge.words, "strength": _number(edge.strength)} for edge in told(word)]
+        one["arcs"] = [
+            {"source": arc.source, "from": list(arc.ends[0]), "to": list(arc.ends[1]), "words": arc.words,
+             "strength": arc.strength}
+            for arc in arcs(word)
+        ]  # fmt: skip
+    return [found[id] for id in sorted(found)]
 
 
 def _alerts(picture: Picture) -> list[Document]:

@@ -15,7 +15,7 @@ from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec
 from onboard.pilot.predictor.manoeuvre import ManoeuvreFilter
 from onboard.pilot.track_filter import Fate, TrackFilter
-from onboard.wire.bus.messages import Role, Track
+from onboard.wire.bus.messages import Track
 
 AHEAD_S = (0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0)  # after the newest measurement
 MARKS_S = (1.0, 2.0, 4.0)  # instants that are drawn as rings
@@ -70,7 +70,9 @@ class Fans:
     def take(self, picture: Picture) -> None:
         """Follow the tracks that are fed: those of evaders, all where the setup is not known."""
         setup = picture.game.setup
-        evaders = None if setup is None else {m.id for m in setup.roster if m.role is Role.EVADER}
+        evaders = None if setup is None else set(picture.game.evaders)
+        if evaders is not None and len(evaders) > 1:
+            evaders -= {fate.id for fate in picture.game.fates if fate.out}
         wanted = [t.track for t in current_tracks(picture) if evaders is None or t.id in evaders][:FANS_MOST]
         self._fans = {track.id: self._fans.get(track.id) or Fan() for track in wanted}
         for track in wanted:

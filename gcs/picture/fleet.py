@@ -13,6 +13,7 @@ from collections import Counter, deque
 from collections.abc import Callable, Iterator
 from typing import Any
 
+from gcs.picture import knowledge
 from gcs.picture.current import HEALTH_OLD_S, MOTION_OLD_S
 from gcs.picture.plausible import plausible
 from gcs.picture.records import TrackRecord, VehicleRecord, age_s
@@ -22,6 +23,7 @@ from gcs.picture.team import Plans, counting
 from gcs.picture.values import GameView, LogLine, TrackView, VehicleView
 from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus import topics
+from onboard.wire.bus.knowledge_messages import Knowledge
 from onboard.wire.bus.messages import (
     DecisionReport,
     EvaderBrief,
@@ -66,6 +68,7 @@ class Fleet:
         self._phase: PhaseChange | None = None
         self._outcome: Outcome | None = None
         self._plans: Plans = {}
+        self._knowledge: knowledge.Heard = {}
         self._brief: EvaderBrief | None = None
         self._own_briefs: dict[int, OwnBrief] = {}  # by evader, where there are several
         self._master: Master | None = None
@@ -161,6 +164,9 @@ class Fleet:
 
     def _on_plan(self, plan: TeamPlan, now_ns: int) -> None:
         self._plans[plan.id] = (plan, now_ns)
+
+    def _on_knowledge(self, word: Knowledge, now_ns: int) -> None:
+        knowledge.keep(self._knowledge, word, now_ns)
 
     def _on_health(self, health: Health, now_ns: int) -> None:
         entry = self._life(health.id, health.nonce, now_ns)
@@ -295,6 +301,7 @@ class Fleet:
             master_age_s=age_s(self._master_ns, now_ns),
             two_masters=alive > 1,
             plan=plan,
+            knowledge=knowledge.counting(self._knowledge, plan, now_ns, known),
         )
 
     def _decided(self, now_ns: int) -> Iterator[tuple[int, int]]:
@@ -333,6 +340,7 @@ _TAKERS: dict[Topic[Any], Callable[[Fleet, Any, int], None]] = {
     topics.STATE: Fleet._on_state,
     topics.DECISION: Fleet._on_decision,
     topics.PLAN: Fleet._on_plan,
+    topics.KNOWLEDGE: Fleet._on_knowledge,
     topics.HEALTH: Fleet._on_health,
     topics.EVENTS: Fleet._on_event,
     topics.TRACK: Fleet._on_track,

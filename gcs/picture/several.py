@@ -50,9 +50,15 @@ def planned(scenario: Scenario) -> tuple[GoalView, ...]:
 
 
 def named(targets: tuple[GoalView, ...]) -> list[tuple[str, Triple]]:
-    """Each target with its name for people: `target`, of several evaders `target of 12`."""
-    several = len({goal.evader for goal in targets}) > 1
-    return [(f"target of {goal.evader}" if several else "target", goal.place) for goal in targets]
+    """Each target with its name for people: `target`; of several evaders `target of 12`, of one with several
+    targets `target 2`, as the team's knowledge counts them."""
+    by_evader = {goal.evader: [one.place for one in targets if one.evader == goal.evader] for goal in targets}
+    found = []
+    for evader, places in by_evader.items():
+        whose = f" of {evader}" if len(by_evader) > 1 else ""
+        for number, place in enumerate(places, 1):
+            found.append((f"target{f' {number}' if len(places) > 1 else ''}{whose}", place))
+    return found
 
 
 def first_evader(setup: Setup | None) -> int:

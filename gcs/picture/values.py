@@ -11,6 +11,8 @@ from math import sqrt
 
 import msgspec
 
+from onboard.game import sides
+from onboard.wire.bus.knowledge_messages import Knowledge
 from onboard.wire.bus.messages import (
     CommandKind,
     DecisionReport,
@@ -166,6 +168,12 @@ class GameView(Value, frozen=True):
     master_age_s: float = INF
     two_masters: bool = False
     plan: TeamPlan | None = None  # that the pursuers fly by
+    knowledge: tuple[Knowledge, ...] = ()  # what its planner knows, by evader
+
+    @property
+    def evaders(self) -> tuple[int, ...]:
+        """The ids of the setup's evaders, ascending."""
+        return sides.evaders(self.roles)
 
     @property
     def roles(self) -> dict[int, Role]:

@@ -47,7 +47,7 @@ def _field(run: Run) -> Document:
     if setup is not None:
         origin = [setup.origin.latitude_deg, setup.origin.longitude_deg, setup.origin.altitude_m]
     return {
-        "targets": [{"evader": goal.evader, "place": list(goal.place)} for goal in run.targets],
+        "targets": documents.targets(run.targets),
         "roster": [{"id": id, "role": flown.role.value} for id, flown in sorted(run.flown.items())],
         "capture": run.capture_radius, "safety": run.safety_distance, "flat": run.flat,
         "planar": bool(setup.rules.planar) if setup is not None else run.flat, "origin": origin,

@@ -9,9 +9,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import atan2, hypot
 
+from onboard.core.game.rules import Target
 from onboard.core.math.constants import NS_PER_S
+from onboard.core.math.states import Vehicle, VehicleLimits
+from onboard.core.math.vectors import Vec
+from onboard.core.strategy.semantic.model import MODEL
+from onboard.core.strategy.team.plan_types import Heights, Member
+from onboard.game.knowledge_words import known_of, message
+from onboard.game.odds import engagement
 from onboard.wire.autopilot_kind import Kind
-from onboard.wire.bus import messages, team_messages, topics
+from onboard.wire.bus import knowledge_messages, messages, team_messages, topics
 from onboard.wire.bus.messages import (
     AgentStage,
     DecisionLevel,
@@ -160,8 +167,8 @@ def flight(game: str = "field") -> Iterator[Item]:
             told = len(played.out)
             out = tuple(played.out)
             yield item(messages.PhaseChange(Phase.RUNNING, t0_ns, now_ns, out=out), now_ns + 10)
-        for message, late in _said(plan, played, step, time, now_ns):
-            yield item(message, now_ns + late)
+        for said, late in _said(plan, played, step, time, now_ns):
+            yield item(said, now_ns + late)
     end_ns = now_ns + 900_000
     for id in played.playing():
         played.out.append(EvaderOutcome(id, OutcomeResult.ESCAPED, HORIZON_S, 0, played.nearest[id]))
@@ -192,6 +199,9 @@ def _said(
             yield _decision(member, played, time, now_ns), late + 3
     if time >= 0.0 and step % 2 == 0:
         yield _plan(played, time, now_ns), 50_000
+    if time >= 0.0 and step % 10 == 0:
+        for late, evader in enumerate(played.playing()):
+            yield _knowledge(plan, played, evader, time, now_ns), 60_000 + late
 
 
 def _health(member: messages.Member, now_ns: int, stage: AgentStage) -> messages.Health:
@@ -212,6 +222,25 @@ def _decision(
         id, now_ns, time, DecisionLevel.TACTICAL, DecisionModule.GEOMETRIC, "paper" if evader else "team",
         rule, played.ways[id], aim, apart(played.places[id], aim) / member.speed, 2.0, quarry=quarry,
     )  # fmt: skip
+
+
+def _knowledge(
+    plan: messages.Setup, played: _Game, evader: int, time: float, now_ns: int
+) -> knowledge_messages.Knowledge:
+    """What the planner says of one evader and those who are after it, by the core's own network."""
+    team = tuple(id for id in AFTER if played.quarry(id) == evader)
+
+    def member(id: int) -> Member:
+        speed = 12.0 if id in EVADERS else 9.0
+        return Member(Vehicle(Vec(*played.places[id]), Vec(*played.ways[id]), speed), VehicleLimits(), True)
+
+    situation = engagement(
+        member(evader), tuple(map(member, team)), Target(True, Vec(*TARGETS[evader][0])), plan.core_rules(),
+        Heights(5.0, 150.0), 0.5,
+    )  # fmt: skip
+    targets = tuple(Target(True, Vec(*goal)) for goal in TARGETS[evader])
+    situation = situation._replace(now=time, targets=targets)
+    return message(known_of(situation, None, MODEL, evader, team), 2, now_ns, 1002)
 
 
 def _plan(played: _Game, time: float, now_ns: int) -> team_messages.TeamPlan:

@@ -162,6 +162,7 @@ function drawBoard(board) {
   drawAlerts(board.alerts);
   drawCommands(board.commands);
   drawLog(board.log);
+  drawKnown(board.knowledge);
   if (page.selected === null && board.vehicles.length) table.choose(board.vehicles[0].id);
 }
 
@@ -215,6 +216,26 @@ function drawLog(log) {
   lines($("log"), [...log].reverse(), (line) => element("li", line));
 }
 
+// The team's goals with why, and what holds in the game against the evader that the selected vehicle is about.
+function drawKnown(knowledge) {
+  $("knowledge").hidden = !knowledge.length;
+  const chosen = scene.knownEvader();
+  const lines = knowledge.flatMap((one) => [
+    { evader: one.evader, goal: one.goal || "no goal" }, ...(one.evader === chosen ? one.lines : []),
+  ]);
+  const key = JSON.stringify(lines);
+  if ($("known").dataset.key === key) return;
+  $("known").dataset.key = key;
+  $("known").replaceChildren(...lines.map((line) => {
+    if (line.goal) return element("p", knowledge.length > 1 ? `evader ${line.evader}: ${line.goal}` : line.goal, "goal");
+    const item = element("p", "", "relation");
+    const bar = element("meter", "");
+    bar.value = line.strength;
+    item.append(bar, element("span", line.strength.toFixed(2), "strength"), element("span", line.words));
+    return item;
+  }));
+}
+
 function drawDetail(detail) {
   const sentence = detail.decision ? [element("p", detail.decision.sentence, "sentence")] : [];
   const styled = (style) => (style.includes("red") ? "error" : style.includes("yellow") ? "warning" : "");
@@ -225,6 +246,7 @@ function chosen(ids, first) {
   page.ids = ids;
   page.selected = first;
   scene.select(first);
+  if (page.board) drawKnown(page.board.knowledge);
   if (scene.following !== null) scene.following = first;
   send({ do: "select", id: first });
   drawWhom();
@@ -276,7 +298,7 @@ function showHelp() {
   const rows = [
     ["x", "ABORT ALL: everybody holds or returns"], ["h r b l", "hold, resume, return, land those selected; return and land ask"],
     ["y n", "answer"], [":", "type an order"], ["a", "the topmost alert was seen"], ["↑ ↓ j k", "select the vehicle above or below"],
-    ["v f c", "plan or 3-D; fit; follow the selected vehicle"], ["t o i m", "trails, shapes, aims, map on and off"],
+    ["v f c", "plan or 3-D; fit; follow the selected vehicle"], ["t o i w m", "trails, shapes, aims, relations, map on and off"],
     ["shift+arrows", "turn the 3-D view, shift the plan"], ["page up, page down", "nearer, farther"],
     ["space", "replay: pause and play"], ["← → , .", "replay: 10 s, 0.1 s"], ["[ ]", "replay: the mark before, after"],
     ["+ −", "replay: faster, slower"], ["home end", "replay: to its begin, its end"],
@@ -330,7 +352,7 @@ $("yes").addEventListener("click", () => { $("question").close(); send({ do: "ye
 $("no").addEventListener("click", () => { $("question").close(); send({ do: "no" }); });
 $("question").addEventListener("cancel", () => send({ do: "no" }));
 
-const toggles = { t: "trails", o: "shapes", i: "aims" };
+const toggles = { t: "trails", o: "shapes", i: "aims", w: "relations" };
 document.addEventListener("keydown", (event) => {
   const { key } = event;
   const steers = page.hello && page.hello.steers;

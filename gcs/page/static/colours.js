@@ -20,7 +20,7 @@ export function colours(palette, dark) {
     dark,
     ink: shade(palette.ink), faint: shade(palette.faint), paper: shade(palette.paper), grid: shade(palette.grid),
     target: shade(palette.target), capture: shade(palette.capture),
-    safety: shade(palette.safety), fence: shade(palette.fence), zone: shade(palette.zone), apollonius: shade(palette.apollonius),
+    safety: shade(palette.safety), fence: shade(palette.fence), zone: shade(palette.zone), force: shade(palette.force), apollonius: shade(palette.apollonius),
     cone: shade(palette.cone), free: shade(palette.pursuers[1]),
     vehicle: (id, evader) =>
       shade(evader ? palette.evaders[(ranks.get(id) || 0) % palette.evaders.length] : palette.pursuers[(((id - 2) % palette.pursuers.length) + palette.pursuers.length) % palette.pursuers.length]),

@@ -4,7 +4,8 @@ import {
   LineBasicMaterial, LineDashedMaterial, LineLoop, LineSegments, Mesh, RingGeometry, SphereGeometry, Vector3,
 } from "three";
 import { place } from "frames";
-import { dashes, dots, paint, plain, tint, veil } from "paint";
+import { isEvader } from "colours";
+import { dashes, dots, faded, paint, plain, tint, veil } from "paint";
 
 function points(list) {
   const geometry = new BufferGeometry();
@@ -52,6 +53,14 @@ function strip(way, times) {
   return points(sides.slice(1).flatMap(([left, right], i) => [sides[i][0], sides[i][1], left, sides[i][1], right, left]));
 }
 
+// The head of an arrow over the ground: from one side over the tip to the other.
+function arrow(tip, [x, y, z], half) {
+  const [dx, dz] = [tip[0] - x, tip[2] - z];
+  const long = Math.hypot(dx, dz) || 1;
+  const side = [(-dz / long) * half, (dx / long) * half];
+  return [[x + side[0], y, z + side[1]], tip, [x - side[0], y, z - side[1]]];
+}
+
 export function round(value) {
   const power = 10 ** Math.floor(Math.log10(value));
   const step = [1, 2, 5, 10].find((s) => s * power >= value * 0.999999);
@@ -65,6 +74,8 @@ export class Ground {
     this.near = new Group(); // spheres around evaders
     this.evaders = new Map(); // where they are
     this.chases = new Group();
+    this.arcs = new Group(); // relations of what the team knows
+    this.named = []; // their words and places
     this.zones = [];
     this.chosen = new Group(); // of the selected vehicle
     const aiming = new LineDashedMaterial({ vertexColors: true, transparent: true, dashSize: 1, gapSize: 0.6 });
@@ -75,7 +86,7 @@ export class Ground {
     this.gaps = new Group();
     this.fans = new Group();
     this.expected = []; // places at the fans' marks, for labels
-    this.group.add(this.still, this.near, this.chosen, this.aims, this.chases, this.gaps, this.fans);
+    this.group.add(this.still, this.near, this.chosen, this.aims, this.chases, this.arcs, this.gaps, this.fans);
   }
 
   setColours(colours) {
@@ -219,6 +230,25 @@ export class Ground {
       geometry.setAttribute(name, new BufferAttribute(new Float32Array(this.aimsRoom * 2 * size), size).setUsage(DynamicDrawUsage));
     }
     this.aims.geometry = geometry;
+  }
+
+  // Relations as arcs that rise over the line between their ends and swing to its left, so that two that lead
+  // to and fro keep apart; the stronger, the less faint.
+  setArcs(arcs) {
+    clear(this.arcs);
+    this.named = [];
+    for (const arc of arcs) {
+      const [from, to] = [place(arc.from), place(arc.to)];
+      const line = to.map((end, axis) => end - from[axis]);
+      const length = Math.hypot(...line);
+      const over = [line[2] * 0.12, this.field && this.field.planar ? 0 : length * 0.12, -line[0] * 0.12];
+      const at = (t) => from.map((start, axis) => start + t * line[axis] + 4 * t * (1 - t) * over[axis]);
+      const way = Array.from({ length: 25 }, (_, i) => at(i / 24));
+      const colour = arc.source ? this.colours.vehicle(arc.source, isEvader(arc.source)) : this.colours.force;
+      this.arcs.add(new Line(points(way), faded(colour, 0.4 + 0.2 * Math.round(3 * arc.strength))));
+      this.arcs.add(new Line(points(arrow(at(0.9), at(0.84), length * 0.02)), faded(colour, 1)));
+      this.named.push({ words: arc.words, at: at(0.5) });
+    }
   }
 
   setGaps(judged) {

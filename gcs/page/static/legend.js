@@ -26,6 +26,7 @@ export function entries(c) {
     [[line(pursuer)], "way flown; the thin line down is the height"],
     [[line(pursuer, "3 3")], "aim of the rule in force"],
     [[line(evader, "1 3")], "of several evaders: who is after which"],
+    [[["path", { d: "M2 13Q17 -3 32 13M26 11L32 13L30 7", stroke: pursuer, "stroke-width": 1.6 }]], "relation that the team knows, and how strong it is"],
     [[ring(c.target, 6), ["path", { d: "M11 8H23M17 2V14", stroke: c.target }]], "target of an evader"],
     [[ring(c.capture, 4), ring(c.safety, 7, "3 2")], "capture radius R; dashed: safety distance ρ"],
     [[ring(evader, 4), ring(evader, 7, "3 2")], "an evader after 1, 2, 4 s: 1σ; dashed: 2σ"],

@@ -19,5 +19,7 @@ export const veil = (colour, opacity) => paint(
 
 export const dots = (colour) => paint(`dots ${colour}`, () => new LineDashedMaterial({ color: colour, dashSize: 0.3, gapSize: 1, transparent: true, opacity: 0.75 }));
 
+export const faded = (colour, opacity) => paint(`faded ${colour} ${opacity}`, () => new LineBasicMaterial({ color: colour, transparent: true, opacity }));
+
 // For lines whose `lineDistance` is counted in dashes.
 export const dashes = (colour) => paint(`dashes ${colour}`, () => new LineDashedMaterial({ color: colour, dashSize: 1, gapSize: 0.65 }));

@@ -65,7 +65,7 @@ export class Scene {
     this.kept = true; // fitted until somebody moves the camera
     this.following = null;
     this.selected = null;
-    this.shown = { labels: true, trails: true, aims: true, shapes: true };
+    this.shown = { labels: true, trails: true, aims: true, shapes: true, relations: true };
     this.where = new Map();
     this.drawn = 0;
     this.names = new Names();
@@ -154,8 +154,16 @@ export class Scene {
     this.parts = new Map(((game.plan && game.plan.parts) || []).map((part) => [part.id, part.role]));
     this.ground.setAims(this.shown.aims ? board.aims : [], this.where, this.selected);
     this.ground.setChases(this.shown.aims ? this.after : new Map(), this.where);
+    const known = (board.knowledge || []).find(({ evader }) => evader === this.knownEvader());
+    this.ground.setArcs(this.shown.relations && known ? known.arcs : []);
     this.ground.setGaps(this.shown.shapes && board.situation ? board.situation.evaders : []);
     this.wait();
+  }
+
+  // The evader whose game is told: the selected one, or whom the selected one is after; else the first.
+  knownEvader() {
+    const ids = ((this.board && this.board.knowledge) || []).map(({ evader }) => evader);
+    return [this.selected, this.after && this.after.get(this.selected), ids[0]].find((id) => ids.includes(id));
   }
 
   // Draw what is new with the next frame, soon in any case: drawing is what costs most.
@@ -337,7 +345,11 @@ export class Scene {
     }
     for (const goal of this.field ? this.field.targets : []) {
       const at = this.onScreen(...place(goal.place));
-      if (at) this.name(pen, severalEvaders() && goal.evader ? `target of ${goal.evader}` : "target", at, colours.ink);
+      if (at) this.name(pen, goal.name, at, colours.ink);
+    }
+    for (const arc of this.ground.named) {
+      const at = this.onScreen(...arc.at);
+      if (at) this.name(pen, arc.words, at, colours.faint, { away: 4, must: false });
     }
     for (const zone of this.ground.zones) {
       const at = this.onScreen(...zone.at);

@@ -109,15 +109,19 @@ export class VehicleTable {
       if (cell.dataset.text !== text) {
         cell.dataset.text = text;
         cell.textContent = text;
-        if (i === 0 && this.colours) {
-          const swatch = document.createElement("span");
-          swatch.className = `swatch ${row.role}`;
-          swatch.style.background = this.colours.vehicle(row.id, row.role === "evader");
-          cell.prepend(swatch);
-        }
+        if (i === 0) cell.prepend(document.createElement("span"));
         if (this.columns[i].name === "health") cell.className = `column-health grade-${text}`;
       }
     });
+    if (this.colours) {
+      const swatch = line.querySelector("span");
+      const shade = this.colours.vehicle(row.id, row.role === "evader");
+      if (swatch.dataset.shade !== `${row.role} ${shade}`) {
+        swatch.dataset.shade = `${row.role} ${shade}`; // of another theme, or of more evaders
+        swatch.className = `swatch ${row.role}`;
+        swatch.style.background = shade;
+      }
+    }
     line.classList.toggle("chosen", this.marked.has(row.id));
     line.setAttribute("aria-selected", this.marked.has(row.id));
     return line;

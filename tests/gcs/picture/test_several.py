@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from itertools import takewhile
+
 import pytest
 from msgspec.structs import replace
 
 from gcs.console import plan
 from gcs.console.detail import detail
 from gcs.console.plain_lines import status
-from gcs.console.status_line import log_lines, status_line
+from gcs.console.status_line import alert_lines, known_lines, log_lines, status_line
 from gcs.console.vehicle_table import rows
 from gcs.page import documents
+from gcs.picture import knowledge
 from gcs.picture.assessment import assess as assessments
 from gcs.picture.assessment import beyond_one, engagements_in
 from gcs.picture.reducer import PictureReducer
@@ -21,7 +24,17 @@ from onboard.core.math.states import Vehicle
 from onboard.core.math.vectors import ZERO, Vec, sub
 from onboard.game import palette, sides
 from onboard.game.go_or_no_go import lines
+from onboard.game.knowledge_words import goal_in_words
+from onboard.wire.bus.knowledge_messages import (
+    Knowledge,
+    KnowledgeEdge,
+    KnowledgeNode,
+    NodeKind,
+    PlannedGoal,
+    TeamGoal,
+)
 from onboard.wire.bus.messages import EvaderOutcome, OutcomeResult, Phase, Role, Setup
+from onboard.wire.bus.team_messages import TeamPlan
 from tests.support.chase_messages import EPOCH_NS
 from tests.support.sample_messages import Tower, phase, setup, state
 from tests.support.three_on_ten import AFTER, EVADERS, TARGETS, R, flight
@@ -186,7 +199,7 @@ def test_the_page_is_told_all_of_it(late: Picture, over: Picture) -> None:
     assert [found["evader"] for found in board["situation"]["evaders"]] == [12, 13]
     assert board["situation"]["words"].startswith("evader 1 captured; evader 12 widest way out ")
     assert board["game"]["out"] == [{"id": 1, "word": "captured"}]
-    assert {row["id"]: row["cells"][1] for row in board["vehicles"]}[6] == "pursuer of 12"
+    assert {row["id"]: row["cells"][1] for row in board["vehicles"]}[6] == "after 12"
     assert documents.board(over, "")["game"]["outcome"]["words"].startswith("3 evaders: ")
     assert over.game.setup.rules.R == R
 
@@ -196,3 +209,65 @@ def test_what_pursuers_know_of_targets_counts_where_no_brief_was_heard() -> None
     known: Setup = replace(setup(3), target=(500.0, 0.0, -50.0))
     tower.hear(known)
     assert [(goal.evader, goal.place) for goal in tower.picture.game.targets] == [(1, (500.0, 0.0, -50.0))]
+
+
+def test_what_the_team_knows_is_told_with_its_goal_and_strengths(early: Picture, late: Picture) -> None:
+    """The planner's own words: of each evader in the game, while its plan is the one that is flown."""
+    assert [word.quarry for word in early.game.knowledge] == [1, 12, 13]
+    assert [word.quarry for word in late.game.knowledge] == [12, 13], "evader 1 is out"
+    word = early.game.knowledge[1]
+    told = known_lines(early)
+    start = told.index(f"evader 12: {goal_in_words(word.goal)}")
+    shown = list(takewhile(lambda line: line.startswith("  "), told[start + 1 :]))
+    said = {f"  {edge.words} ({edge.strength:.2f})": edge for edge in word.edges}
+    assert set(shown) <= set(said)
+    threats = [edge for edge in word.edges if edge.relation == "threatens"]
+    assert threats, "it can reach a target before the horizon"
+    assert sum("threatens" in line for line in shown) == len(threats)
+    covers = [edge for edge in word.edges if edge.relation == "covers"]
+    for target in {edge.sink for edge in covers}:
+        best = max((edge for edge in covers if edge.sink == target), key=lambda edge: edge.strength)
+        assert f"  {best.words} ({best.strength:.2f})" in shown
+    assert not any("slower" in line for line in shown)
+
+
+def test_a_goal_is_a_line_of_the_console(early: Picture) -> None:
+    told = [line[0][0] for line in alert_lines(early, 100, 8)]
+    assert [line for line in told if line.startswith("goal ")] == [
+        f"goal E{word.quarry}: {goal_in_words(word.goal)}" for word in early.game.knowledge
+    ]
+    assert alert_lines(early, 100, 1) == [[("no alerts", "dim")]], "alerts go before goals"
+    assert any(text.startswith("the team's goal: ") for text, _ in detail(early, 6))
+    assert any(text.startswith("the pursuers' goal: ") for text, _ in detail(early, 12))
+    assert any(" STATUS goal E12: " in line for line in status(early))
+
+
+def test_a_word_counts_while_it_is_fresh_and_of_the_planner_alone() -> None:
+    tower = Tower()
+    tower.hear(setup(3), phase(Phase.RUNNING))
+    goal = PlannedGoal(1, TeamGoal.RING, 0, "ring", "there are enough")
+    word = Knowledge(2, tower.now_ns, 1.0, 1, (), (), goal)
+    tower.hear(word, replace(word, id=3, goal=replace(goal, goal=TeamGoal.CHASE)))
+    assert tower.picture.game.knowledge == (), "nobody plans"
+    plan = TeamPlan(2, tower.now_ns, 1.0, (), False, 0.5, 0.0, 0.0)
+    tower.hear(plan)
+    assert tower.picture.game.knowledge == (word,)
+    for _ in range(60):
+        tower.wait(0.1)
+        tower.hear(plan)
+    assert tower.picture.game.knowledge == (), "the last word is six seconds old"
+
+
+def test_a_users_own_relation_is_told() -> None:
+    nodes = (
+        KnowledgeNode(NodeKind.EVADER, 1, "evader 1", (0.0, 0.0, 0.0)),
+        KnowledgeNode(NodeKind.PURSUER, 2, "pursuer 2", (50.0, 0.0, 0.0)),
+    )
+    edges = (
+        KnowledgeEdge("slower", 1, 0, 0.9, 0.5, "pursuer 2 is slower"),
+        KnowledgeEdge("sun_behind", 1, 0, 0.7, 0.7, "pursuer 2 has the sun behind it"),
+    )
+    word = Knowledge(2, 0, 1.0, 1, nodes, edges, PlannedGoal(1, TeamGoal.NONE, 0, "", ""))
+    assert [edge.words for edge in knowledge.told(word)] == ["pursuer 2 has the sun behind it"]
+    (arc,) = knowledge.arcs(word)
+    assert (arc.source, arc.ends, arc.words) == (2, ((50.0, 0.0, 0.0), (0.0, 0.0, 0.0)), "sun_behind 0.70")
