@@ -213,6 +213,11 @@ class Scenario(StrictConfig, frozen=True):
         return tuple(index + 1 if v.id is None else v.id for index, v in enumerate(self.vehicles))
 
     @property
+    def several(self) -> bool:
+        """Whether there are several evaders, or targets of which any counts."""
+        return bool(self.evaders or self.evader.targets)
+
+    @property
     def evader_ids(self) -> tuple[int, ...]:
         """Ids of `evading`."""
         return (self.ids[0], *self.ids[1 + len(self.pursuers) :])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from functools import partial
 from math import atan2, degrees, pi
 from pathlib import Path
@@ -53,7 +54,11 @@ def draw_game(played: Played, folder: Path, stem: str = "") -> list[Path]:
     handles, labels = axes[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=5, fontsize=9)
     name = f"{played.scenario.name}-{played.strategy}".replace(" ", "-").replace(",", "").replace("/", "-")
-    stem = stem or name
+    return saved(figure, folder, stem or name)
+
+
+def saved(figure: Any, folder: Path, stem: str) -> list[Path]:
+    """A picture as PNG and SVG, which are told; the figure is closed."""
     written = []
     for ending in ("png", "svg"):
         path = folder / f"{stem}.{ending}"
@@ -61,7 +66,7 @@ def draw_game(played: Played, folder: Path, stem: str = "") -> list[Path]:
         whole_or_nothing(path, partial(figure.savefig, dpi=110, metadata=metadata))
         figure.set_layout_engine("none")  # laid out by the first, which takes as long as drawing does
         written.append(path)
-    plt.close(figure)
+    pyplot().close(figure)
     return written
 
 
@@ -69,7 +74,7 @@ def draw_stage(axis: Any, played: Played, index: int) -> None:
     """One instant: paths so far, circles and centres, cones, forces, headings."""
     game, decisions, target = played.frames[index], played.decisions(index), played.conditions.target
     view = still_view(game, played.conditions)
-    span = _extent(played)
+    span = extent(_points(played))
     _paths(axis, played, index)
     for number, pursuer in enumerate(game.pursuers):
         sphere = apollonius_sphere(game.evader.position, game.evader.speed, pursuer.position, pursuer.speed)
@@ -87,23 +92,23 @@ def draw_stage(axis: Any, played: Played, index: int) -> None:
         axis.plot(pursuer.position.y, pursuer.position.x, "o", color=colour, ms=7, label=f"pursuer {vehicle}")
         start = played.frames[0].pursuers[number].position  # where no two are in one place
         axis.annotate(str(vehicle), (start.y, start.x), (6, 5), textcoords="offset points", color=colour)
-        _arrow(axis, pursuer.position, decisions.pursuers[number].direction, 0.05 * span, colour, None)
+        arrow(axis, pursuer.position, decisions.pursuers[number].direction, 0.05 * span, colour, None)
     e = game.evader.position
     for number, cone in enumerate(view.cones):
         half, middle = half_angle(cone), atan2(cone.axis.x, cone.axis.y)
         if half < pi:
-            axis.add_patch(_wedge(e, 0.14 * span, middle, half))
+            axis.add_patch(wedge(e, 0.14 * span, middle, half))
             if number == 0:
                 axis.plot([], [], color=CONE, lw=8, alpha=0.25, label="headings blocked by a pursuer")
     axis.plot(e.y, e.x, "o", color=EVADER, ms=8, label="evader 1")
-    _arrow(axis, e, decisions.evader.direction, 0.13 * span, EVADER, "chosen heading")
+    arrow(axis, e, decisions.evader.direction, 0.13 * span, EVADER, "chosen heading")
     force = resultant_force(view)
     if norm(force) > 0.0:
         size = 1.0 / norm(force)
         way = Vec(force.x * size, force.y * size, 0.0)
-        _arrow(axis, e, way, 0.09 * span, palette.FORCE.light, "resultant force F_res")
+        arrow(axis, e, way, 0.09 * span, palette.FORCE.light, "resultant force F_res")
     if target.exists:
-        _arrow(axis, e, target_direction(view), 0.09 * span, TARGET, "direction of the target F_g")
+        arrow(axis, e, target_direction(view), 0.09 * span, TARGET, "direction of the target F_g")
         axis.plot(target.position.y, target.position.x, "*", color=TARGET, ms=14, label="target")
     rule = decisions.evader.rule.name.lower().replace("_", " ")
     words = f"t = {game.time:.2f} s\nevader: {rule}"
@@ -116,7 +121,7 @@ def draw_stage(axis: Any, played: Played, index: int) -> None:
         fontsize=9,
         bbox={"fc": palette.PAPER.light, "ec": "none", "alpha": 0.8},
     )
-    _frame(axis, played)
+    frame(axis, _points(played))
 
 
 def check_film(path: Path) -> None:
@@ -135,20 +140,30 @@ def check_film(path: Path) -> None:
 
 def animate(played: Played, path: Path, seconds: float = 10.0, fps: int = 12) -> None:
     """The game as GIF, or as MP4 where ffmpeg is at hand. Raises ConfigError."""
+    title = f"{played.scenario.name}: {played.verdict.name.lower()} at {played.final.score.time:.1f} s"
+
+    def draw(axis: Any, index: int) -> None:
+        draw_stage(axis, played, index)
+        axis.set_title(title)
+
+    filmed(draw, len(played.frames), path, seconds, fps)
+
+
+def filmed(
+    draw_at: Callable[[Any, int], None], frames: int, path: Path, seconds: float = 10.0, fps: int = 12
+) -> None:
+    """A film of what `draw_at(axis, frame)` draws of so many frames. Raises ConfigError."""
     check_film(path)
     plt = pyplot()
     from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
 
     figure, axis = plt.subplots(figsize=(7.5, 7.5), layout="constrained")
-    count = min(len(played.frames), max(2, int(seconds * fps)))
-    chosen = [round(k * (len(played.frames) - 1) / (count - 1)) for k in range(count)]
-
-    title = f"{played.scenario.name}: {played.verdict.name.lower()} at {played.final.score.time:.1f} s"
+    count = min(frames, max(2, int(seconds * fps)))
+    chosen = [round(k * (frames - 1) / (count - 1)) for k in range(count)]
 
     def draw(index: int) -> None:
         axis.clear()
-        draw_stage(axis, played, index)
-        axis.set_title(title)
+        draw_at(axis, index)
 
     movie = FuncAnimation(figure, draw, frames=chosen)
     writer = PillowWriter(fps=fps) if path.suffix.lower() == ".gif" else FFMpegWriter(fps=fps)
@@ -178,7 +193,8 @@ def _circle(centre: Vec, radius: float, colour: str) -> Any:
     return Circle((centre.y, centre.x), radius, fill=False, ec=colour, lw=1.0)
 
 
-def _wedge(centre: Vec, radius: float, middle: float, half: float) -> Any:
+def wedge(centre: Vec, radius: float, middle: float, half: float) -> Any:
+    """Headings about a middle [rad, clockwise from north] as a sector about a place."""
     from matplotlib.patches import Wedge
 
     return Wedge(
@@ -192,7 +208,8 @@ def _wedge(centre: Vec, radius: float, middle: float, half: float) -> Any:
     )
 
 
-def _arrow(axis: Any, start: Vec, way: Vec, length: float, colour: str, label: str | None) -> None:
+def arrow(axis: Any, start: Vec, way: Vec, length: float, colour: str, label: str | None) -> None:
+    """An arrow from a place along a unit vector."""
     axis.annotate(
         "",
         (start.y + way.y * length, start.x + way.x * length),
@@ -210,16 +227,16 @@ def _points(played: Played) -> list[Vec]:
     return [*points, target.position] if target.exists else points
 
 
-def _extent(played: Played) -> float:
-    points = _points(played)
+def extent(points: Sequence[Vec]) -> float:
+    """The width of a picture of these places [m]."""
     wide = max(p.y for p in points) - min(p.y for p in points)
     high = max(p.x for p in points) - min(p.x for p in points)
     return 1.3 * max(wide, high, 1.0)
 
 
-def _frame(axis: Any, played: Played) -> None:
-    points = _points(played)
-    half = 0.5 * _extent(played)
+def frame(axis: Any, points: Sequence[Vec]) -> None:
+    """The axes of a picture of these places."""
+    half = 0.5 * extent(points)
     east = 0.5 * (max(p.y for p in points) + min(p.y for p in points))
     north = 0.5 * (max(p.x for p in points) + min(p.x for p in points))
     axis.set_xlim(east - half, east + half)

@@ -153,7 +153,7 @@ def load_plane(paths: Iterable[Path]) -> list[Scenario]:
     """Load scenarios and demand that they are plane. Raises ConfigError."""
     scenarios = []
     for path in paths:
-        scenario = load(path)
+        scenario = load(path, several=True)
         if not scenario.planar:
             raise ConfigError(f"{path}: position: found three numbers, expected two (a plane game)")
         scenarios.append(scenario)
