@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from onboard.game import palette
-from onboard.game.scenario import Scenario
+from onboard.game.scenario import Scenario, targets_of
 from sim_bridge.campaign.spatial_campaign import Played
 
 ARROW = 0.05  # length of an arrow's barbs, as a share of the picture
@@ -48,16 +48,17 @@ def _stage(axes: Any, scenario: Scenario, played: Played, steps: int) -> None:
     path = played.log[:steps, :, :3] * np.array([1.0, 1.0, -1.0]) / 1000.0  # km; height up
     path = path[:, :, [1, 0, 2]]  # east to the right, north away
     low, high = path.min(axis=(0, 1)), path.max(axis=(0, 1))
-    target = scenario.evader.target
-    if target is not None and len(target) == 3:
-        goal = np.array([target[1], target[0], target[2]]) / 1000.0
-        axes.scatter(*goal, color=palette.TARGET.light, s=110, marker="*", label="target")
+    for number, target in enumerate(place for spec in scenario.evading for place in targets_of(spec)):
+        goal = np.array([target.y, target.x, -target.z]) / 1000.0
+        label = "" if number else "target"
+        axes.scatter(*goal, color=palette.TARGET.light, s=110, marker="*", label=label)
         low, high = np.minimum(low, goal), np.maximum(high, goal)
     for player in range(path.shape[1]):
         line = path[:, player]
-        evader = player == 0
-        color = palette.vehicle(player + 1, evader).light
-        label = f"{'evader' if evader else 'pursuer'} {player + 1}"
+        id = scenario.ids[player]
+        evader = id in scenario.evader_ids
+        color = palette.vehicle(id, evader).light
+        label = f"{'evader' if evader else 'pursuer'} {id}"
         axes.plot(*line.T, color=color, linestyle="--" if evader else "-", linewidth=1.3, label=label)
         axes.scatter(*line[0], facecolors="none", edgecolors=color, s=35)
         ahead = line[-1] - line[-min(len(line), 10)]

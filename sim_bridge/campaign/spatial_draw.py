@@ -18,7 +18,7 @@ from onboard.core.game.advance import EvaderStrategy, PursuerStrategy, begin
 from onboard.core.math.vectors import Vec, sub, yaw_of
 from onboard.core.strategy.registry import EVADERS, PURSUERS
 from onboard.core.strategy.team.planners import planner_for
-from onboard.game.scenario import Scenario, VehicleSpec, load
+from onboard.game.scenario import Scenario, VehicleSpec, demand_one_evader, load
 from onboard.game.staging import places_of, start_headings
 from onboard.runtime.resources import configs
 from sim_bridge.campaign.aboard import Aboard, boarded
@@ -128,7 +128,7 @@ def drawn_scenario(scenario: Scenario, seed: int, spread: Spread = Spread()) -> 
         return scenario
     replace = msgspec.structs.replace
     world = scenario.seed + seed
-    keys = [key_of(world, id, Purpose.PLACE) for id in scenario.ids[1:]]
+    keys = [key_of(world, id, Purpose.PLACE) for id in scenario.pursuer_ids]
     wind = replace(scenario.flight.wind, from_deg=drawn_wind(world))
     flight = replace(scenario.flight, wind=wind)
     fault: FieldError | None = None
@@ -152,6 +152,7 @@ def draw(scenario: Scenario, seed: int, t0: float = T0, compiled: bool = True) -
 
     Raises ConfigError for a scenario that is not the compiled game's: see `demand_spatial`.
     """
+    demand_one_evader(scenario, scenario.name)
     demand_spatial(scenario)
     fixed = fixed_of(scenario)
     scenario = drawn_scenario(scenario, seed)

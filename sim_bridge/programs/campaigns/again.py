@@ -22,7 +22,8 @@ from sim_bridge.plane_game.setup import conditions_of
 from sim_bridge.plane_game.setup import game_of as begun
 from sim_bridge.programs.campaigns import shards
 from sim_bridge.programs.campaigns.plan import Cell, Plan, is_spatial
-from sim_bridge.programs.campaigns.play import Row, drawn, simple_games, spatial_game, spatial_row
+from sim_bridge.programs.campaigns.play import drawn, simple_games, spatial_game, spatial_row
+from sim_bridge.programs.campaigns.rows import Row
 from sim_bridge.programs.run_folder import toml_of
 
 
@@ -58,7 +59,7 @@ class Replayed(NamedTuple):
 
     row: Row  # how it ended now
     pictures: list[Path]
-    why_not: str  # why the evader was not captured; "" where it was
+    why_not: str  # why the evader was not captured; "" where it was, and of several evaders
 
 
 def replay(game: Game, folder: Path) -> Replayed:
@@ -77,6 +78,8 @@ def replay(game: Game, folder: Path) -> Replayed:
         return _explained(game, row, pictures, flown.log[:, :, :3])
     [row] = simple_games(cell, range(seed, seed + 1))
     scenario = drawn(cell, seed)
+    if scenario.several:
+        return Replayed(row, _several(scenario, row, folder, name), "")
     if scenario.planar:
         from sim_bridge.plane_game.figures import draw_game
         from sim_bridge.plane_game.program import play
@@ -100,6 +103,26 @@ def _explained(game: Game, row: Row, pictures: list[Path], places: NDArray[np.fl
     path = pictures[0].with_name(f"{pictures[0].stem}-why-not.png")
     words = why_not(scenario, ways_of(scenario, places, step, aircraft), path)
     return Replayed(row, [*pictures, path], words)
+
+
+def _several(scenario: Scenario, row: Row, folder: Path, name: str) -> list[Path]:
+    """The picture of a game of several evaders."""
+    if scenario.planar:
+        from sim_bridge.plane_game.several import play
+        from sim_bridge.plane_game.several_figures import draw_game
+
+        return draw_game(play(scenario, scenario.pursuers[0].strategy), folder, name)
+    from sim_bridge.campaign.figures import draw_stages
+    from sim_bridge.programs.campaigns.several import ends_of
+
+    dt = conditions_of(scenario).control.dt
+    ends = ends_of([scenario], keep=int(row.time / dt) + 1)
+    log = ends.trace[0][~np.isnan(ends.trace[0][:, 0, 0])]
+    first, team = len(scenario.evading), len(scenario.pursuers)
+    order = [0, *range(first, first + team), *range(1, first)]  # as the scenario has its vehicles
+    verdict = GameResult[row.verdict.upper()]
+    seen: Any = SimpleNamespace(log=log[:, order], verdict=verdict, time=row.time, smallest=row.smallest)
+    return draw_stages(scenario, seen, folder, name)
 
 
 def _in_space(scenario: Scenario, row: Row) -> Any:

@@ -100,12 +100,13 @@ def scenarios_of(paths: tuple[Path, ...]) -> list[Chosen]:
     for label in labels:
         if labels.count(label) > 1:
             raise ConfigError(f"SCENARIO: found {label} twice, expected each once")
-    return [chosen(label, load(file)) for label, file in zip(labels, files, strict=True)]
+    return [chosen(label, load(file, several=True)) for label, file in zip(labels, files, strict=True)]
 
 
 def strategies_in(one: Chosen) -> list[str]:
     """The strategies that a scenario names."""
-    return [one.data["evader"]["strategy"], *(spec["strategy"] for spec in one.data["pursuers"])]
+    everybody = one.data["evader"], *one.data["pursuers"], *one.data.get("evaders", ())
+    return [spec["strategy"] for spec in everybody]
 
 
 def named(names: tuple[str, ...], role: str) -> list[str]:

@@ -38,12 +38,13 @@ PLAYER_KEYS = frozenset(
         "turn_rate_deg",
         "heading_deg",
         "target",
+        "targets",
     )
 )
 SPATIAL_FLIGHT = ("flight.wind.speed", "flight.wind.gust_sigma", "flight.wind.shear", "flight.airframe",
                   "flight.control_rate_hz", "flight.sensor.")  # fmt: skip
 OF_THE_SEED = ("seed", "flight.wind.from_deg")
-NOT_SWEPT = ("name", "description", "expect", "evader.strategy", "pursuers.strategy")
+NOT_SWEPT = ("name", "description", "expect", "evader.strategy", "evaders.strategy", "pursuers.strategy")
 
 
 class Chosen(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -140,6 +141,11 @@ class Plan(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True
         said = (FORMAT, self.fingerprint, self.flown, shard.seeds.start, len(shard.seeds), cells)
         return sha256(msgspec.json.encode(said, order="deterministic")).hexdigest()
 
+    @cached_property
+    def several(self) -> bool:
+        """Whether a scenario has several evaders or targets: then rows tell of each evader."""
+        return any("evaders" in one.data or "targets" in one.data["evader"] for one in self.scenarios)
+
     def _cell_key(self, number: int) -> tuple[Any, ...]:
         rest, pair = divmod(number, len(self.pairs))
         at, point = divmod(rest, len(self.points))
@@ -173,7 +179,8 @@ def scenario_of(chosen: Chosen, point: Point, pair: Pair) -> Scenario:
         if steps is None or not put(data, steps, value):
             raise ConfigError(f"sweep of {chosen.label}: {path}: found no such key in the scenario")
     if pair.evader != AS_WRITTEN:
-        data["evader"]["strategy"] = pair.evader
+        for one in (data["evader"], *data.get("evaders", ())):
+            one["strategy"] = pair.evader
     if pair.pursuers != AS_WRITTEN:
         for one in data["pursuers"]:
             one["strategy"] = pair.pursuers
@@ -182,6 +189,13 @@ def scenario_of(chosen: Chosen, point: Point, pair: Pair) -> Scenario:
 
 def is_spatial(scenario: Scenario) -> bool:
     """Whether the compiled game of aircraft in their wind plays it; else simple motion (7)–(8) does."""
+    if scenario.several:
+        return False
+    return flies_as_aircraft(scenario)
+
+
+def flies_as_aircraft(scenario: Scenario) -> bool:
+    """Whether its vehicles are aircraft whose one-evader games would be played in their wind."""
     try:
         demand_spatial(scenario)
     except ConfigError:
@@ -201,10 +215,11 @@ def spread_of(scenario: Scenario) -> Spread:
     of the nearest pursuer's distance for others."""
     if is_spatial(scenario):
         return Spread()
-    here = scenario.evader.start()
+    evaders = [spec.start() for spec in scenario.evading]
     near = min(
         ((a.x - here.x) ** 2 + (a.y - here.y) ** 2 + (a.z - here.z) ** 2) ** 0.5
         for a in (spec.start() for spec in scenario.pursuers)
+        for here in evaders
     )
     return Spread(SPREAD_SHARE * near, 0.2 * SPREAD_SHARE * near)
 
@@ -217,6 +232,11 @@ def demand_playable(plan: Plan) -> None:
             why = _no_effect(path, cell, plan.flown)
             if why:
                 raise ConfigError(f"sweep of {cell.label}: {path}: {why}")
+        if not plan.flown and cell.scenario.several and flies_as_aircraft(cell.scenario):
+            raise ConfigError(
+                f"{cell.label}: evaders: found several in a game of aircraft in wind, which is not computed;"
+                ' expected --flown, or flight.airframe = "kinematic" for simple motion'
+            )
         if not plan.flown and not is_spatial(cell.scenario):
             names = {spec.strategy for spec in cell.scenario.pursuers}
             if len(names) > 1:
@@ -236,7 +256,7 @@ def _no_effect(path: str, cell: Cell, flown: bool) -> str:
     if flown:
         return "" if plain != "parameters.dt" else "found in a sweep of flights, which have no such step"
     table, _, key = plain.partition(".")
-    if table in ("evader", "pursuers"):
+    if table in ("evader", "evaders", "pursuers"):
         return "" if key in PLAYER_KEYS else "found in a sweep of computed games, which know nothing of it"
     if is_spatial(cell.scenario):
         known = plain != "parameters.dt" if table == "parameters" else plain.startswith(SPATIAL_FLIGHT)

@@ -20,23 +20,12 @@ from sim_bridge.campaign.spatial_draw import draw, drawn_scenario
 from sim_bridge.campaign.spatial_fixed import Sides
 from sim_bridge.campaign.spatial_game import Chosen
 from sim_bridge.plane_game.setup import conditions_of, game_of
+from sim_bridge.programs.campaigns import several
 from sim_bridge.programs.campaigns.plan import Cell, Plan, Shard, is_spatial, spread_of
+from sim_bridge.programs.campaigns.rows import Row
 
 PAIRS = 6  # of strategies up to which each has the fastest kernel, its own; beyond, compiling takes longer
 GOLDEN = 0.618033988749895  # its multiples modulo 1 lie apart, however many there are
-
-
-class Row(NamedTuple):
-    """How one game ended; a column of a shard each."""
-
-    cell: int
-    seed: int
-    verdict: str
-    time: float  # of the verdict [s]
-    smallest: float  # distance of any pursuer [m]
-    captor: int  # number of the pursuer, counted from 1; 0 = nobody
-    unsafe: float  # time within the safety distance [s]; NaN where nobody measured it
-    reversals: int  # of the evader's flown course; −1 where they are not counted
 
 
 def rows(plan: Plan, shard: Shard, tell: Tell = silent) -> Iterator[Row]:
@@ -136,6 +125,8 @@ def _sides(cell: Cell, shared: _Shared) -> Sides:
 def simple_games(cell: Cell, seeds: range, shared: _Shared = ALONE) -> list[Row]:
     """Games of simple motion, all in one call of the kernel; of many strategies all share one."""
     games = [drawn(cell, seed) for seed in seeds]
+    if cell.scenario.several:
+        return several.games_of(cell.number, games, seeds)
     conditions = conditions_of(games[0])
     starts = starts_of([game_of(one) for one in games], [conditions.target.position] * len(games))
     pair = cell.scenario.evader.strategy, cell.scenario.pursuers[0].strategy
@@ -201,7 +192,7 @@ def _flown(cell: Cell, seed: int) -> Row:
     summary = run_virtual(whole())
     if summary.verdict == "none":
         raise ConfigError(f"{cell.label}, seed {seed}: found no outcome of the flight, expected a verdict")
-    ids = [*scenario.ids[1:]]
+    ids = scenario.pursuer_ids
     smallest = float("nan") if summary.smallest_distance is None else summary.smallest_distance
     captor = ids.index(summary.captor) + 1 if summary.captor in ids else 0
     return Row(cell.number, seed, summary.verdict, summary.time, smallest, captor, float("nan"), -1)

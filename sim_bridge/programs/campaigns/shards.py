@@ -18,8 +18,8 @@ from onboard.config.strict import ConfigError
 from onboard.core.strategy.registry import evader_named, pursuer_named
 from onboard.runtime.run_folder import made
 from onboard.runtime.whole_files import sweep, write_first, write_whole
-from sim_bridge.programs.campaigns.plan import Plan, Shard, checked
-from sim_bridge.programs.campaigns.play import Row
+from sim_bridge.programs.campaigns.plan import Cell, Plan, Shard, checked
+from sim_bridge.programs.campaigns.rows import EvaderRow, Row
 
 MANIFEST = "manifest.json"
 KEY = b"apollonius.shard"
@@ -41,7 +41,7 @@ def encoded(plan: Plan, shard: Shard, rows: Iterable[Row]) -> bytes:
         "cell": pa.array([row.cell for row in games], pa.int32()),
         "seed": pa.array([row.seed for row in games], pa.int64()),
         "scenario": _words(cell.label for cell in told),
-        "evader": _words(evader_named(cell.scenario.evader.strategy) for cell in told),
+        "evader": _words(evaders_in(cell) for cell in told),
         "pursuers": _words(
             "+".join(sorted({pursuer_named(spec.strategy) for spec in cell.scenario.pursuers}))
             for cell in told
@@ -59,7 +59,18 @@ def encoded(plan: Plan, shard: Shard, rows: Iterable[Row]) -> bytes:
         "unsafe": pa.array([row.unsafe for row in games], pa.float64()),
         "reversals": pa.array([row.reversals for row in games], pa.int32()),
     }
+    if plan.several:
+        kinds = (pa.string(), pa.float64(), pa.float64(), pa.int16(), pa.float64())
+        one = pa.struct(list(zip(EvaderRow._fields, kinds, strict=True)))
+        columns["evaders"] = pa.array(
+            [[evader._asdict() for evader in row.evaders] for row in games], pa.list_(one)
+        )
     return written(pa.table(columns).replace_schema_metadata({KEY: plan.key(shard).encode()}))
+
+
+def evaders_in(cell: Cell) -> str:
+    """The evaders' strategies of a cell, each once."""
+    return "+".join(sorted({evader_named(spec.strategy) for spec in cell.scenario.evading}))
 
 
 def written(table: Any) -> bytes:
@@ -210,4 +221,12 @@ def row_of(path: Path, cell: int, seed: int) -> Row | None:
     import pyarrow.parquet as pq
 
     found = pq.read_table(path, filters=[("cell", "=", cell), ("seed", "=", seed)]).to_pylist()
-    return Row(**{name: found[0][name] for name in Row._fields}) if found else None
+    if not found:
+        return None
+    kept = {name: found[0][name] for name in Row._fields if name in found[0]}
+    return Row(**kept | {"evaders": evader_rows(found[0].get("evaders", ()))})
+
+
+def evader_rows(listed: Iterable[dict[str, Any]]) -> tuple[EvaderRow, ...]:
+    """The evaders of a game as a shard lists them."""
+    return tuple(EvaderRow(**one) for one in listed)

@@ -10,11 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from onboard.config.strict import ConfigError
-from onboard.core.strategy.registry import evader_named, pursuer_named
+from onboard.core.strategy.registry import pursuer_named
 from sim_bridge.campaign.spatial_campaign import mcnemar
 from sim_bridge.programs.campaigns import shards
 from sim_bridge.programs.campaigns.plan import Plan, model
 from sim_bridge.programs.campaigns.until import wilson
+
+VERDICTS = ("captured", "arrived", "denied", "escaped")
 
 
 class Games(NamedTuple):
@@ -26,11 +28,11 @@ class Games(NamedTuple):
     verdicts: NDArray[Any]
     times: NDArray[np.float64]  # [s]
     smallest: NDArray[np.float64]  # [m]
+    each: tuple[tuple[int, NDArray[Any]], ...] = ()  # of several evaders: id, and verdicts by game
 
     def share(self, verdict: str) -> tuple[int, float, float]:
         """How many had the verdict, and Wilson's 95 % interval of its share."""
-        count = int(np.sum(self.verdicts == verdict))
-        return (count, *wilson(count, len(self.verdicts)))
+        return share_of(self.verdicts, verdict)
 
     def captured(self) -> NDArray[np.bool_]:
         """Game by game."""
@@ -44,6 +46,12 @@ class Results(NamedTuple):
     cells: list[Games]
     missing: int  # shards
     notes: list[str]  # on files that do not count
+
+
+def share_of(verdicts: NDArray[Any], verdict: str) -> tuple[int, float, float]:
+    """How often a verdict is among these, and Wilson's 95 % interval of its share."""
+    count = int(np.sum(verdicts == verdict))
+    return (count, *wilson(count, len(verdicts)))
 
 
 def results(folder: Path) -> Results:
@@ -60,12 +68,13 @@ def results(folder: Path) -> Results:
     numbers = table["cell"].to_numpy()
     columns = {name: table[name].to_numpy() for name in ("seed", "time", "smallest")}
     verdicts = np.array(table["verdict"].to_pylist(), dtype=object)
+    listed = table["evaders"].to_pylist() if plan.several else []
     cells = []
     for number in dict.fromkeys(numbers.tolist()):
         rows = slice(*np.searchsorted(numbers, [number, number + 1]))
         cells.append(
             Games(number, _what(plan, number), columns["seed"][rows], verdicts[rows], columns["time"][rows],
-                  columns["smallest"][rows])
+                  columns["smallest"][rows], _each(plan, number, listed[rows]))
         )  # fmt: skip
     return Results(plan, cells, len(plan.shards()) - len(found.whole), notes)
 
@@ -76,8 +85,18 @@ def _what(plan: Plan, number: int) -> tuple[str, ...]:
     values = tuple(
         f"{value:.4g}" if isinstance(value, float) else str(value) for value in cell.point.values()
     )
-    evader = evader_named(cell.scenario.evader.strategy)
-    return (cell.label, *values, evader, "+".join(pursuers), model(cell, plan.flown))
+    return (cell.label, *values, shards.evaders_in(cell), "+".join(pursuers), model(cell, plan.flown))
+
+
+def _each(plan: Plan, number: int, listed: list[Any]) -> tuple[tuple[int, NDArray[Any]], ...]:
+    """Of a cell of several evaders each one's id and verdicts."""
+    scenario = plan.cell(number).scenario
+    if not scenario.several:
+        return ()
+    return tuple(
+        (id, np.array([game[k]["verdict"] for game in listed], dtype=object))
+        for k, id in enumerate(scenario.evader_ids)
+    )
 
 
 def table(found: Results) -> str:
@@ -93,11 +112,30 @@ def table(found: Results) -> str:
              str(one.share("denied")[0]), str(one.share("escaped")[0]), _mean(one, "captured"),
              _mean(one, "arrived"), _metres(one.smallest))
         )  # fmt: skip
-    widths = [max(len(row[k]) for row in rows) for k in range(len(head))]
+    return _columns(rows)
+
+
+def _columns(rows: list[tuple[str, ...]]) -> str:
+    """Rows as text, the first as head."""
+    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
     lines = [
         "  ".join(text.ljust(width) for text, width in zip(row, widths, strict=True)).rstrip() for row in rows
     ]
     return "\n".join([lines[0], "  ".join("-" * width for width in widths), *lines[1:]])
+
+
+def evaders_table(found: Results) -> str:
+    """Of games of several evaders a line for each evader, and one for all of a cell; "" where there are none.
+
+    Evaders of one game are not independent: the interval of all takes them as if they were.
+    """
+    rows: list[tuple[str, ...]] = [("cell", "evader", "games", *VERDICTS)]
+    for one in found.cells:
+        together = [("all", np.concatenate([v for _id, v in one.each]))] if len(one.each) > 1 else []
+        for who, verdicts in (*((str(id), v) for id, v in one.each), *together):
+            shares = (_share(share_of(verdicts, word), len(verdicts)) for word in VERDICTS)
+            rows.append((str(one.cell), who, str(len(verdicts)), *shares))
+    return _columns(rows) if len(rows) > 1 else ""
 
 
 def _share(found: tuple[int, float, float], games: int) -> str:
@@ -159,7 +197,7 @@ def pairs_text(found: Results) -> str:
 
 def text(found: Results) -> str:
     """All that `show` tells."""
-    parts = [table(found), pairs_text(found)]
+    parts = [table(found), evaders_table(found), pairs_text(found)]
     if found.missing:
         parts.append(f"{found.missing} of {len(found.plan.shards())} shards are missing")
     return "\n\n".join(part for part in parts if part)
