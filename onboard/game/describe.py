@@ -29,7 +29,7 @@ Made from the types that check the files: `python -m onboard.game.describe`. Pos
 FIELD = re.compile(r'^\s+"?(\w+)"?: .*?#\s*(.+)$', re.MULTILINE)
 INTRODUCTIONS = {
     "": "The file itself",
-    "evader": "`[evader]` and each `[[pursuers]]`",
+    "evader": "`[evader]`, each `[[evaders]]` and each `[[pursuers]]`",
     "zones": "Each of `[[zones]]`",
 }
 
@@ -58,7 +58,7 @@ def _rows(kind: type[Any]) -> Iterator[str]:
     yield "| key | what it may be | default | what it says |\n|---|---|---|---|\n"
     words = _comments(kind)
     for field in types.type_info(kind).fields:  # type: ignore[attr-defined]
-        if isinstance(bare(field.type), types.StructType) or field.encode_name == "pursuers":
+        if isinstance(bare(field.type), types.StructType) or field.encode_name in ("pursuers", "evaders"):
             continue
         said = words.get(field.name) or words.get(field.name.removesuffix("_deg"), "")
         if field.name.endswith("_deg"):

@@ -31,8 +31,9 @@ from onboard.core.game.rules import Target
 from onboard.core.math.each import each
 from onboard.core.math.vectors import Vec
 from onboard.core.strategy.knowledge import Decision
-from onboard.core.strategy.team.flying import pursuer_team
 from onboard.core.strategy.team.plan_types import Plan
+from onboard.core.strategy.team.planner import Planner
+from onboard.core.strategy.team.planners import planner_for
 from sim_bridge.campaign import compiled as pairs
 from sim_bridge.campaign.compiled import Starts
 from sim_bridge.campaign.kernel_cache import kernel
@@ -135,6 +136,17 @@ def no_plans(_game: ManyGame, _conditions: ManyConditions, previous: tuple[Plan,
     return previous
 
 
+def planning_by(planner: Planner) -> Callable[..., tuple[Plan, ...]]:
+    """`planned_many` by one planner."""
+
+    def plans_by(
+        game: ManyGame, conditions: ManyConditions, previous: tuple[Plan, ...]
+    ) -> tuple[Plan, ...]:
+        return planned_many(game, conditions, previous, planner)
+
+    return plans_by
+
+
 def by_number(decide: Callable[[Any, int], Decision], which: tuple[int, ...]) -> EvaderStrategies:
     """Each evader by its own strategy of several: `which` says its number among them."""
 
@@ -152,7 +164,8 @@ def _player(
     fleeing = tuple(range(size.evaders))
     chasing = tuple(range(size.evaders, size.evaders + size.pursuers))
     goals = tuple(range(size.targets))
-    plan_by: Any = planned_many if decide_pursuer is pursuer_team else no_plans
+    planner = planner_for(decide_pursuer)
+    plan_by: Any = no_plans if planner is None else planning_by(planner)
 
     def play(
         starts: Starts, conditions: ManyConditions, ends: ManyEnds, first: int, last: int
@@ -192,7 +205,7 @@ def _player(
     if not compiled:
         return play
     pairs.register(KERNELS)
-    pairs.register_strategies((decide_evader, decide_pursuer))
+    pairs.register_strategies((decide_evader, decide_pursuer, plan_by))
     return kernel(play, True, "numpy")
 
 

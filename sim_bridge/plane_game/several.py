@@ -25,7 +25,7 @@ from onboard.core.game.planning import steps_between
 from onboard.core.game.referee import GameResult, passage
 from onboard.core.game.rules import NO_TARGET, Control, Target
 from onboard.core.math.vectors import Vec
-from onboard.core.strategy.team.flying import pursuer_team
+from onboard.core.strategy.team.planners import planner_for
 from onboard.game.plugins import evader_strategy, pursuer_strategy
 from onboard.game.scenario import Scenario, targets_of
 from sim_bridge.plane_game.setup import vehicles_of
@@ -83,6 +83,7 @@ def play(scenario: Scenario, strategy: str, dt: float | None = None, keep: bool 
     conditions = conditions_of(scenario, dt)
     flee, chase = evaders_of(scenario), pursuer_strategy(strategy)
     game = game_of(scenario)
+    planner = planner_for(chase)
     plans, every, steps = unplanned_many(game), steps_between(conditions.control.dt), 0
     frames = []
     while not over(game):
@@ -90,8 +91,8 @@ def play(scenario: Scenario, strategy: str, dt: float | None = None, keep: bool 
             frames.append(game)
         due = steps % every == 0 or deserted(game)
         before = prepared(game, conditions, due)
-        if due and chase is pursuer_team:
-            plans = planned_many(before, conditions, plans)
+        if due and planner is not None:
+            plans = planned_many(before, conditions, plans, planner)
         decided = decide_many(before, conditions, flee, chase, plans)
         game = cut(before, moved_many(before, conditions, decided))
         steps += 1

@@ -32,7 +32,7 @@ from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import Vec, scale
 from onboard.core.strategy.knowledge import Decision, silent
 from onboard.core.strategy.team.plan_types import NOBODY, Assignment, Member, Plan
-from onboard.core.strategy.team.planner import engaged
+from onboard.core.strategy.team.planner import Planner
 from onboard.core.strategy.team.quarry import Quarry, quarries_of
 
 
@@ -212,15 +212,23 @@ def unplanned_many(game: ManyGame) -> tuple[Plan, ...]:
     return each(no_plan_for, game.evaders, game)
 
 
-def planned_for(previous: Plan, number: int, shared: Whole) -> Plan:
+class Planning(NamedTuple):
+    """What plans follow from (for `each`)."""
+
+    game: ManyGame
+    conditions: ManyConditions
+    planner: Planner
+
+
+def planned_for(previous: Plan, number: int, shared: Planning) -> Plan:
     """The next plan of those who have an evader as their quarry (for `each`)."""
-    game, conditions = shared
+    game, conditions, planner = shared
     if not live(game.scores[number]):
         return previous
     team = each(seat_in, game.pursuers, Group(game, number))
     mine = conditions_alone(game, number, conditions)
     known = each(target_told, conditions.targets[number], conditions.rules)
-    return engaged(with_targets(situation_of(alone(game, number), mine, team), known), previous)
+    return planner(with_targets(situation_of(alone(game, number), mine, team), known), previous)
 
 
 def target_told(target: Target, _number: int, rules: Rules) -> Target:
@@ -234,9 +242,11 @@ def seat_in(vehicle: Vehicle, index: int, group: Group) -> Member:
     return Member(vehicle, game.pursuer_limits[index], game.quarries[index] == number)
 
 
-def planned_many(game: ManyGame, conditions: ManyConditions, previous: tuple[Plan, ...]) -> tuple[Plan, ...]:
+def planned_many(
+    game: ManyGame, conditions: ManyConditions, previous: tuple[Plan, ...], planner: Planner
+) -> tuple[Plan, ...]:
     """The next plans, one an evader: each for the pursuers whose quarry it is."""
-    return each(planned_for, previous, Whole(game, conditions))
+    return each(planned_for, previous, Planning(game, conditions, planner))
 
 
 class Parts(NamedTuple):

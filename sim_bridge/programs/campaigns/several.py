@@ -10,12 +10,12 @@ from onboard.core.game.referee import GameResult
 from onboard.core.strategy.registry import EVADERS, PURSUERS, evader_named, pursuer_named
 from onboard.game.plugins import evader_strategy, pursuer_strategy
 from onboard.game.scenario import Scenario
+from onboard.game.trials import WORST
 from sim_bridge.campaign.many import ManyEnds, Size, many_campaign, starts_of
 from sim_bridge.plane_game.several import conditions_of, game_of
 from sim_bridge.programs.campaigns.rows import EvaderRow, Row
 
-WORST = ("arrived", "aborted", "escaped", "denied", "captured")
-"""Verdicts of single evaders, the worst for the pursuers first: it is the whole game's."""
+RANKS = tuple(result.value for result in WORST)  # verdicts, the worst for the pursuers first
 
 
 def games_of(number: int, games: list[Scenario], seeds: range) -> list[Row]:
@@ -44,7 +44,7 @@ def ends_of(games: list[Scenario], keep: int = 0) -> ManyEnds:
 
 def whole(number: int, seed: int, evaders: list[EvaderRow]) -> Row:
     """A game's row. Of its evaders the worst for the pursuers decides it; it is captured where all were."""
-    worst = min((one.verdict for one in evaders), key=WORST.index)
+    worst = min((one.verdict for one in evaders), key=RANKS.index)
     last = max(evaders, key=lambda one: one.time)
     return Row(
         number, seed, worst, last.time, min(one.smallest for one in evaders),

@@ -14,7 +14,7 @@ from sim_bridge.campaign.many import Size, many_campaign, starts_of
 
 pytestmark = pytest.mark.timeout(480)  # compiling takes a while
 
-SIZE = Size(2, 4, 2)
+SIZE = Size(2, 3, 2)
 RULES = Rules(2.0, 4.0, horizon=40.0, planar=True, target_known=True)
 
 
@@ -29,14 +29,21 @@ def random_game(rng: np.random.Generator) -> tuple[ManyGame, tuple[tuple[Target,
     evaders = tuple(vehicle(80.0, 4.0, 5.0) for _ in range(SIZE.evaders))
     pursuers = tuple(vehicle(60.0, 3.5, 5.5) for _ in range(SIZE.pursuers))
     targets = (Target(True, place(90.0)), Target(True, place(90.0))), (Target(True, place(90.0)), NO_TARGET)
-    return begin_many(evaders, pursuers, (FREE,) * 2, (FREE,) * 4), targets
+    return begin_many(evaders, pursuers, (FREE,) * 2, (FREE,) * SIZE.pursuers), targets
 
 
-def test_compiled_is_interpreted() -> None:
+@pytest.mark.parametrize(
+    "ways",
+    [
+        ("paper", "paper", "parallel-pursuit"),
+        pytest.param(("paper", "straight", "team"), marks=pytest.mark.long),
+    ],
+)
+def test_compiled_is_interpreted(ways: tuple[str, str, str]) -> None:
     rng = np.random.default_rng(3)
     games, targets = zip(*(random_game(rng) for _ in range(12)), strict=True)
     starts, conditions = starts_of(games, targets), ManyConditions(RULES, targets[0], Control(0.1))
-    pair = (EVADERS["paper"].decide, EVADERS["straight"].decide), PURSUERS["team"].decide
+    pair = (EVADERS[ways[0]].decide, EVADERS[ways[1]].decide), PURSUERS[ways[2]].decide
     one, two = (
         many_campaign(*pair, SIZE, compiled)(starts, conditions, keep=410) for compiled in (True, False)
     )

@@ -31,6 +31,7 @@ from onboard.core.math.states import FREE, Vehicle
 from onboard.core.math.vectors import NORTH, Vec, distance, scale
 from onboard.core.strategy.knowledge import Decision
 from onboard.core.strategy.registry import EVADERS, PURSUERS
+from onboard.core.strategy.team.planner import engaged
 
 RULES = Rules(2.0, 4.0, horizon=40.0, planar=True, target_known=True)
 CONTROL = Control(0.1)
@@ -67,7 +68,7 @@ def played(game: ManyGame, conditions: ManyConditions, evader: str, pursuers: st
         due = (len(frames) - 1) % every == 0 or deserted(game)
         game = prepared(game, conditions, due)
         if due and pursuers == "team":
-            plans = planned_many(game, conditions, plans)
+            plans = planned_many(game, conditions, plans, engaged)
         decided = decide_many(game, conditions, by(evader), PURSUERS[pursuers].decide, plans)
         game = moved_many(game, conditions, decided)
         frames.append(game)
