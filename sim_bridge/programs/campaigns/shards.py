@@ -62,8 +62,9 @@ def encoded(plan: Plan, shard: Shard, rows: Iterable[Row]) -> bytes:
     if plan.several:
         kinds = (pa.string(), pa.float64(), pa.float64(), pa.int16(), pa.float64())
         one = pa.struct(list(zip(EvaderRow._fields, kinds, strict=True)))
+        listed = pa.list_(pa.field("element", one))  # so it is called when it is read again
         columns["evaders"] = pa.array(
-            [[evader._asdict() for evader in row.evaders] for row in games], pa.list_(one)
+            [[evader._asdict() for evader in row.evaders] for row in games], listed
         )
     return written(pa.table(columns).replace_schema_metadata({KEY: plan.key(shard).encode()}))
 
