@@ -34,12 +34,19 @@ WORST = (
 """Verdicts of single evaders, the worst for the pursuers first: it is the whole game's."""
 
 
-class Trial:
-    """One evader's game. `targets` are its [m; NED], `speeds` what everybody declares [m/s], by vehicle."""
+Places = tuple[Vec, ...]
 
-    def __init__(self, id: int, targets: tuple[Vec, ...], speeds: Mapping[int, float]) -> None:
+
+class Trial:
+    """One evader's game. `targets` are its [m; NED], `judged` the same as they are judged, in a plane game
+    without heights; `speeds` what everybody declares [m/s], by vehicle."""
+
+    def __init__(
+        self, id: int, targets: Places, judged: Places, speeds: Mapping[int, float]
+    ) -> None:
         self.id = id
         self.targets = targets
+        self._goals = tuple(Target(True, place) for place in judged)
         self.outcome: EvaderOutcome | None = None  # None while it is in the game
         self.seen_ns = 0  # when its position was last known [ns, monotonic]
         self._speeds = speeds
@@ -80,8 +87,7 @@ class Trial:
         e0, e1 = self._before[self.id], here[self.id]
         speeds = tuple(self._speeds[id] for id in ids)
         step = Step(start, dt, e0, e1, before, after, self._speeds[self.id], speeds)
-        targets = tuple(Target(True, target) for target in self.targets)
-        self._score = score = judge_any(self._score, step, rules, targets)
+        self._score = score = judge_any(self._score, step, rules, self._goals)
         played = min(1.0, (score.time - start) / dt)  # a game ends within a step
         end = _part(e0, e1, played)
         if score.verdict != GameResult.RUNNING:
@@ -99,11 +105,12 @@ class Trials:
     def __init__(self, setup: Setup, targets: Mapping[int, tuple[Vec, ...]]) -> None:
         speeds = {member.id: member.speed for member in setup.roster}  # declared [m/s]; 0 = not
         evaders = tuple(member.id for member in setup.roster if member.role is Role.EVADER)
-        self.all = {id: Trial(id, targets.get(id, ()), speeds) for id in evaders}
+        self._flat = setup.flat
+        goals = {id: targets.get(id, ()) for id in evaders}
+        self.all = {id: Trial(id, g, tuple(map(self._judged, g)), speeds) for id, g in goals.items()}
         self.nearest: dict[int, float] = {}  # smallest distance of each pursuer to any evader so far [m]
         self._pursuers = tuple(member.id for member in setup.roster if member.role is Role.PURSUER)
         self._rules = setup.core_rules()
-        self._flat = setup.flat
 
     @property
     def playing(self) -> list[Trial]:

@@ -34,7 +34,6 @@ class Hunt:
         self.ids = frozenset(player.id for player in self.evaders)
         self.pursuers = game.opponents(Side.EVADER)
         self.out: frozenset[int] = frozenset()  # evaders whose game is over
-        self.fit = True  # whether this vehicle follows the game
         self.unfit: frozenset[int] = frozenset()  # mates that say that they do not
         self.planned: Mapping[int, int] = {}  # by the plan that counts: pursuer → evader
         self.planner = 0  # whose plan that is
@@ -98,8 +97,8 @@ class Hunt:
         team = []
         for player in self.pursuers:
             mate = heard.get(player.id)
-            if player.id == self.id:
-                team.append(Member(there(own.position, own.velocity, player.speed), player.limits, self.fit))
+            if player.id == self.id:  # it asks: whatever it is to others, it needs a quarry
+                team.append(Member(there(own.position, own.velocity, player.speed), player.limits, True))
             elif mate is None:
                 team.append(Member(there(own.position, own.velocity, player.speed), player.limits, False))
             else:

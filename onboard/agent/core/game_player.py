@@ -216,7 +216,7 @@ class GamePlayer:
 
     def _prepare(self, hunt: Hunt, left: float) -> None:
         """Tell a pursuer's choice of evaders what the bus knows; the game lasts `left` [s] more."""
-        hunt.fit, hunt.unfit, hunt.left = self.fit, self._bus.unfit, left
+        hunt.unfit, hunt.out, hunt.left = self._bus.unfit, self._ended, left
         if self._team is not None:
             hunt.planner, hunt.planned = self._team.quarries
 
@@ -278,8 +278,6 @@ class GamePlayer:
         was = self._participation.joined
         self._participation.follow(phase, wall_ns)
         self._ended = frozenset(end.id for end in phase.out)
-        if self.flying is not None and self.flying.viewpoint.hunt is not None:
-            self.flying.viewpoint.hunt.out = self._ended
         if self.config.id in self._ended and (before is None or not is_out(before, self.config.id)):
             self._journal.info("out", in_words(next(end for end in phase.out if end.id == self.config.id)))
         if phase.phase is Phase.RUNNING and not self._participation.joined:

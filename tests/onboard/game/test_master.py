@@ -127,6 +127,16 @@ def test_it_begins_when_everybody_can_be_at_its_place() -> None:
     assert field.master.phase is Phase.RUNNING
 
 
+def test_in_a_plane_game_it_is_at_its_target_whatever_the_heights() -> None:
+    rules = RulesMessage(5.0, 10.0, horizon=30.0, planar=True)
+    field = Range(target=Vec(-40, 0, -80), rules=rules)
+    field.begin()
+    field.places[1] = Vec(-36, 0, -50)
+    field.speeds[1] = Vec(-4, 0, 0)
+    field.fly(2.0)
+    assert field.outcome().verdict is OutcomeResult.ARRIVED
+
+
 def test_it_puts_t0_off_for_three_minutes_at_most() -> None:
     field = Range()
     field.crew()
