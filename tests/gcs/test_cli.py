@@ -160,7 +160,7 @@ async def test_status_prints_the_picture_once_as_json(free_endpoint):
         code, out, err = await shell("status", "--json", endpoint=free_endpoint)
     assert (code, err) == (0, "")
     picture = json.loads(out)
-    assert picture["format"] == 2
+    assert picture["format"] == 3
     assert [v["id"] for v in picture["vehicles"]] == [1, 2, 3]
     assert picture["vehicles"][1]["presence"] == "present"
     assert picture["vehicles"][1]["state"]["mode"] == "GUIDED"

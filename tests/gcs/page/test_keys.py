@@ -86,8 +86,8 @@ async def a_button_does_the_same_by_its_key(page: Page) -> None:
     shown = "document.querySelectorAll('#views button[aria-pressed]')"
     pressed = f"[...{shown}].map((b) => b.getAttribute('aria-pressed')).join()"
     buttons = page.locator("#views button[aria-pressed]:has(kbd):visible")
-    assert await buttons.count() == 6
-    for i in range(6):
+    assert await buttons.count() == 7
+    for i in range(7):
         key = (await buttons.nth(i).locator("kbd").text_content()) or ""
         before = await page.evaluate(pressed)
         await buttons.nth(i).click()
