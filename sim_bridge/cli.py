@@ -296,17 +296,18 @@ def scenario_check(
     """Check a scenario; print turn radii, free cones, the evader's band and the expected duration."""
     from onboard.game.scenario import load
     from sim_bridge.programs.fly import demand_strategies
-    from sim_bridge.programs.scenario_tools import check
+    from sim_bridge.programs.scenario_tools import check, singly
 
     file = shipped_file(scenario, SCENARIOS)
-    found = load(file)
+    found = load(file, several=True)
     demand_strategies(found, str(file))
     print(check(found))
     if figures is not None:
         from sim_bridge.programs.scenario_picture import draw_band
 
-        for path in draw_band(found, figures, file.stem):
-            print(f"drawn: {path}")
+        for one, stem in singly(found, file.stem):
+            for path in draw_band(one, figures, stem):
+                print(f"drawn: {path}")
 
 
 @scenario_app.command(

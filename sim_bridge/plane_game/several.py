@@ -24,6 +24,7 @@ from onboard.core.game.many import (
 from onboard.core.game.planning import steps_between
 from onboard.core.game.referee import GameResult, passage
 from onboard.core.game.rules import NO_TARGET, Control, Target
+from onboard.core.game.targets import NONE
 from onboard.core.math.vectors import Vec
 from onboard.core.strategy.team.planners import planner_for
 from onboard.game.plugins import evader_strategy, pursuer_strategy
@@ -54,6 +55,32 @@ def game_of(scenario: Scenario) -> ManyGame:
         everybody[1:team],
         tuple(spec.limits() for spec in scenario.evading),
         tuple(spec.limits() for spec in scenario.pursuers),
+    )
+
+
+def alone(scenario: Scenario, number: int) -> Scenario:
+    """The game of one of the evaders, to the target that it goes for, against those who first have it.
+
+    Where it is nobody's, against all pursuers.
+    """
+    replace = msgspec.structs.replace
+    conditions = conditions_of(scenario)
+    begun = prepared(game_of(scenario), conditions, due=True)
+    spec, aim = scenario.evading[number], begun.aims[number]
+    points = spec.targets if spec.target is None else (spec.target,)
+    ids = scenario.pursuer_ids
+    team = [k for k in range(len(ids)) if begun.quarries[k] == number] or range(len(ids))
+    known = scenario.parameters.target_known and aim != NONE
+    return replace(
+        scenario,
+        name=f"evader {scenario.evader_ids[number]}",
+        description="",
+        evader=replace(
+            spec, id=scenario.evader_ids[number], targets=(), target=None if aim == NONE else points[aim]
+        ),
+        pursuers=tuple(replace(scenario.pursuers[k], id=ids[k]) for k in team),
+        evaders=(),
+        parameters=replace(scenario.parameters, target_known=known),
     )
 
 

@@ -14,6 +14,7 @@ from onboard.game.go_or_no_go import engagement_of
 from onboard.game.go_or_no_go import lines as odds_lines
 from onboard.game.scenario import Scenario
 from sim_bridge.plane_game.setup import conditions_of, turn_rate_of, vehicles_of
+from sim_bridge.plane_game.several import alone
 from sim_bridge.programs.scenario_band import band_lines
 from sim_bridge.programs.scenario_knowledge import denies, knowledge_lines
 
@@ -99,7 +100,26 @@ def new(path: Path) -> str:
 
 
 def check(scenario: Scenario) -> str:
-    """What a scenario promises, in lines for people."""
+    """What a scenario promises, in lines for people; of several evaders for each and its pursuers."""
+    if not scenario.several:
+        lines = [*_table(scenario), "", *_prospects(scenario), *knowledge_lines(scenario)]
+        return "\n".join([*lines, *_duration(scenario)])
+    lines = [f"{scenario.name}: {len(scenario.evading)} evaders, {len(scenario.pursuers)} pursuers"]
+    for one, _stem in singly(scenario, ""):
+        lines += ["", *_table(one), "", *_prospects(one), *_duration(one)]
+    return "\n".join([*lines, "", *knowledge_lines(scenario)])
+
+
+def singly(scenario: Scenario, stem: str) -> list[tuple[Scenario, str]]:
+    """A scenario's games of one evader, with a name for the files of each: itself, or one an evader."""
+    if not scenario.several:
+        return [(scenario, stem)]
+    ids = scenario.evader_ids
+    return [(alone(scenario, number), f"{stem}-{id}") for number, id in enumerate(ids)]
+
+
+def _table(scenario: Scenario) -> list[str]:
+    """The vehicles of a game of one evader."""
     rules, target, _ = conditions_of(scenario)
     evader, *pursuers = vehicles_of(scenario)
     seen = assess(evader, tuple(pursuers), rules.rho, target.exists, target.position, rules.planar)
@@ -124,9 +144,12 @@ def check(scenario: Scenario) -> str:
                 f"   {meets:>10s}  {held}"
             )
         lines.append(row)
-    lines += ["", *odds_lines(engagement_of(scenario)), *_freedom(scenario)]
-    lines += [*band_lines(scenario), *knowledge_lines(scenario), *_duration(scenario)]
-    return "\n".join(lines)
+    return lines
+
+
+def _prospects(scenario: Scenario) -> list[str]:
+    """What to expect of a game of one evader."""
+    return [*odds_lines(engagement_of(scenario)), *_freedom(scenario), *band_lines(scenario)]
 
 
 def _freedom(scenario: Scenario) -> list[str]:

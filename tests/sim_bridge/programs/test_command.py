@@ -108,7 +108,7 @@ SHIPPED = sorted(
 
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: f"{path.parent.name}-{path.stem}")
 def test_every_shipped_scenario_loads_and_can_be_told_of(path: Path) -> None:
-    scenario = load(path)
+    scenario = load(path, several=True)
     demand_strategies(scenario, str(path))
     said = check(scenario)
     assert len(said.splitlines()) > len(scenario.vehicles) + 3

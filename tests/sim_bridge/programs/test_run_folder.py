@@ -104,10 +104,11 @@ SHIPPED = sorted((ROOT / "configs/scenarios").rglob("*.toml"))
 
 @pytest.mark.parametrize("shipped", SHIPPED, ids=lambda path: path.stem)
 def test_the_scenario_of_a_run_is_a_scenario(shipped: Path) -> None:
-    scenario = load(shipped)
+    scenario = load(shipped, several=True)
     used = run_folder.scenario_used(scenario, 7, shipped.parent)
     again = strict.parse(used.decode(), Scenario, "again")
     assert (again.rules, again.seed, again.flight) == (scenario.rules, 7, scenario.flight)
+    assert (again.ids, again.evader_ids) == (scenario.ids, scenario.evader_ids)
     assert run_folder.scenario_used(again, None, shipped.parent) == used
 
 
