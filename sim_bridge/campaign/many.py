@@ -34,6 +34,7 @@ from onboard.core.strategy.knowledge import Decision
 from onboard.core.strategy.team.plan_types import Plan
 from onboard.core.strategy.team.planner import Planner
 from onboard.core.strategy.team.planners import planner_for
+from onboard.core.strategy.team.quarry import Assign, quarries_of
 from sim_bridge.campaign import compiled as pairs
 from sim_bridge.campaign.compiled import Starts
 from sim_bridge.campaign.kernel_cache import kernel
@@ -158,7 +159,11 @@ def by_number(decide: Callable[[Any, int], Decision], which: tuple[int, ...]) ->
 
 @cache
 def _player(
-    decide_evader: EvaderStrategies, decide_pursuer: PursuerStrategy, size: Size, compiled: bool
+    decide_evader: EvaderStrategies,
+    decide_pursuer: PursuerStrategy,
+    size: Size,
+    assign: Assign,
+    compiled: bool,
 ) -> Callable[..., None]:
     """Plays games first…last − 1 of the starts into the ends."""
     fleeing = tuple(range(size.evaders))
@@ -187,7 +192,7 @@ def _player(
                 _note(game, ends.trace[number, 0])
             while not over(game):
                 due = steps % every == 0 or deserted(game)
-                now = prepared(game, mine, due)
+                now = prepared(game, mine, due, assign)
                 if due:
                     plans = plan_by(now, mine, plans)
                 decided = decide_many(now, mine, decide_evader, decide_pursuer, plans)
@@ -205,7 +210,7 @@ def _player(
     if not compiled:
         return play
     pairs.register(KERNELS)
-    pairs.register_strategies((decide_evader, decide_pursuer, plan_by))
+    pairs.register_strategies((decide_evader, decide_pursuer, plan_by, assign))
     return kernel(play, True, "numpy")
 
 
@@ -218,9 +223,11 @@ def _evaders(strategies: tuple[EvaderStrategy, ...]) -> EvaderStrategies:
 
 def many_campaign(
     decide_evaders: tuple[EvaderStrategy, ...], decide_pursuer: PursuerStrategy, size: Size,
-    compiled: bool = True,
+    compiled: bool = True, assign: Assign = quarries_of,
 ) -> Callable[..., ManyEnds]:
     """The play of many games of one size, each evader by its strategy and all pursuers by one.
+
+    `assign` says who goes for whom.
 
     Returns `play(starts, conditions, keep=0) -> ManyEnds`; `keep` records everybody's places over the first
     so many steps. The games differ in their starts, speeds, limits and targets (`starts_of`); the rest of the
@@ -246,7 +253,7 @@ def many_campaign(
         )  # fmt: skip
         ways: tuple[Any, ...] = (*decide_evaders, decide_pursuer)
         *evaders, pursuer = pairs.in_arrays(ways) if compiled else ways
-        _player(_evaders(tuple(evaders)), pursuer, size, compiled)(starts, conditions, ends, 0, games)
+        _player(_evaders(tuple(evaders)), pursuer, size, assign, compiled)(starts, conditions, ends, 0, games)
         return ends
 
     return play

@@ -27,6 +27,7 @@ from onboard.core.game.rules import NO_TARGET, Control, Target
 from onboard.core.game.targets import NONE
 from onboard.core.math.vectors import Vec
 from onboard.core.strategy.team.planners import planner_for
+from onboard.core.strategy.team.quarry import quarries_of
 from onboard.game.plugins import evader_strategy, pursuer_strategy
 from onboard.game.scenario import Scenario, targets_of
 from sim_bridge.plane_game.setup import vehicles_of
@@ -65,7 +66,7 @@ def alone(scenario: Scenario, number: int) -> Scenario:
     """
     replace = msgspec.structs.replace
     conditions = conditions_of(scenario)
-    begun = prepared(game_of(scenario), conditions, due=True)
+    begun = prepared(game_of(scenario), conditions, True, quarries_of)
     spec, aim = scenario.evading[number], begun.aims[number]
     points = spec.targets if spec.target is None else (spec.target,)
     ids = scenario.pursuer_ids
@@ -117,7 +118,7 @@ def play(scenario: Scenario, strategy: str, dt: float | None = None, keep: bool 
         if keep:
             frames.append(game)
         due = steps % every == 0 or deserted(game)
-        before = prepared(game, conditions, due)
+        before = prepared(game, conditions, due, quarries_of)
         if due and planner is not None:
             plans = planned_many(before, conditions, plans, planner)
         decided = decide_many(before, conditions, flee, chase, plans)

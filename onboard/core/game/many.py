@@ -33,7 +33,7 @@ from onboard.core.math.vectors import Vec, scale
 from onboard.core.strategy.knowledge import Decision, silent
 from onboard.core.strategy.team.plan_types import NOBODY, Assignment, Member, Plan
 from onboard.core.strategy.team.planner import Planner
-from onboard.core.strategy.team.quarry import Quarry, quarries_of
+from onboard.core.strategy.team.quarry import Assign, Quarry
 
 
 class ManyConditions(NamedTuple):
@@ -163,21 +163,22 @@ def aimed(game: ManyGame, conditions: ManyConditions) -> ManyGame:
     )  # fmt: skip
 
 
-def regrouped(game: ManyGame, conditions: ManyConditions) -> ManyGame:
+def regrouped(game: ManyGame, conditions: ManyConditions, assign: Assign) -> ManyGame:
     """The game in which every pursuer has its quarry anew; of an `aimed` game."""
     seats: tuple[Member, ...] = each_pair(seat, game.pursuers, game.pursuer_limits, 0.0)
     seen = each(quarry_seen, game.evaders, Whole(game, conditions))
     left = conditions.rules.horizon - game.time
     return ManyGame(
         game.time, game.evaders, game.pursuers, game.evader_limits, game.pursuer_limits, game.scores,
-        game.aims, quarries_of(seats, seen, game.quarries, conditions.rules, left),
+        game.aims, assign(seats, seen, game.quarries, conditions.rules, left),
     )  # fmt: skip
 
 
-def prepared(game: ManyGame, conditions: ManyConditions, due: bool) -> ManyGame:
-    """The game before everybody decides: aims chosen, and quarries where that is due."""
+def prepared(game: ManyGame, conditions: ManyConditions, due: bool, assign: Assign) -> ManyGame:
+    """The game before everybody decides: aims chosen, and where that is due quarries, by `quarries_of` or
+    another such function."""
     now = aimed(game, conditions)
-    return regrouped(now, conditions) if due else now
+    return regrouped(now, conditions, assign) if due else now
 
 
 def deserted(game: ManyGame) -> bool:

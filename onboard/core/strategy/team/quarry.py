@@ -7,6 +7,7 @@ assignment of least time (`assignment`). Kernel style but for local lists.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import inf
 from typing import NamedTuple
 
@@ -33,6 +34,12 @@ class Quarry(NamedTuple):
     limits: VehicleLimits
     live: bool  # still in the game
     target: Target  # where it goes [m; NED]; does not exist where that is not known
+
+
+Assign = Callable[
+    [tuple[Member, ...], tuple[Quarry, ...], tuple[int, ...], Rules, float], tuple[int, ...]
+]
+"""Who goes for whom: what `quarries_of` is told and gives."""
 
 
 def time_to_catch(own: Vehicle, quarry: Quarry) -> float:

@@ -32,6 +32,7 @@ from onboard.core.math.vectors import NORTH, Vec, distance, scale
 from onboard.core.strategy.knowledge import Decision
 from onboard.core.strategy.registry import EVADERS, PURSUERS
 from onboard.core.strategy.team.planner import engaged
+from onboard.core.strategy.team.quarry import quarries_of
 
 RULES = Rules(2.0, 4.0, horizon=40.0, planar=True, target_known=True)
 CONTROL = Control(0.1)
@@ -66,7 +67,7 @@ def played(game: ManyGame, conditions: ManyConditions, evader: str, pursuers: st
     frames = [game]
     while not over(game):
         due = (len(frames) - 1) % every == 0 or deserted(game)
-        game = prepared(game, conditions, due)
+        game = prepared(game, conditions, due, quarries_of)
         if due and pursuers == "team":
             plans = planned_many(game, conditions, plans, engaged)
         decided = decide_many(game, conditions, by(evader), PURSUERS[pursuers].decide, plans)
