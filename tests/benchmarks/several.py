@@ -146,7 +146,7 @@ def main() -> None:
     games = options.parse_args().games
     lines = [
         f"Three evaders at 5 m/s (`paper`) and ten pursuers in the plane, R = 3 m, {RULES.horizon:g} s,"
-        f" simple motion; {games} starts a family, the same for both assignments. 95 % intervals by Wilson; the last"
+        f" simple motion; {games} starts a family, the same for both. 95 % intervals by Wilson; the last"
         " column counts what came about by the assignment only and by the nearest only, with McNemar's exact"
         " p. Evaders of one game are not independent: the rows of games are the proof.",
         "",
