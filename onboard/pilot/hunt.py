@@ -58,15 +58,18 @@ class Hunt:
         """Look at `now` [s] whether another evader is to be gone for; whether it is another one now."""
         lost = self.quarry in self.out or self.quarry == 0
         planned = self.planned.get(self.id, 0)
+        if planned in self.out:  # its plan is older than that
+            planned = 0
         if not lost and now - self._at < EVERY - 1e-6 and planned in (0, self.quarry):
             return False
         self._at = now
         crowd = self.crowd(now, own, mates, game, memory)
-        self._given = self.assigned(crowd, self._given, game)
-        by_plan = planned != 0 and planned not in self.out
+        by_plan = planned != 0
+        if not by_plan:
+            self._given = self.assigned(crowd, self._given, game)
         before = self.quarry
         kept = 0 if before in self.out else before  # without a track of anybody it stays with its own
-        mine = self._given.get(self.id, kept)
+        mine = self._given.get(self.id) or kept
         self.quarry = planned if by_plan else mine
         if len(self.evaders) > 1:
             whose = f"in the plan of {self.planner}" if by_plan else "by its own reckoning"

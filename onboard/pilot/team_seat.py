@@ -9,7 +9,7 @@ input and no output.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from math import inf
 from typing import NamedTuple
 
@@ -49,7 +49,7 @@ class Known(NamedTuple):
     mates: tuple[Mate, ...]  # carried forward to now
     unfit: frozenset[int]  # mates that say that they do not follow the game
     evader: Vehicle | None  # through the air; None: no track of it
-    crowd: Crowd | None = None  # everybody, where there are several evaders
+    crowd: Callable[[], Crowd] | None = None  # tells of everybody, where there are several evaders
 
 
 class Field(NamedTuple):
@@ -129,14 +129,11 @@ class TeamSeat:
         last = max((dated.at for dated in self._heard.values() if dated.planner < self.id), default=0.0)
         return not lower or known.now - max(last, self._began) > 2.0 * LEASE_S * len(lower)
 
-    def due(self, now: float) -> bool:
-        """Whether it is time for another plan at `now` [s, monotonic]."""
-        return now - self._planned_at >= EVERY - 1e-6
-
     def work(self, known: Known) -> Dated | None:
         """Make a plan where one is due and it is this member's to make; it counts at once."""
         self._began = min(self._began, known.now)
-        if not self.due(known.now) or known.evader is None or not self.turn(known):
+        due = known.now - self._planned_at >= EVERY - 1e-6
+        if not due or known.evader is None or not self.turn(known):
             return None
         self._planned_at = known.now
         situation = situation_of(self.id, self.field, known, known.evader)
@@ -149,7 +146,7 @@ class TeamSeat:
             evading = next((p.id for p in self.field.game.opponents(Side.PURSUER)), 0)
             self.thoughts = (Thought(evading, situation, before, made.plan),)
         else:
-            made = self._against_all(situation, newest, known, known.crowd)
+            made = self._against_all(situation, newest, known, known.crowd())
         self._heard[self.id] = made
         return made
 

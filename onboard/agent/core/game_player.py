@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 from onboard.agent.config import AgentConfig
@@ -259,14 +260,14 @@ class GamePlayer:
             asked = soon or self._participation.running(self._bus.phase, wall_ns)
             self._memory.train(self._seconds(wall_ns), TRAINING_SLICES, asked=asked)
 
-    def _crowd(self, now: Instant, question: Question) -> Crowd | None:
-        """Everybody, for a plan against several evaders; None where none is due, or there is one evader."""
-        flying, team = self.flying, self._team
+    def _crowd(self, now: Instant, question: Question) -> Callable[[], Crowd] | None:
+        """What tells of everybody, for a plan against several evaders; None where there is one."""
+        flying = self.flying
         hunt = None if flying is None else flying.viewpoint.hunt
-        if flying is None or team is None or hunt is None or not team.seat.due(now.s):
+        if flying is None or hunt is None:
             return None
-        mates, at = self._bus.mates_at(now.s), self._seconds(now.wall_ns)
-        return hunt.crowd(at, question.own, mates, flying.game, self._memory)
+        game, mates, at = flying.game, self._bus.mates_at(now.s), self._seconds(now.wall_ns)
+        return lambda: hunt.crowd(at, question.own, mates, game, self._memory)
 
     # ------------------------------------------------------------------ what the master says
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import inf, isfinite
 
 from onboard.agent.config import AgentConfig
@@ -162,10 +163,12 @@ class TeamTalk:
         pairs = zip(self.seat.field.team, dated.quarries, strict=False)
         return dated.planner, {id: quarry for id, quarry in pairs if quarry}
 
-    def work(self, now: Instant, t: float, question: Question, crowd: Crowd | None = None) -> None:
+    def work(
+        self, now: Instant, t: float, question: Question, crowd: Callable[[], Crowd] | None = None
+    ) -> None:
         """After a control step at `t` [s] since t0: plan where that is this vehicle's to do, and say it.
 
-        `crowd` is everybody, where there are several evaders."""
+        `crowd` tells of everybody, where there are several evaders."""
         bus, seat = self._bus, self.seat
         evader = question.others[0] if question.others else None
         mates = bus.mates_at(now.s)
