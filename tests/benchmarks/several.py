@@ -23,6 +23,7 @@ from onboard.core.math.vectors import NORTH, Vec, distance, scale
 from onboard.core.strategy.registry import EVADERS, PURSUERS
 from onboard.core.strategy.team.plan_types import NOBODY, Member
 from onboard.core.strategy.team.quarry import Assign, Quarry, quarries_of
+from sim_bridge.campaign.compiled import register_strategies
 from sim_bridge.campaign.many import ManyEnds, Size, many_campaign, starts_of
 from sim_bridge.campaign.spatial_campaign import mcnemar
 from sim_bridge.programs.campaigns.until import wilson
@@ -104,6 +105,7 @@ def played(family: Family, games: int, assign: Assign) -> ManyEnds:
     """Games of a family under an assignment."""
     starts = [start_of(family, seed) for seed in range(1, games + 1)]
     conditions = ManyConditions(RULES._replace(target_known=family.known), starts[0][1], Control(0.1))
+    register_strategies((nearest,))
     flee, chase = EVADERS["paper"].decide, PURSUERS[family.pursuers].decide
     play = many_campaign((flee,) * SIZE.evaders, chase, SIZE, assign=assign)
     ends: ManyEnds = play(starts_of([g for g, _ in starts], [t for _, t in starts]), conditions)
