@@ -22,7 +22,7 @@ from sim_bridge.campaign.spatial_game import Chosen
 from sim_bridge.plane_game.setup import conditions_of, game_of
 from sim_bridge.programs.campaigns import several
 from sim_bridge.programs.campaigns.plan import Cell, Plan, Shard, is_spatial, spread_of
-from sim_bridge.programs.campaigns.rows import Row
+from sim_bridge.programs.campaigns.rows import EvaderRow, Row
 
 PAIRS = 6  # of strategies up to which each has the fastest kernel, its own; beyond, compiling takes longer
 GOLDEN = 0.618033988749895  # its multiples modulo 1 lie apart, however many there are
@@ -192,7 +192,15 @@ def _flown(cell: Cell, seed: int) -> Row:
     summary = run_virtual(whole())
     if summary.verdict == "none":
         raise ConfigError(f"{cell.label}, seed {seed}: found no outcome of the flight, expected a verdict")
-    ids = scenario.pursuer_ids
-    smallest = float("nan") if summary.smallest_distance is None else summary.smallest_distance
-    captor = ids.index(summary.captor) + 1 if summary.captor in ids else 0
-    return Row(cell.number, seed, summary.verdict, summary.time, smallest, captor, float("nan"), -1)
+    def captor(id: int) -> int:
+        return scenario.pursuer_ids.index(id) + 1 if id in scenario.pursuer_ids else 0
+
+    def metres(smallest: float | None) -> float:
+        return float("nan") if smallest is None else smallest
+
+    each = tuple(
+        EvaderRow(one.verdict, one.time, metres(one.smallest_distance), captor(one.captor), float("nan"))
+        for one in summary.evaders
+    )
+    return Row(cell.number, seed, summary.verdict, summary.time, metres(summary.smallest_distance),
+               captor(summary.captor), float("nan"), -1, each)  # fmt: skip

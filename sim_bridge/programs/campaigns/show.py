@@ -19,6 +19,14 @@ from sim_bridge.programs.campaigns.until import wilson
 VERDICTS = ("captured", "arrived", "denied", "escaped")
 
 
+class Each(NamedTuple):
+    """The games of a cell as one of several evaders had them."""
+
+    id: int
+    verdicts: NDArray[Any]
+    times: NDArray[np.float64]  # of the verdicts [s]
+
+
 class Games(NamedTuple):
     """The games of a cell, in the order of their seeds."""
 
@@ -28,7 +36,7 @@ class Games(NamedTuple):
     verdicts: NDArray[Any]
     times: NDArray[np.float64]  # [s]
     smallest: NDArray[np.float64]  # [m]
-    each: tuple[tuple[int, NDArray[Any]], ...] = ()  # of several evaders: id, and verdicts by game
+    each: tuple[Each, ...] = ()  # of several evaders
 
     def share(self, verdict: str) -> tuple[int, float, float]:
         """How many had the verdict, and Wilson's 95 % interval of its share."""
@@ -88,13 +96,17 @@ def _what(plan: Plan, number: int) -> tuple[str, ...]:
     return (cell.label, *values, shards.evaders_in(cell), "+".join(pursuers), model(cell, plan.flown))
 
 
-def _each(plan: Plan, number: int, listed: list[Any]) -> tuple[tuple[int, NDArray[Any]], ...]:
-    """Of a cell of several evaders each one's id and verdicts."""
+def _each(plan: Plan, number: int, listed: list[Any]) -> tuple[Each, ...]:
+    """Of a cell of several evaders each one's games."""
     scenario = plan.cell(number).scenario
     if not scenario.several:
         return ()
     return tuple(
-        (id, np.array([game[k]["verdict"] for game in listed], dtype=object))
+        Each(
+            id,
+            np.array([game[k]["verdict"] for game in listed], dtype=object),
+            np.array([game[k]["time"] for game in listed], dtype=float),
+        )
         for k, id in enumerate(scenario.evader_ids)
     )
 
@@ -109,8 +121,9 @@ def table(found: Results) -> str:
         games, captured, arrived = len(one.seeds), one.share("captured"), one.share("arrived")
         rows.append(
             (str(one.cell), *one.what, str(games), _share(captured, games), _share(arrived, games),
-             str(one.share("denied")[0]), str(one.share("escaped")[0]), _mean(one, "captured"),
-             _mean(one, "arrived"), _metres(one.smallest))
+             str(one.share("denied")[0]), str(one.share("escaped")[0]),
+             *("–" if one.each else _mean(one.verdicts, one.times, word) for word in ("captured", "arrived")),
+             _metres(one.smallest))
         )  # fmt: skip
     return _columns(rows)
 
@@ -129,12 +142,18 @@ def evaders_table(found: Results) -> str:
 
     Evaders of one game are not independent: the interval of all takes them as if they were.
     """
-    rows: list[tuple[str, ...]] = [("cell", "evader", "games", *VERDICTS)]
+    rows: list[tuple[str, ...]] = [
+        ("cell", "evader", "games", *VERDICTS, "time to capture", "to arrival")
+    ]
     for one in found.cells:
-        together = [("all", np.concatenate([v for _id, v in one.each]))] if len(one.each) > 1 else []
-        for who, verdicts in (*((str(id), v) for id, v in one.each), *together):
+        lines = [(str(each.id), each.verdicts, each.times) for each in one.each]
+        if len(lines) > 1:
+            everybody = np.concatenate([v for _, v, _ in lines])
+            lines.append(("all", everybody, np.concatenate([t for *_, t in lines])))
+        for who, verdicts, times in lines:
             shares = (_share(share_of(verdicts, word), len(verdicts)) for word in VERDICTS)
-            rows.append((str(one.cell), who, str(len(verdicts)), *shares))
+            means = (_mean(verdicts, times, word) for word in ("captured", "arrived"))
+            rows.append((str(one.cell), who, str(len(verdicts)), *shares, *means))
     return _columns(rows) if len(rows) > 1 else ""
 
 
@@ -143,9 +162,9 @@ def _share(found: tuple[int, float, float], games: int) -> str:
     return f"{count} = {100 * count / games:.1f} % ({100 * low:.1f}–{100 * high:.1f})"
 
 
-def _mean(one: Games, verdict: str) -> str:
-    times = one.times[one.verdicts == verdict]
-    return f"{float(np.mean(times)):.1f} s" if len(times) else "–"
+def _mean(verdicts: NDArray[Any], times: NDArray[np.float64], verdict: str) -> str:
+    found = times[verdicts == verdict]
+    return f"{float(np.mean(found)):.1f} s" if len(found) else "–"
 
 
 def _metres(values: NDArray[np.float64]) -> str:

@@ -14,10 +14,10 @@ from onboard.runtime.resources import SCENARIOS, shipped_file
 from sim_bridge.plane_game.several import play
 from sim_bridge.programs.campaigns import again, shards
 from sim_bridge.programs.campaigns.command import Options, plan_of
-from sim_bridge.programs.campaigns.play import drawn
+from sim_bridge.programs.campaigns.play import drawn, rows
 from sim_bridge.programs.campaigns.rows import EvaderRow
 from sim_bridge.programs.campaigns.run import Ways, run
-from sim_bridge.programs.campaigns.several import whole
+from sim_bridge.programs.campaigns.several import RANKS, whole
 from sim_bridge.programs.campaigns.show import evaders_table, results, text
 from sim_bridge.programs.campaigns.until import wilson
 from sim_bridge.programs.run_folder import toml_of
@@ -104,3 +104,13 @@ def test_aircraft_of_several_evaders_are_flown_and_not_computed(tmp_path: Path) 
     with pytest.raises(ConfigError, match=r"aircraft: evaders: found several in a game of aircraft.*--flown"):
         plan_of(Options((path,), games=2), until=False)
     assert plan_of(Options((path,), games=2, flown=True), until=False).several
+
+
+@pytest.mark.long
+def test_a_flown_game_has_a_row_for_each_evader() -> None:
+    plan = plan_of(Options((TWO,), games=1, flown=True), until=False)
+    [row] = rows(plan, plan.shards()[0])
+    assert len(row.evaders) == 2
+    assert {one.verdict for one in row.evaders} <= set(RANKS)
+    assert row.verdict == min((one.verdict for one in row.evaders), key=RANKS.index)
+    assert all(0 <= one.captor <= 3 and 0.0 < one.time <= 50.0 and one.smallest > 0.0 for one in row.evaders)
