@@ -121,7 +121,7 @@ def _register(function: FunctionType) -> None:
         return
     _registered.add(id(function))
     _register_parts(function)
-    register_jitable(forceinline=function.__name__ not in OUT_OF_LINE)(function)
+    register_jitable(forceinline=function.__name__ not in OUT_OF_LINE, no_cfunc_wrapper=True)(function)
 
 
 def _register_parts(function: FunctionType) -> None:
@@ -144,7 +144,7 @@ def register_strategies(functions: Iterable[Callable[..., Any]]) -> None:
             _registered.add(id(function))
             _register_parts(function)
             register_strategies(reached(function, OURS))
-            register_jitable(forceinline=True)(function)
+            register_jitable(forceinline=True, no_cfunc_wrapper=True)(function)
 
 
 class Starts(NamedTuple):

@@ -35,6 +35,7 @@ from numba.core import compiler, serialize
 from numba.core.caching import NullCache
 from numba.core.runtime.nrt import rtsys
 
+from sim_bridge.campaign.as_one import as_one
 from sim_bridge.campaign.fingerprint import UnknownContentError, fingerprint
 from sim_bridge.campaign.kernel_folder import folder
 
@@ -43,6 +44,7 @@ PATIENCE = 300.0  # [s] at most to wait for a kernel that another process compil
 LOOK = 0.05  # [s] between two looks whether it is done
 # How functions are registered and compiled is part of every kernel.
 MAKERS = (
+    "sim_bridge.campaign.as_one",
     "sim_bridge.campaign.compiled",
     "sim_bridge.campaign.each_compiled",
     "sim_bridge.campaign.fingerprint",
@@ -72,6 +74,7 @@ def kernel(
         options["_nrt"] = False
     machine: Any = numba.njit(**options)(function)
     if isinstance(function, FunctionType) and hasattr(machine, "_cache"):  # not with NUMBA_DISABLE_JIT
+        as_one(machine)
         machine._cache = KernelCache(function, repr(options))
     found: Callable[..., Any] = machine
     return found
