@@ -9,7 +9,7 @@ export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 export MKL_NUM_THREADS := 1
 
-.PHONY: help install demo test check check-long check-pythons bench bench-campaign bench-page page-pictures bench-team bench-matrix figures bench-predictor bench-gym check-aarch64 golden fuzz soak mutants mavproxy clean three lock
+.PHONY: help install demo test check check-long check-pythons bench bench-promises bench-campaign bench-page page-pictures bench-team bench-matrix figures bench-predictor bench-gym check-aarch64 golden fuzz soak mutants mavproxy clean three lock
 
 help:
 	@echo "make install   the environment only"
@@ -18,7 +18,8 @@ help:
 	@echo "make check     ruff, mypy strict, import contracts, closed locks"
 	@echo "make check-long   the long tests, and every property with five times other examples"
 	@echo "make check-pythons   a share of the tests on the later Pythons that this machine has"
-	@echo "make bench     benchmarks, beside the committed costs; results go to benchmarks/results/"
+	@echo "make bench     what things cost, beside the committed costs, in a quarter of an hour; results go to benchmarks/results/"
+	@echo "make bench-promises  aborts, stalled strategies, blocked disks, floods: what is promised of them, in ten minutes"
 	@echo "make bench-campaign  what games of a campaign cost, beside an earlier commit; a quarter of an hour (SHORT=--short: a few games)"
 	@echo "make bench-page  the page before a browser, with 200 and 1000 vehicles"
 	@echo "make page-pictures  the pictures of docs/page.md again, from games flown for them; five minutes"
@@ -79,9 +80,14 @@ bench-campaign: install
 bench: install
 	@rm -f benchmarks/results/latest-costs.json
 	@status=0; \
-	$(BIN)/python -m pytest tests/benchmarks -n 0 --timeout 1800 -o python_files="test_*.py bench_*.py" --benchmark-json benchmarks/results/latest.json || status=1; \
+	$(BIN)/python -m pytest tests/benchmarks -n 0 --timeout 1800 -o python_files="test_*.py bench_*.py" $(addprefix --ignore=,$(PROMISES)) --benchmark-json benchmarks/results/latest.json || status=1; \
 	$(BIN)/python -m tests.benchmarks.compare || status=1; \
 	exit $$status
+
+# Real time and real losses: nothing that counts in rounds of a yardstick.
+PROMISES := $(patsubst %,tests/benchmarks/bench_%.py,abort abort_real_loss abort_shell blocked_disk floods stalled_strategy)
+bench-promises: install
+	$(BIN)/python -m pytest $(PROMISES) -n 0 --timeout 1800
 
 # The base install of a single-board computer: wheels only, no compiler. locks/closed.py has shown that the lock
 # lacks nothing on aarch64; here every entry finds a wheel for it. pip takes the markers' Python from itself.
