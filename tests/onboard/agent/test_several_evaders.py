@@ -81,7 +81,7 @@ def test_a_track_that_has_ended_is_an_obstacle_no_more() -> None:
     agent = chasing()
     out(agent, OTHER)
     look(agent, 0.5)
-    agent.run(agent.core.part.policy.mate_forget + 1.0)
+    agent.run(agent.core.part.policy.mate_forget + 4.0)  # it turns only so fast
     assert agent.core.flight.output is not None
     assert agent.core.flight.output.ground.x > 3.0
 
