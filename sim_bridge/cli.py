@@ -51,7 +51,7 @@ def _root(version: VersionOption = False) -> None:
 
 @app.command(
     epilog="Examples: sim-bridge planar | sim-bridge planar --compile"
-    " | sim-bridge planar my.toml --strategy pure-pursuit --figures out"
+    " | sim-bridge planar three-on-ten --figures out"
     " | sim-bridge planar my.toml --json | sim-bridge planar --horizon 200",
 )
 def planar(
@@ -64,7 +64,7 @@ def planar(
     ] = None,
     strategy: Annotated[
         list[str] | None,
-        typer.Option(help="Pursuers' strategy; may be repeated. Default: 'paper' and 'earlier' [37]."),
+        typer.Option(help="Pursuers' strategy; may be repeated [paper and earlier; of several: their own]."),
     ] = None,
     dt: Annotated[
         float | None,

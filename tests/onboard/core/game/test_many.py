@@ -44,8 +44,8 @@ def by(name: str) -> Callable[[EvaderView, int], Decision]:
     return lambda view, _number: decide(view)
 
 
-def vehicle(x: float, y: float, speed: float) -> Vehicle:
-    return Vehicle(Vec(x, y, 0.0), scale(NORTH, speed), speed)
+def vehicle(x: float, y: float, speed: float, down: float = 0.0) -> Vehicle:
+    return Vehicle(Vec(x, y, down), scale(NORTH, speed), speed)
 
 
 def target(x: float, y: float) -> Target:
@@ -97,13 +97,21 @@ places = st.tuples(st.floats(15.0, 90.0), st.floats(-pi, pi))
     goal=st.none() | places,
     pursuers=st.sampled_from(["paper", "team", "goalkeeper", "abreast"]),
     separation=st.sampled_from([0.0, 5.0]),
+    planar=st.booleans(),
 )
 def test_one_evader_with_one_target_plays_as_ever(
-    team: list[tuple[float, float]], goal: tuple[float, float] | None, pursuers: str, separation: float
+    team: list[tuple[float, float]],
+    goal: tuple[float, float] | None,
+    pursuers: str,
+    separation: float,
+    planar: bool,
 ) -> None:
-    rules = RULES._replace(horizon=12.0, separation=separation, target_known=goal is not None)
+    rules = RULES._replace(horizon=12.0, separation=separation, target_known=goal is not None, planar=planar)
     aim = NO_TARGET if goal is None else target(goal[0] * cos(goal[1]), goal[0] * sin(goal[1]))
-    who = [vehicle(far * cos(yaw), far * sin(yaw), 4.0) for far, yaw in team]
+    who = [
+        vehicle(far * cos(yaw), far * sin(yaw), 4.0, 0.0 if planar else 5.0 * k)
+        for k, (far, yaw) in enumerate(team)
+    ]
     several = played(
         game_of([vehicle(0, 0, 5.0)], who), conditions_of((aim,), rules=rules), "paper", pursuers
     )
