@@ -7,6 +7,7 @@ import signal
 import sys
 from collections.abc import Callable, Sequence
 from contextlib import AbstractAsyncContextManager, nullcontext, suppress
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -121,8 +122,11 @@ async def status(settings: Settings, *, json: bool, wait_s: float) -> int:
 
 
 def assess_file(path: Path) -> int:
-    """Print the odds of a scenario; exit code 1 where they say no-go."""
-    return _told({1: go_or_no_go.lines(go_or_no_go.engagement_of(load(path)))})
+    """Print the odds of a scenario, of several evaders each one's; exit code 1 where they say no-go."""
+    scenario = load(path, several=True)
+    beyond = partial(go_or_no_go.beyond_one, scenario)
+    found = go_or_no_go.engagements(scenario)
+    return _told({id: go_or_no_go.lines(one, beyond(id)) for id, one in found.items()})
 
 
 async def assess_bus(settings: Settings, *, wait_s: float) -> int:

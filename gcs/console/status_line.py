@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from datetime import UTC, datetime
 from math import degrees
 
 from gcs.picture.knowledge import goal_lines, told
 from gcs.picture.several import verdict_in_words
-from gcs.picture.team import band_in_words
+from gcs.picture.team import MOST_TOLD, band_in_words
 from gcs.picture.terminal_text import cut
 from gcs.picture.values import AssessmentView, CommandView, LegState, LogLine, Picture, Presence
 from onboard.core.math.constants import NS_PER_S
@@ -61,9 +62,23 @@ def situation_in_words(picture: Picture, *, whole: bool = False) -> str:
         return prospects_in_words(judged[0], whole=whole)
     told = {found.evader: prospects_in_words(found, whole=whole) for found in judged}
     told |= {fate.id: fate.verdict.value for fate in picture.game.fates if fate.out}
-    return "; ".join(
-        f"evader {id} {words}" if whole else f"E{id} {words}" for id, words in sorted(told.items())
-    )
+    if len(told) > MOST_TOLD:
+        return _counted(picture)
+    called = "evader " if whole else "E"
+    return "; ".join(f"{called}{id} {words}" for id, words in sorted(told.items()))
+
+
+def _counted(picture: Picture) -> str:
+    """The same of more evaders than can be told one by one: how many are how, and the widest way out."""
+    ends = Counter(fate.verdict.value for fate in picture.game.fates if fate.out)
+    said = [f"{count} {word}" for word, count in ends.items()]
+    closed = sum(found.encircled for found in picture.assessments)
+    widest = max(picture.assessments, key=lambda found: found.largest_gap, default=None)
+    said += [f"{closed} encircled"] if closed else []
+    if widest is not None and len(picture.assessments) > closed:
+        wide = f"the widest {degrees(widest.largest_gap):.0f}° of {widest.evader}"
+        said.append(f"{len(picture.assessments) - closed} with a way out, {wide}")
+    return f"evaders: {', '.join(said)}"
 
 
 def prospects_in_words(found: AssessmentView, *, whole: bool = False) -> str:
@@ -173,7 +188,7 @@ def known_lines(picture: Picture) -> list[str]:
     lines = []
     for word in picture.game.knowledge:
         lines.append(f"evader {word.quarry}: {goal_in_words(word.goal) or 'no goal'}")
-        lines += [f"  {edge.words} ({edge.strength:.2f})" for edge in told(word)]
+        lines += [f"  {edge.words} ({edge.strength:.2f})" for edge in told(word, dict(picture.game.quarries))]
     return lines
 
 

@@ -246,13 +246,16 @@ def _knowledge(game: GameView) -> list[Document]:
         id: {"evader": id, "goal": goal_in_words(goal), "lines": [], "arcs": []}
         for id, goal in goals_of(game).items()
     }
+    after = dict(game.quarries)
     for word in game.knowledge:
         one = found.setdefault(word.quarry, {"evader": word.quarry, "goal": goal_in_words(word.goal)})
-        one["lines"] = [{"words": edge.words, "strength": _number(edge.strength)} for edge in told(word)]
+        one["lines"] = [
+            {"words": edge.words, "strength": _number(edge.strength)} for edge in told(word, after)
+        ]
         one["arcs"] = [
             {"source": arc.source, "from": list(arc.ends[0]), "to": list(arc.ends[1]), "words": arc.words,
              "strength": arc.strength}
-            for arc in arcs(word)
+            for arc in arcs(word, after)
         ]  # fmt: skip
     return [found[id] for id in sorted(found)]
 

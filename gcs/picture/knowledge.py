@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import cos, sin
 from typing import NamedTuple
 
@@ -61,12 +62,15 @@ def goal_lines(game: GameView) -> list[str]:
     return [f"goal{f' E{id}' if several else ''}: {goal_in_words(goal)}" for id, goal in found.items()]
 
 
-def told(word: Knowledge) -> list[KnowledgeEdge]:
-    """What of a network people are told: the strongest of each kind, then a user's own."""
+def told(word: Knowledge, quarries: Mapping[int, int]) -> list[KnowledgeEdge]:
+    """What of a network people are told: the strongest of each kind, then a user's own. By `quarries` a
+    pursuer that is after another evader takes no part here, which is no loss."""
     best: dict[tuple[int, int, int], KnowledgeEdge] = {}
     own = [edge for edge in word.edges if edge.relation not in (*ONCE, *UNTOLD)]
     for edge in word.edges:
-        if edge.relation not in ONCE:
+        source = word.nodes[edge.source].number
+        elsewhere = quarries.get(source, word.quarry) != word.quarry
+        if edge.relation not in ONCE or (edge.relation == "lost" and elsewhere):
             continue
         each = edge.source if edge.relation in EACH else -1
         key = (ONCE.index(edge.relation), edge.sink, each)
@@ -84,12 +88,12 @@ class Arc(NamedTuple):
     strength: float  # of the strongest
 
 
-def arcs(word: Knowledge) -> list[Arc]:
+def arcs(word: Knowledge, quarries: Mapping[int, int]) -> list[Arc]:
     """Those that are told of which both nodes have a place: one arc for all that leads from one to the other.
     A region stands where its pursuer is."""
     found: dict[tuple[int, Triple, Triple], list[KnowledgeEdge]] = {}
     at = {node.number: node.place for node in word.nodes if node.kind is NodeKind.PURSUER}
-    for edge in told(word):
+    for edge in told(word, quarries):
         a, b = word.nodes[edge.source], word.nodes[edge.sink]
         ends = _place(a, at), _place(b, at)
         if {NodeKind.TEAM, NodeKind.FENCE} & {a.kind, b.kind} or ends[0] == ends[1]:

@@ -8,6 +8,7 @@ from onboard.core.math.constants import NS_PER_S
 from onboard.pilot.team_seat import LEASE_S, OLD_S
 from onboard.wire.bus.team_messages import PlannedBand, PlannedPart, TeamPlan
 
+MOST_TOLD = 4  # evaders that are told one by one
 Plans = dict[int, tuple[TeamPlan, int]]  # by planner, with when each came [ns]
 
 
@@ -34,6 +35,11 @@ def part_in_words(plan: TeamPlan, part: PlannedPart) -> str:
 
 def band_in_words(plan: TeamPlan) -> str:
     """Whether the evader's band is closed, and who could close it, for people; of several evaders of each."""
+    if len(plan.bands) > MOST_TOLD:
+        closed = sum(one.closed for one in plan.bands)
+        widest = max(plan.bands, key=lambda one: one.gap)
+        most = f"E{widest.quarry} {_band(widest)}"
+        return f"plan of {plan.id}: {closed} of {len(plan.bands)} bands closed; {most}"
     if plan.bands:
         return f"plan of {plan.id}: " + "; ".join(f"E{one.quarry} {_band(one)}" for one in plan.bands)
     return f"plan of {plan.id}: {_band(plan)}"

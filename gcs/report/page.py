@@ -33,8 +33,8 @@ TAGS = {LegState.CONFIRMED: "good", LegState.REFUSED: "error"}  # of others: war
 def page(run: Run, drawings: list[Drawing]) -> str:
     """The whole file: the figures as SVG, the tables, the style sheet and the script."""
     tables = [
-        ("glossary", "Glossary", GLOSSARY, glossary(run)),
         ("evaders", "Evaders", "", evaders(run)),
+        ("glossary", "Glossary", GLOSSARY, glossary(run)),
         ("vehicles", "Vehicles", "", vehicles(run)),
         ("commands", "Commands", CONFIRMED, commands(run)),
         ("alerts", "Alerts", "", alerts(run)),

@@ -4,26 +4,59 @@ from __future__ import annotations
 
 from onboard.core.game.rules import NO_TARGET, Target
 from onboard.core.math.states import Vehicle
-from onboard.core.math.vectors import scale
-from onboard.core.strategy.team.plan_types import Heights, Member, Situation
-from onboard.game.odds import Chances, Estimate, engagement, headline, odds, table
-from onboard.game.scenario import Scenario, vec
+from onboard.core.math.vectors import Vec, distance, scale
+from onboard.core.strategy.team.plan_types import NOBODY, Heights, Member, Situation
+from onboard.core.strategy.team.quarry import Quarry, quarries_of
+from onboard.game.odds import Chances, Estimate, engagement, headline, odds, one_each, table
+from onboard.game.scenario import Scenario, targets_of
 from onboard.game.staging import places_of, start_headings
 
 
 def engagement_of(scenario: Scenario) -> Situation:
-    """A scenario at its start."""
-    evader, *team = (
-        Member(Vehicle(place, scale(heading, spec.speed), spec.speed), spec.limits(), True)
-        for spec, place, heading in zip(
-            scenario.vehicles, places_of(scenario), start_headings(scenario), strict=True
+    """A scenario of one evader at its start; of several the first evader's, as `engagements` has it."""
+    return next(iter(engagements(scenario).values()))
+
+
+def engagements(scenario: Scenario) -> dict[int, Situation]:
+    """The engagement of each evader at the start, by id: to the target nearest to it, against those who go
+    for it first; against all pursuers where nobody does, or where there is one evader."""
+    members = {
+        id: Member(Vehicle(place, scale(heading, spec.speed), spec.speed), spec.limits(), True)
+        for id, spec, place, heading in zip(
+            scenario.ids, scenario.vehicles, places_of(scenario), start_headings(scenario), strict=True
         )
-    )
-    fence = scenario.flight.fence
+    }
+    fence, sigma = scenario.flight.fence, scenario.flight.sensor.sigma
     heights = Heights() if fence is None else Heights(fence.height_min, fence.height_max)
-    goal = scenario.evader.target
-    target = NO_TARGET if goal is None else Target(True, vec(goal))
-    return engagement(evader, tuple(team), target, scenario.rules, heights, scenario.flight.sensor.sigma)
+    evaders, rules = scenario.evader_ids, scenario.rules
+    goals = {
+        id: _nearest(targets_of(spec), members[id])
+        for id, spec in zip(evaders, scenario.evading, strict=True)
+    }
+    team = tuple(members[id] for id in scenario.pursuer_ids)
+    given = (0,) * len(team)
+    if len(evaders) > 1:
+        quarries = tuple(Quarry(members[id].vehicle, members[id].limits, True, goals[id]) for id in evaders)
+        given = quarries_of(team, quarries, (NOBODY,) * len(team), rules, rules.horizon)
+    return {
+        id: engagement(
+            members[id], tuple(m for m, quarry in zip(team, given, strict=True) if quarry == number) or team,
+            goals[id], rules, heights, sigma,
+        )
+        for number, id in enumerate(evaders)
+    }  # fmt: skip
+
+
+def beyond_one(scenario: Scenario, evader: int) -> str:
+    """Why the table of odds says nothing of an evader's game; "" where it has one evader with one target."""
+    spec = scenario.evading[scenario.evader_ids.index(evader)]
+    return one_each(len(scenario.evading), len(targets_of(spec)))
+
+
+def _nearest(goals: tuple[Vec, ...], evader: Member) -> Target:
+    place = evader.vehicle.position
+    found = min(goals, key=lambda goal: distance(goal, place), default=None)
+    return NO_TARGET if found is None else Target(True, found)
 
 
 def share(p: Estimate) -> str:

@@ -10,7 +10,7 @@ from msgspec.structs import replace
 from gcs.console import plan
 from gcs.console.detail import detail
 from gcs.console.plain_lines import status
-from gcs.console.status_line import alert_lines, known_lines, log_lines, status_line
+from gcs.console.status_line import alert_lines, known_lines, log_lines, situation_in_words, status_line
 from gcs.console.vehicle_table import rows
 from gcs.page import documents
 from gcs.picture import knowledge
@@ -18,6 +18,7 @@ from gcs.picture.assessment import assess as assessments
 from gcs.picture.assessment import beyond_one, engagements_in
 from gcs.picture.reducer import PictureReducer
 from gcs.picture.values import Picture
+from gcs.programs import assess_file
 from onboard.core.geometry.assessment import assess
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.states import Vehicle
@@ -25,6 +26,7 @@ from onboard.core.math.vectors import ZERO, Vec, sub
 from onboard.game import palette, sides
 from onboard.game.go_or_no_go import lines
 from onboard.game.knowledge_words import goal_in_words
+from onboard.runtime.resources import configs
 from onboard.wire.bus.knowledge_messages import (
     Knowledge,
     KnowledgeEdge,
@@ -258,16 +260,36 @@ def test_a_word_counts_while_it_is_fresh_and_of_the_planner_alone() -> None:
     assert tower.picture.game.knowledge == (), "the last word is six seconds old"
 
 
-def test_a_users_own_relation_is_told() -> None:
+def test_a_users_own_relation_is_told_and_who_is_after_another_evader_is_not_lost() -> None:
     nodes = (
         KnowledgeNode(NodeKind.EVADER, 1, "evader 1", (0.0, 0.0, 0.0)),
         KnowledgeNode(NodeKind.PURSUER, 2, "pursuer 2", (50.0, 0.0, 0.0)),
     )
     edges = (
         KnowledgeEdge("slower", 1, 0, 0.9, 0.5, "pursuer 2 is slower"),
+        KnowledgeEdge("lost", 1, 0, 1.0, 0.0, "pursuer 2 is lost to the team"),
         KnowledgeEdge("sun_behind", 1, 0, 0.7, 0.7, "pursuer 2 has the sun behind it"),
     )
     word = Knowledge(2, 0, 1.0, 1, nodes, edges, PlannedGoal(1, TeamGoal.NONE, 0, "", ""))
-    assert [edge.words for edge in knowledge.told(word)] == ["pursuer 2 has the sun behind it"]
-    (arc,) = knowledge.arcs(word)
+    own = "pursuer 2 has the sun behind it"
+    assert [edge.words for edge in knowledge.told(word, {})] == ["pursuer 2 is lost to the team", own]
+    assert [edge.words for edge in knowledge.told(word, {2: 12})] == [own], "it is after another evader"
+    (arc,) = knowledge.arcs(word, {2: 12})
     assert (arc.source, arc.ends, arc.words) == (2, ((50.0, 0.0, 0.0), (0.0, 0.0, 0.0)), "sun_behind 0.70")
+
+
+def test_many_evaders_are_counted_not_listed(early: Picture) -> None:
+    (first, *_) = early.assessments
+    many = tuple(replace(first, evader=id, encircled=id < 5, largest_gap=0.1 * id) for id in range(1, 9))
+    said = situation_in_words(replace(early, assessments=many))
+    assert said == "evaders: 4 encircled, 4 with a way out, the widest 46° of 8"
+
+
+def test_a_scenario_of_several_evaders_is_assessed_each_by_each(capsys: pytest.CaptureFixture[str]) -> None:
+    code = assess_file(configs() / "scenarios" / "flight" / "three-on-ten.toml")
+    told = capsys.readouterr().out.splitlines()
+    assert [line for line in told if line.startswith("evader ")] == ["evader 1", "evader 12", "evader 13"]
+    words = [line.partition(":")[0] for line in told[1::3]]
+    assert len(words) == 3
+    assert code == (1 if "no-go" in words else 0)
+    assert sum("the table's games have 1" in line for line in told) == 3
