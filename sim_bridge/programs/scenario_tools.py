@@ -28,6 +28,7 @@ seed = 1                       # of noise, wind and lost datagrams
 position = [0, 0]
 speed = 5                      # what the game reckons with
 target = [-60, -140]           # leave it out: the evader only flees
+# targets = [[-60, -140], [90, 20]]   # in place of target: to reach any of them counts
 # strategy = "paper"           # hysteresis, two-leg, dodge, evasive, straight; see sim-bridge list
 # pitch_min_deg = -20          # limits (2)-(3); they enter the decision itself
 # pitch_max_deg = 20
@@ -40,6 +41,11 @@ speed = 4
 position = [-30, -60]
 speed = 4
 # strategy = "parallel-pursuit"   # goalkeeper, team, paper, … (docs/rules.md)
+
+# [[evaders]]                  # further evaders, told as [evader] is (docs/several-evaders.md)
+# position = [10, 70]
+# speed = 4.5
+# target = [-90, 60]
 
 [parameters]
 R = 2.0                        # capture radius (6)

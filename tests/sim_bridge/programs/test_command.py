@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from onboard.config.strict import ConfigError
-from onboard.game.scenario import load
+from onboard.game.scenario import load, targets_of
 from onboard.runtime.resources import SCENARIOS, configs, shipped_file
 from sim_bridge.programs.fly import Options, demand_strategies, fly
 from sim_bridge.programs.scenario_tools import TEMPLATE, check, new
@@ -79,6 +79,13 @@ def test_a_template_is_written_once_and_is_a_game_that_can_be_flown(tmp_path: Pa
     demand_strategies(tuned, str(path))
     assert tuned.flight.ground_start
     assert tuned.evader.pitch_max_deg == 20
+    more = TEMPLATE.replace("\ntarget =", "\n# target =").replace("# targets =", "targets =")
+    for key in ("[[evaders]]", "position = [10", "speed = 4.5", "target = [-90"):
+        assert f"# {key}" in more
+        more = more.replace(f"# {key}", key)
+    path.write_text(more, encoding="utf-8")
+    several = load(path, several=True)
+    assert [len(targets_of(spec)) for spec in several.evading] == [2, 1]
 
 
 def test_check_says_who_can_intercept_and_how_long_it_may_last(tmp_path: Path) -> None:
