@@ -25,6 +25,7 @@ from onboard.wire.bus.codec import M
 from onboard.wire.bus.messages import (
     AgentStage,
     EvaderBrief,
+    EvaderOutcome,
     Health,
     Master,
     Message,
@@ -113,6 +114,11 @@ class GameMaster:
     def nearest(self) -> dict[int, float]:
         """Smallest distance of each pursuer to any evader so far [m]."""
         return self._trials.nearest
+
+    @property
+    def out(self) -> tuple[EvaderOutcome, ...]:
+        """Of several evaders those whose game is over."""
+        return self._trials.out
 
     # ------------------------------------------------------------------ what it hears
 
@@ -350,7 +356,7 @@ class GameMaster:
         self._phases += 1
         phase = PhaseChange(
             phase=self.phase, t0_ns=self.t0_ns, stamp_ns=wall_ns, resume=self._resume, reason=reason,
-            master=self.name, nonce=self.nonce, number=self._phases, out=self._trials.out,
+            master=self.name, nonce=self.nonce, number=self._phases, out=self.out,
         )  # fmt: skip
         self._put(PHASE, phase)
 
