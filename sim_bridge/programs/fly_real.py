@@ -12,7 +12,7 @@ from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import distance
 from onboard.game.master import Standing
 from onboard.game.scenario import Scenario
-from onboard.game.staging import target_of
+from onboard.game.staging import flown_targets
 from onboard.runtime.bus_zenoh import ZenohBus
 from onboard.runtime.clock import RealClock
 from onboard.runtime.file_writer import FileWriter
@@ -95,7 +95,7 @@ class RealGame:
         self._recorder = BusRecorder(folder, DEFAULT_GAME, RealClock())
         self._writer = FileWriter()
         self._truth = TruthLog(self._writer.open(folder / TRUTH).write)
-        self._rule = ""  # by which the evader decided last
+        self._rules: dict[int, str] = {}  # by which each evader decided last
         self._drops: Counter[str] = Counter()
 
     async def play(self, home: Path) -> Outcome | None:
@@ -134,7 +134,8 @@ class RealGame:
         bridge.watch = self._truth.step
         self.observer = Observer(self._scenario, self._seed, "real", DEFAULT_GAME, bus, self._on_event)
         hear = Dispatcher(self._drops).on(DECISION, self._on_decision)
-        bus.subscribe(DECISION.key(DEFAULT_GAME, self._scenario.ids[0]), hear)
+        for id in self._scenario.evader_ids:
+            bus.subscribe(DECISION.key(DEFAULT_GAME, id), hear)
         self.agents.ports = ports
         self.agents.bridge_up.set()
 
@@ -143,7 +144,7 @@ class RealGame:
             self._say(f"  vehicle {event.id}: {event.text}")
 
     def _on_decision(self, decision: DecisionReport) -> None:
-        self._rule = decision.rule.replace("_", " ")
+        self._rules[decision.id] = decision.rule.replace("_", " ")
 
     async def _report_progress(self) -> None:
         """Say every few seconds how the game goes, or what it waits for."""
@@ -154,18 +155,24 @@ class RealGame:
                 continue
             rules = bridge.master.rules
             if rules.phase is Phase.RUNNING:
-                self._say(self._line(bridge, (bridge.world.wall_ns - rules.t0_ns) / NS_PER_S))
+                out = {end.id for end in rules.out}
+                for id in self._scenario.evader_ids:
+                    if id not in out:
+                        self._say(self._line(bridge, id, (bridge.world.wall_ns - rules.t0_ns) / NS_PER_S))
             elif rules.phase is Phase.STAGING:
                 clock = RealClock()
                 lacking = rules.lacking(clock.wall_ns(), clock.monotonic_ns())
                 for id, reason in sorted(lacking.items()):
                     self._say(f"  waiting for vehicle {id}: {reason}")
 
-    def _line(self, bridge: Bridge, t: float) -> str:
-        motions, target = bridge.world.motions, target_of(self._scenario)
-        place = motions[self._scenario.ids[0]].position
-        far = {id: distance(motions[id].position, place) for id in self._scenario.ids[1:]}
-        nearest = min(far, key=lambda id: far[id])
-        goal = f", target {distance(place, target):.0f} m away" if target is not None else ""
-        rule = f"; the evader's rule: {self._rule}" if self._rule else ""
-        return f"  t = {t:5.1f} s: nearest pursuer {nearest} at {far[nearest]:.1f} m{goal}{rule}"
+    def _line(self, bridge: Bridge, id: int, t: float) -> str:
+        """Where an evader stands at `t` [s since t0]."""
+        scenario, motions = self._scenario, bridge.world.motions
+        place = motions[id].position
+        far = {one: distance(motions[one].position, place) for one in scenario.pursuer_ids}
+        nearest = min(far, key=lambda one: far[one])
+        goals = [distance(place, target) for target in flown_targets(scenario)[id]]
+        goal = f", target {min(goals):.0f} m away" if goals else ""
+        rule = f"; the evader's rule: {self._rules[id]}" if id in self._rules else ""
+        which = f"evader {id}: " if scenario.evaders else ""
+        return f"  t = {t:5.1f} s: {which}nearest pursuer {nearest} at {far[nearest]:.1f} m{goal}{rule}"
