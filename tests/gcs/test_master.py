@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from collections import Counter
 from collections.abc import Callable
 from contextlib import asynccontextmanager
 
@@ -77,8 +78,12 @@ class Flyer:
 
 
 @asynccontextmanager
-async def field(scenario: Scenario = MEETING, auto_start: bool = True, late_s: float = 0.02):
-    """A station that is master, and three vehicles: the evader flies north at 5 m/s, pursuer 2 meets it."""
+async def field(
+    scenario: Scenario = MEETING, auto_start: bool = True, late_s: float = 0.02, fourth: Vec | None = None
+):
+    """A station that is master, and three vehicles: the evader flies north at 5 m/s, pursuer 2 meets it.
+
+    `fourth` is where a further evader of `scenario` stands [m; NED], known by its track."""
     broker = MemoryBroker()
     clock = virtual_clock()
     station = Station(
@@ -90,6 +95,9 @@ async def field(scenario: Scenario = MEETING, auto_start: bool = True, late_s: f
         Flyer(broker.connect(), 2, Vec(100.0, 0.0, -50.0), Vec(-5.0, 0.0, 0.0)),
         Flyer(broker.connect(), 3, Vec(0.0, 200.0, -50.0), Vec(0.0, 0.0, 0.0)),
     ]
+    if fourth is not None:
+        flyers.append(Flyer(broker.connect(), 4, fourth, Vec(0.0, 0.0, 0.0)))
+        flyers[-1].only_track = True
     tasks = [asyncio.create_task(coro) for coro in (station.run(), master.run(), *(f.fly() for f in flyers))]
     try:
         yield station, master, flyers, broker
@@ -103,6 +111,28 @@ async def until(condition: Callable[[], object], within_s: float) -> None:
     async with asyncio.timeout(within_s):
         while not condition():  # noqa: ASYNC110 - the condition is anybody's, it sets no event
             await asyncio.sleep(0.02)
+
+
+@virtual
+async def test_several_evaders_are_judged_by_their_own_words_and_by_tracks_and_leave_one_by_one():
+    standing = VehicleSpec(position=(0.0, 195.0, 50.0), speed=5.0, tracked=True)
+    scenario = msgspec.structs.replace(MEETING, evaders=(standing,))
+    async with field(scenario, fourth=Vec(0.0, 195.0, -50.0)) as (station, master, flyers, broker):
+        told: list[messages.PhaseChange] = []
+        broker.connect().subscribe(
+            topics.PHASE.key(GAME), lambda sample: told.append(topics.PHASE.decode(sample.payload, Counter()))
+        )
+        flyers[2].velocity = Vec(0.0, -0.5, 0.0)  # pursuer 3 comes near the standing evader at 6 s
+        await until(lambda: any(phase.out for phase in told), 15.0)
+        (end,) = told[-1].out
+        assert (end.id, end.verdict, end.captor) == (4, OutcomeResult.CAPTURED, 3)
+        assert end.time == pytest.approx(6.0, abs=0.3)
+        assert told[-1].phase is Phase.RUNNING
+        await until(lambda: master.over, 15.0)
+        outcome = station.picture().game.outcome
+        assert outcome is not None
+        assert [(end.id, end.captor) for end in outcome.evaders] == [(1, 2), (4, 3)]
+        assert outcome.time == pytest.approx(9.8, abs=0.02)
 
 
 @virtual

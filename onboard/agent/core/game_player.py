@@ -102,7 +102,8 @@ class GamePlayer:
             track.covariance,
         )  # fmt: skip
         self._tracks.heard(track)
-        self._memory.take((sample,))
+        if track.id not in self._ended:  # nobody asks any more where that one will be
+            self._memory.take((sample,))
         hunt = None if self.flying is None else self.flying.viewpoint.hunt
         if hunt is not None and track.id in hunt.ids:
             at = now.s - (now.wall_ns - track.stamp_ns) / NS_PER_S
