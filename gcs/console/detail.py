@@ -135,7 +135,7 @@ def _distances(picture: Picture, vehicle: VehicleView) -> list[Line]:
     lines = []
     quarry = quarries(picture).get(vehicle.id)
     if quarry is not None:
-        line = sub(quarry.place, here)
+        line = sub(Vec(*quarry.place), here)
         away = norm(line)
         closing = dot(Vec(*vehicle.state.velocity), scale(line, 1.0 / away)) if away > 0.0 else 0.0
         named = f" {quarry.id}" if len(sides.evaders(picture.roles)) > 1 else ""

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from enum import IntEnum
-from math import inf, isinf
+from math import dist, inf, isinf
 from typing import Any, NamedTuple
 
 from gcs.picture.terminal_text import cut
 from gcs.picture.values import FateView, Picture, Presence, VehicleView
-from onboard.core.math.vectors import Vec, distance
-from onboard.game import sides
-from onboard.wire.bus.messages import Health, Role, Severity
+from onboard.wire.bus.messages import Health, Role, Severity, Triple
 
 
 class Grade(IntEnum):
@@ -91,36 +89,39 @@ def grades(picture: Picture) -> dict[int, Grade]:
 
 
 class Quarry(NamedTuple):
-    """An evader that is in the game, and where it is."""
+    """An evader that is in the game, where it is, and how far from who is after it."""
 
     id: int
-    place: Vec
+    place: Triple  # [m; NED]
+    away: float  # [m]
 
 
 def quarries(picture: Picture) -> dict[int, Quarry]:
     """For everybody but evaders: the evader that it is after, as far as somebody says so, else the nearest
     one in the game. An evader is where its own state says, else its track."""
     at = evader_places(picture)
+    if not at:
+        return {}
     after = dict(picture.game.quarries)
     found = {}
     for vehicle in picture.vehicles:
-        if vehicle.role is Role.EVADER or vehicle.position is None or not at:
+        if vehicle.state is None or vehicle.role is Role.EVADER:
             continue
-        here = Vec(*vehicle.position)
-        told = after.get(vehicle.id, 0)
-        id = told if told in at else min(at, key=lambda one: distance(at[one], here))
-        found[vehicle.id] = Quarry(id, at[id])
+        here, told = vehicle.state.position, after.get(vehicle.id, 0)
+        known = {told: at[told]} if told in at else at
+        found[vehicle.id] = min(
+            (Quarry(id, place, dist(place, here)) for id, place in known.items()), key=lambda one: one.away
+        )
     return found
 
 
-def evader_places(picture: Picture) -> dict[int, Vec]:
+def evader_places(picture: Picture) -> dict[int, Triple]:
     """Where the evaders in the game are [m; NED], by id, as far as it is known."""
-    roles = picture.roles
-    at = {track.id: Vec(*track.track.position) for track in picture.tracks}
-    at |= {v.id: Vec(*v.position) for v in picture.vehicles if v.position is not None}
-    known = [id for id in sides.evaders(roles) if id in at]
-    playing = [id for id in known if (fate := picture.game.fate_of(id)) is None or not fate.out]
-    return {id: at[id] for id in playing or known}
+    evaders = {v.id: v.position for v in picture.vehicles if v.role is Role.EVADER}
+    seen = {track.id: track.track.position for track in picture.tracks}
+    at = {id: place for id in {*evaders, *picture.game.evaders} if (place := evaders.get(id) or seen.get(id))}
+    out = {fate.id for fate in picture.game.fates if fate.out}
+    return {id: at[id] for id in sorted(at) if id not in out} or at
 
 
 def rows(picture: Picture, sort: str, descending: bool) -> list[Row]:
@@ -140,17 +141,9 @@ class _Told(NamedTuple):
 
     vehicle: VehicleView
     grade: Grade
-    quarry: Quarry | None
+    away: float | None  # from its quarry [m]
     after: int  # the evader that it is said to be after, where there are several; 0 = none
     fate: FateView | None  # of an evader that is out of the game
-
-    @property
-    def away(self) -> float | None:
-        """The distance to its quarry [m]."""
-        position = self.vehicle.position
-        return (
-            None if self.quarry is None or position is None else distance(Vec(*position), self.quarry.place)
-        )
 
     @property
     def role(self) -> str:
@@ -168,8 +161,9 @@ class _Told(NamedTuple):
 def _told(picture: Picture) -> list[_Told]:
     graded, quarry, after = grades(picture), quarries(picture), dict(picture.game.quarries)
     out = {fate.id: fate for fate in picture.game.fates if fate.out}
+    away = {id: one.away for id, one in quarry.items()}
     return [
-        _Told(v, graded[v.id], quarry.get(v.id), after.get(v.id, 0), out.get(v.id)) for v in picture.vehicles
+        _Told(v, graded[v.id], away.get(v.id), after.get(v.id, 0), out.get(v.id)) for v in picture.vehicles
     ]
 
 
@@ -231,9 +225,12 @@ def _share(health: Health | None) -> float | None:
     return health.battery if health and health.battery >= 0 else None
 
 
-def sort_values(picture: Picture) -> dict[int, dict[str, Any]]:
-    """What each vehicle is sorted by, by the columns' sort names; None where it is not known."""
-    return {told.vehicle.id: {name: key(told) for name, key in _KEYS.items()} for told in _told(picture)}
+def keyed_rows(picture: Picture) -> list[tuple[Row, dict[str, Any]]]:
+    """The table by id, with what each row is sorted by under the columns' sort names; None: not known."""
+    return [
+        (Row(told.vehicle.id, told.grade, _cells(told)), {name: key(told) for name, key in _KEYS.items()})
+        for told in _told(picture)
+    ]
 
 
 def columns(width: int) -> tuple[Column, ...]:

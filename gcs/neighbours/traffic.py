@@ -32,11 +32,12 @@ def located(picture: Picture) -> list[tuple[TrackView, Frame]]:
 
 
 def callsign(picture: Picture, id: int) -> str:
-    """A name of eight characters at most: `EVADER1`, `TRACK7`."""
+    """A name of eight characters at most: `EVADER1`, `EVAD120`, `TRACK7`; no two have one name."""
     setup = picture.game.setup
     roster = setup.roster if setup is not None else ()
     evaders = {member.id for member in roster if member.role is Role.EVADER}
-    return f"{'EVADER' if id in evaders else 'TRACK'}{id}"[:8]
+    word = "TRACK" if id not in evaders else "EVADER" if id < 100 else "EVAD"
+    return f"{word}{id}"[:8]
 
 
 def adsb(picture: Picture) -> list[AdsbVehicle]:

@@ -12,7 +12,7 @@ from typing import Any
 from gcs.console.command_parser import HELP_LINES, SORTS, WHOM
 from gcs.console.detail import detail as detail_lines
 from gcs.console.status_line import SIGNS, clock, log_lines, prospects_in_words, situation_in_words, spans
-from gcs.console.vehicle_table import COLUMNS, GRADE_WORDS, Grade, rows, sort_values
+from gcs.console.vehicle_table import COLUMNS, GRADE_WORDS, Grade, keyed_rows
 from gcs.page.frames import HEAD, ROLES, TRACK, VEHICLE
 from gcs.picture.current import current
 from gcs.picture.knowledge import arcs, goals_of, told
@@ -145,7 +145,6 @@ def trails(picture: Picture) -> Document:
 def board(picture: Picture, status: str) -> Document:
     """Tables, alerts, log, clock and assessment at one instant."""
     now = current(picture)
-    keys = sort_values(now)
     roles = {vehicle.id: vehicle.role.value if vehicle.role else "" for vehicle in now.vehicles}
     after = dict(now.game.quarries)
     table = [
@@ -155,9 +154,9 @@ def board(picture: Picture, status: str) -> Document:
                 _role(roles[row.id], after.get(row.id)) or cell if column.heading == "role" else cell
                 for column, cell in zip(COLUMNS, row.cells, strict=True)
             ],
-            "keys": {name: _number(value) for name, value in keys[row.id].items()},
+            "keys": {name: _number(value) for name, value in keys.items()},
         }
-        for row in rows(now, "id", False)
+        for row, keys in keyed_rows(now)
     ]  # fmt: skip
     return {
         "what": "board", "now_ms": picture.now_ns // 1_000_000, "utc": clock(picture.now_ns),

@@ -12,6 +12,7 @@ from xml.etree import ElementTree as ET
 import pymap3d
 import pytak
 import pytest
+from msgspec.structs import replace
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from gcs.neighbours.teller import Teller, cot_link, teller
@@ -19,6 +20,7 @@ from gcs.neighbours.traffic import OLD_S, adsb, callsign, cot
 from gcs.settings import NeighbourSettings
 from onboard.config.strict import ConfigError
 from onboard.core.math.constants import NS_PER_S
+from onboard.wire.bus.messages import Member, Role
 from onboard.wire.mavlink.frames import Sender
 from tests.support.bus_stages import free_port
 from tests.support.real_time import until
@@ -113,6 +115,12 @@ def test_names_fit_their_fields() -> None:
     picture = seen().picture
     assert callsign(picture, 1) == "EVADER1"
     assert callsign(picture, 250) == "TRACK250"
+    tower = Tower()
+    roster = tuple(Member(id, Role.EVADER, 10.0, (0.0, 0.0, 0.0)) for id in range(1, 251))
+    tower.hear(replace(setup(2), roster=roster))
+    names = [callsign(tower.picture, id) for id in (1, 12, 99, 100, 120, 129, 250)]
+    assert len({*names}) == len(names), "evader 12 and evader 120 are two"
+    assert max(map(len, names)) <= 8
 
 
 @pytest.mark.parametrize(
