@@ -53,6 +53,13 @@ class Trials(NamedTuple):
     lost: Array  # (games, pursuers) when each is lost [s]; inf: never
 
 
+class Ended(NamedTuple):
+    """How they ended."""
+
+    verdicts: NDArray[np.int64]  # (games,) of `GameResult`
+    times: Array  # (games,) [s]
+
+
 class Place(NamedTuple):
     """A game of the trials, and the rules that say what pursuers know (for `each`)."""
 
@@ -90,12 +97,12 @@ def member(vehicle: Vehicle, index: int, place: Place) -> Member:
 @cache
 def player(
     ways: tuple[EvaderStrategy, PursuerStrategy], planner: Planner, count: int, compiled: bool = True
-) -> Callable[[Trials, Conditions, Array], None]:
-    """Plays all games of trials of `count` pursuers into an array (games, 2): verdict and its time [s]."""
+) -> Callable[[Trials, Conditions, Ended], None]:
+    """Plays all games of trials of `count` pursuers into their ends."""
     decide_evader, decide_pursuer = ways
     team = tuple(range(1, count + 1))
 
-    def play(trials: Trials, conditions: Conditions, ends: Array) -> None:
+    def play(trials: Trials, conditions: Conditions, ends: Ended) -> None:
         every = steps_between(conditions.control.dt)
         for number in range(trials.starts.speeds.shape[0]):
             game = pairs._begin(pairs._Table(trials.starts, number), team)
@@ -129,13 +136,13 @@ def player(
                     game.time + dt, evader, pursuers, game.evader_limits, game.pursuer_limits, score
                 )
                 steps += 1
-            ends[number, 0] = float(game.score.verdict)
-            ends[number, 1] = game.score.time
+            ends.verdicts[number] = game.score.verdict
+            ends.times[number] = game.score.time
 
     if not compiled:
         return play
     pairs.register((*pairs.KERNELS, "onboard.core.game.targets", pairs.__name__))
     of_here: tuple[Callable[..., Any], ...] = (target_of, known, there, member)
     pairs.register_strategies((*ways, planner, *of_here))
-    ready: Callable[[Trials, Conditions, Array], None] = kernel(play, True, "numpy")
+    ready: Callable[[Trials, Conditions, Ended], None] = kernel(play, True, "numpy")
     return ready

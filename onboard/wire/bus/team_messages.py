@@ -29,7 +29,7 @@ class PartReason(Enum):
     CLOSES_CORRIDOR = "in time for its place across the corridor"
     NO_GAP_IN_REACH = "the band stays open"
     LOST = "not heard, or cannot fly on"
-    SECOND = "at hand should the keeper be lost: the chase leads nowhere"
+    SECOND = "at hand should the keeper be lost: the chase forces nothing"
     BETWEEN = "in time for either of two targets"
 
 

@@ -10,16 +10,16 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from onboard.core.strategy.denial import stands
-from onboard.core.strategy.semantic.graph import Edge, Scene, count_to, strength_of, strongest
-from onboard.core.strategy.semantic.relations import COVERS, ENCLOSES, FREE, REACHES, SUFFICES, THREATENS
+from onboard.core.strategy.semantic.graph import Edge, Scene, strength_of, strongest
+from onboard.core.strategy.semantic.relations import COVERS, ENCLOSES, FREE, REACHES, THREATENS
 from onboard.core.strategy.team.plan_types import Choice, Goal, target_count
 
 WIDE = 0.5  # [rad] in space a band open by less may close in the chase: nobody leaves it for the target
-IN_DEPTH = 2  # members that have to cover a target before one of them stays as the second
+SEVERAL = 2  # targets
 
 
 # Numbers of the table's own rules; those of users are `CUSTOM` and above.
-SETS_OUT, ENCLOSED, NEARLY_ENCLOSED, SEVERAL_THREATENED, HOPELESS_CHASE, TARGET_REACHED, NOBODY_IN_TIME = (
+SETS_OUT, ENCLOSED, NEARLY_ENCLOSED, SEVERAL_TARGETS, HOPELESS_CHASE, TARGET_REACHED, NOBODY_IN_TIME = (
     1, 2, 3, 4, 5, 6, 7,
 )  # fmt: skip
 CUSTOM = 100
@@ -56,24 +56,21 @@ def nearly_enclosed(scene: Scene, edges: list[Edge]) -> Choice:
     return Choice(Goal.TIGHTEN, NEARLY_ENCLOSED, 0, strength)
 
 
-def several_threatened(_scene: Scene, edges: list[Edge]) -> Choice:
-    """More than one target is threatened: the one that the evader has soonest comes first."""
+def several_targets(scene: Scene, edges: list[Edge]) -> Choice:
+    """More than one target is known, and somebody is in time for one: all are to be held to the end."""
     first = strongest(edges, THREATENS)
-    count = 0
-    for edge in edges:
-        if edge.relation == THREATENS:
-            count += 1
-    if count < 2 or strongest(edges, REACHES).source < 0:
+    if target_count(scene.situation) < SEVERAL or strongest(edges, REACHES).source < 0:
         return SILENT
-    return Choice(Goal.DENY_ALL, SEVERAL_THREATENED, first.sink, first.strength)
+    return Choice(Goal.DENY_ALL, SEVERAL_TARGETS, first.sink, first.strength)
 
 
 def hopeless_chase(scene: Scene, edges: list[Edge]) -> Choice:
-    """Several cover the target, and without its keeper the rest could not enclose the evader."""
+    """Somebody covers the target, and the evader has a free ray: no chase forces a capture.
+
+    Who cannot stand has two posts at the target anyway.
+    """
     first = strongest(edges, COVERS)
-    if first.sink < 0 or count_to(edges, COVERS, first.sink) < IN_DEPTH:
-        return SILENT
-    if strongest(edges, SUFFICES).sink >= 0 or not stands(scene.situation.team[0].limits):
+    if first.sink < 0 or not scene.free or not stands(scene.situation.team[first.source].limits):
         return SILENT
     return Choice(Goal.DENY_IN_DEPTH, HOPELESS_CHASE, first.sink, first.strength)
 
@@ -100,8 +97,9 @@ GOALS: tuple[GoalRule, ...] = (
     _row(ENCLOSED, "the band is closed", "hold the ring", enclosed),
     _row(NEARLY_ENCLOSED, "the band is open by so little that the chase closes it",
          "tighten the ring", nearly_enclosed),
-    _row(SEVERAL_THREATENED, "the evader threatens more than one target", "deny every target",
-         several_threatened),
+    _row(SEVERAL_TARGETS, "more than one target is known", "deny every target", several_targets),
+    _row(HOPELESS_CHASE, "the target is covered, and a chase of an evader with a free ray forces nothing",
+         "deny it in depth: another comes to the target", hopeless_chase),
     _row(TARGET_REACHED, "somebody is at the target before the evader, or nearly",
          "deny the target", target_reached),
     _row(NOBODY_IN_TIME, "nothing else holds", "chase", nobody_in_time),

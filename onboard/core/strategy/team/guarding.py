@@ -30,6 +30,7 @@ POSTS = 2  # at the target at most: one to keep the goal, one that blocks beside
 CHANGE = 3.0  # [s] that a change of parts costs
 SECOND = 3.0 * CHANGE  # [s] that the second post costs: nobody stays there while the goal stands empty
 LATER = 100.0  # [s] that the posts at a target cost that the evader reaches later than another
+LIGHT = 0.01  # share that the way of a second who is only at hand counts: it does not choose the keeper
 EMPTY = 1e4  # [s] that a post costs that nobody takes though somebody could be there in time
 
 
@@ -108,7 +109,7 @@ def guarded(s: Situation, previous: Plan, duty: Duty) -> tuple[Assignment, ...]:
     costs = [0.0] * (n * tasks)
     for i in range(n):
         for number in range(count):
-            costs[i * tasks + number] = _cost(s, previous, duty, (i, number), goals[number // POSTS])
+            costs[i * tasks + number] = _cost(s, previous, duty, (i, number), goals)
         for number in range(count, tasks):
             costs[i * tasks + number] = EMPTY
     found = assigned(costs, n, tasks)
@@ -129,9 +130,17 @@ def guarded(s: Situation, previous: Plan, duty: Duty) -> tuple[Assignment, ...]:
     return each(_part, s.team, parts)
 
 
-def _cost(s: Situation, previous: Plan, duty: Duty, task: tuple[int, int], goal: Vec) -> float:
+def _its_way(s: Situation, goals: list[Vec], number: int, place: Vec) -> float:
+    """How far the evader has to a place [m]: to a later target by way of the first, which is kept."""
+    if number == 0:
+        return distance(s.evader.position, place)
+    return distance(s.evader.position, goals[0]) + distance(goals[0], place)
+
+
+def _cost(s: Situation, previous: Plan, duty: Duty, task: tuple[int, int], goals: list[Vec]) -> float:
     """What it costs [s] that a member takes a post, `task` being its number and the post's."""
     i, number = task[0], task[1] % POSTS
+    goal = goals[task[1] // POSTS]
     member = s.team[i]
     mine = Role.GOALKEEPER if number == 0 else Role.BLOCKER
     place = post(s, member.limits, number, goal)
@@ -139,16 +148,21 @@ def _cost(s: Situation, previous: Plan, duty: Duty, task: tuple[int, int], goal:
     if duty.every:  # of which target it is the part is told by its place
         held = held and distance(previous.assignments[i].aim, place) <= s.rules.rho
     cost = distance(member.vehicle.position, place) / max(member.vehicle.speed, TINY)
-    late = LATE * distance(s.evader.position, place) / max(s.evader.speed, TINY)
+    its = _its_way(s, goals, task[1] // POSTS, place) / max(s.evader.speed, TINY)
+    late = LATE * its
     near = distance(member.vehicle.position, s.evader.position) < GUARD * s.rules.rho
-    over = spare(member.vehicle, s.evader, place)
-    if not member.fit or over < -late:
+    over = its - cost
+    second = number > 0 and duty.second and place_stands(s, member.limits)
+    if not member.fit or (over < -late and not second):
         cost = FORBIDDEN
     elif near and not stands(member.limits):
         cost = FORBIDDEN  # it engages
-    elif number > 0 and place_stands(s, member.limits) and not (duty.second and over >= 0.0):
+    elif number > 0 and place_stands(s, member.limits) and not second:
         cost = FORBIDDEN  # one on the target is enough
-    return (cost if held else cost + CHANGE) + SECOND * number + LATER * (task[1] // POSTS)
+    cost = cost if held else cost + CHANGE
+    if second and cost < FORBIDDEN:
+        cost *= LIGHT
+    return cost + SECOND * number + LATER * (task[1] // POSTS)
 
 
 def _kept_between(parts: _Parts, goals: list[Vec]) -> None:

@@ -65,7 +65,7 @@ class Reason(IntEnum):
     CLOSES_CORRIDOR = 5  # it is in time for its place across the corridor
     NO_GAP_IN_REACH = 6  # the band stays open, and nothing better than the chase is known
     LOST = 7  # nothing is heard of it, or it cannot fly on
-    SECOND = 8  # it can be at the target in time should the keeper be lost, and the chase leads nowhere
+    SECOND = 8  # it comes to the target should the keeper be lost: the chase forces nothing
     BETWEEN = 9  # the one pursuer that keeps two targets: where it is in time for either
 
 

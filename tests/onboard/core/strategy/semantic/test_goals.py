@@ -53,8 +53,11 @@ FAR_OFF = [vehicle(-90.0, 8.0 * k, 4.0) for k in range(3)]
 
 def test_each_situation_has_its_goal() -> None:
     assert made(situation(RING, (150.0, 0.0))).choice.goal == Goal.HOLD
-    assert made(situation(RING[:4], (150.0, 0.0))).choice.goal in (Goal.DENY, Goal.TIGHTEN)
-    assert made(situation([vehicle(100.0, 0.0, 4.0), *FAR_OFF], (120.0, 0.0))).choice.goal == Goal.DENY
+    assert made(situation(RING[:4], (150.0, 0.0))).choice.goal == Goal.DENY_IN_DEPTH
+    kept = situation([vehicle(100.0, 0.0, 4.0), *FAR_OFF], (120.0, 0.0))
+    assert made(kept).choice.goal == Goal.DENY_IN_DEPTH
+    late = situation([vehicle(15.0, 20.0, 4.0), *FAR_OFF], (60.0, 0.0))  # in time by little, not for certain
+    assert made(late).choice.goal == Goal.DENY
     assert made(situation(FAR_OFF, (150.0, 0.0))).choice.goal == Goal.CHASE
     assert made(situation(FAR_OFF)).choice.goal == Goal.CHASE
     two = situation([vehicle(100.0, 0.0, 4.0), *FAR_OFF], (120.0, 0.0), (0.0, 120.0))
@@ -63,13 +66,29 @@ def test_each_situation_has_its_goal() -> None:
     assert plan(before, no_plan(before.team, -5.0)).choice.goal == Goal.RING
 
 
-def test_with_one_target_and_nobody_lost_the_parts_are_those_of_a_team_without_a_model() -> None:
+def test_of_one_target_the_parts_are_those_of_a_team_without_a_model_but_for_the_second() -> None:
     for team in (RING, RING[:4], FAR_OFF, [vehicle(100.0, 0.0, 4.0), *FAR_OFF]):
         for goal in ((120.0, 0.0), (-60.0, 30.0)):
             s = situation(team, goal)
             start = no_plan(s.team, s.now)
             one, other = engaged(s, start), engaged_plainly(s, start)
-            assert (one.assignments, one.band) == (other.assignments, other.band)
+            assert one.band == other.band
+            differs = [a for a, b in zip(one.assignments, other.assignments, strict=True) if a != b]
+            in_depth = one.choice.goal == Goal.DENY_IN_DEPTH
+            assert [part.reason for part in differs] == ([Reason.SECOND] if in_depth else [])
+
+
+def test_when_the_keeper_is_lost_the_second_is_at_the_target_first() -> None:
+    """Both come from behind the evader's back; without a model only one of them goes to the target."""
+    team = [vehicle(100.0, 0.0, 4.0), vehicle(40.0, 60.0, 4.0), vehicle(-60.0, 0.0, 4.0)]
+    s = situation(team, (110.0, 0.0))
+    parts = made(s).assignments
+    assert [part.role for part in parts] == [Role.GOALKEEPER, Role.BLOCKER, Role.CHASER]
+    assert parts[1].reason == Reason.SECOND
+    assert distance(parts[1].aim, s.target.position) <= RULES.rho + 1e-9
+    lost = s._replace(team=(s.team[0]._replace(fit=False), *s.team[1:]))
+    after = engaged(lost, made(s)).assignments
+    assert (after[0].reason, after[1].role) == (Reason.LOST, Role.GOALKEEPER)
 
 
 def test_of_two_targets_each_has_its_keeper() -> None:
