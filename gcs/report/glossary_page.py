@@ -10,6 +10,7 @@ from typing import Any
 
 from gcs.report import theme
 from onboard.core.route.choice import CHOICE
+from onboard.core.strategy.keep_out import KEEPS_OUT
 from onboard.core.strategy.registry import EVADERS, PURSUERS
 
 HEAD = """# Rules and what they say
@@ -24,6 +25,8 @@ def described() -> str:
     parts = [HEAD]
     for title, known in (("The evader's", EVADERS), ("The pursuers'", PURSUERS)):
         parts += [f"\n## {title}\n\n", *_table(_used(known), "strategies")]
+    zones: dict[str, list[str]] = {rule.id.name.lower(): [] for rule in KEEPS_OUT}
+    parts += ["\n## Before every strategy, where there are zones\n\n", *_table(zones, "")]
     choice = {rule.id.name.lower(): ["route"] for rule in CHOICE} | {"fixed": ["route"]}
     parts += ["\n## Choice between the strategies of a route (3.6)\n\n", *_table(choice, "")]
     parts.append("\n## The supervisor's\n\n| action | what it says |\n|---|---|\n")

@@ -8,6 +8,7 @@ from gcs.picture.several import verdict_in_words
 from gcs.picture.terminal_text import printable
 from gcs.report.data import Run
 from onboard.core.route.choice import CHOICE, ChoiceRule
+from onboard.core.strategy.keep_out import KEEPS_OUT, Before
 from onboard.core.strategy.knowledge import Rule
 from onboard.core.strategy.registry import EVADERS, PURSUERS
 
@@ -39,7 +40,7 @@ def glossary() -> dict[str, Explained]:
     """Every rule of the knowledge bases by its name in a recording, each with a sentence."""
     evasion: tuple[Rule[Any], ...] = tuple(rule for known in EVADERS.values() for rule in known.table)
     pursuit: tuple[Rule[Any], ...] = tuple(rule for known in PURSUERS.values() for rule in known.table)
-    everything: tuple[Rule[Any] | ChoiceRule, ...] = (*evasion, *pursuit, *CHOICE)
+    everything: tuple[Rule[Any] | ChoiceRule | Before, ...] = (*evasion, *pursuit, *KEEPS_OUT, *CHOICE)
     rules = {
         rule.id.name.lower(): Explained(f"When {rule.when}: {rule.then}.", rule.source) for rule in everything
     }

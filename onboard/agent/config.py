@@ -141,6 +141,7 @@ POLICY_KEYS = {
 POLICY_ALONE = (
     "envelope",
     "fences",
+    "zones",
     "coast",
     "mate_forget",
     "layered",

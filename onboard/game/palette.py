@@ -70,6 +70,8 @@ RULES = {
     "guard_target": "#b8862b",
     "block_corridor": "#c0603a",
     "abreast": "#3f7f5f",
+    "round_zone": "#d0508a",
+    "leave_zone": "#a02060",
     "waypoint_near": "#4478ab",
     "astray": "#ee6678",
     "still_astray": "#994456",

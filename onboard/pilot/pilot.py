@@ -33,6 +33,7 @@ from onboard.core.geometry.cones import blocked_cones
 from onboard.core.math.states import Mate, Vehicle
 from onboard.core.math.vectors import ZERO, Vec, add, along, clamp, scale, sub
 from onboard.core.strategy.choosing import held_after
+from onboard.core.strategy.keep_out import KEEPS_OUT, evader_keeps_out, pursuer_keeps_out
 from onboard.core.strategy.knowledge import Decision, Level, Module, level_of
 from onboard.core.strategy.registry import EVADERS, PURSUERS, evader_named, pursuer_named
 from onboard.core.strategy.team.plan_types import IDLE
@@ -117,7 +118,9 @@ class Viewpoint:
         self._aim = NONE  # number of the target that an evader with several goes for
         self._last: Decision | None = None  # and when it was asked for [s]
         self._last_at = self._asked_at = 0.0
-        self._modules: dict[int, Module] = {} if known is None else {r.id: r.module for r in known.table}
+        self._modules: dict[int, Module] = {rule.id: rule.module for rule in KEEPS_OUT}
+        if known is not None:
+            self._modules |= {rule.id: rule.module for rule in known.table}
 
     def look(
         self, now: float, own: Own, mates: tuple[Mate, ...], setup: GameSetup, memory: Memory
@@ -203,12 +206,18 @@ class Viewpoint:
         target = setup.target if hunt is None else hunt.target_of(hunt.quarry, setup)
         target = target._replace(position=level(target.position, planar))
         return Team(
-            nearest_mate(seen.position, tuple(places), 0), tuple(members), 0, told(target, setup.rules)
+            nearest_mate(seen.position, tuple(places), 0), tuple(members), 0, told(target, setup.rules),
+            wind=wind,
         )
 
     def conclude(self, question: Question, decision: Decision, setup: GameSetup) -> PilotDecision:
         """The strategy's answer to a question, with everything a person needs to see why."""
         own, planar = question.own, setup.rules.planar
+        view = question.view
+        if isinstance(view, EvaderView):
+            decision = evader_keeps_out(view, decision)
+        else:
+            decision = pursuer_keeps_out(view, decision)
         self._last, self._last_at = decision, self._asked_at
         return PilotDecision(
             decides=True,

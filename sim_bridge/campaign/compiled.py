@@ -54,12 +54,15 @@ KERNELS = (
     "onboard.core.geometry.edges",
     "onboard.core.geometry.free_ray",
     "onboard.core.geometry.zones",
+    "onboard.core.geometry.zone_rays",
+    "onboard.core.geometry.zone_ways",
     "onboard.core.game.views",
     "onboard.core.geometry.lead",
     "onboard.core.math.angles",
     "onboard.core.strategy.denial",
     "onboard.core.strategy.evasion",
     "onboard.core.strategy.own_air",
+    "onboard.core.strategy.keep_out",
     "onboard.core.strategy.foresight",
     "onboard.core.strategy.evasive",
     "onboard.core.strategy.pursuit",
@@ -90,7 +93,7 @@ KERNELS = (
 OUT_OF_LINE = frozenset(
     {"free_ray_limited", "allow", "restart", "listen", "foreseen", "hunted", "two_legs", "chase"}
     | {"assigned", "engaged", "way_out_at", "least_gap"}
-    | {"one_of_many"}
+    | {"one_of_many", "way_round", "free_ray_beside", "first_entered", "blocked"}
     | {"blow", "fly_ordered", "fly_commanded", "measure", "hear"}
 )
 

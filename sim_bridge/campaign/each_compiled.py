@@ -105,13 +105,23 @@ def _table(context, function, items, shared):  # type: ignore[no-untyped-def]
 
 def _few_or_many(context, few, many, items, shared):  # type: ignore[no-untyped-def]
     """`few_or_many`: a call of one of them."""
-    function = few if len(items) < each_module.MANY else many
+    return _one_of(context, (few, many), int(len(items) >= each_module.MANY), items, shared)
+
+
+def _some_or_none(context, some, none, items, shared):  # type: ignore[no-untyped-def]
+    """`some_or_none`: a call of one of them."""
+    return _one_of(context, (some, none), int(_empty(items)), items, shared)
+
+
+def _one_of(context: Any, functions: tuple[Any, Any], which: int, items: Any, shared: Any) -> Any:
+    """A call of one of two functions, which is known when it is compiled."""
+    function = functions[which]
     call = function.get_call_type(context, (items, shared), {})
 
     def code(context, builder, _signature, values):  # type: ignore[no-untyped-def]
         return _linked(context, function, call)(builder, tuple(values[2:]))
 
-    return signature(call.return_type, few, many, items, shared), code
+    return signature(call.return_type, *functions, items, shared), code
 
 
 def _empty(items: Any) -> bool:
@@ -134,6 +144,7 @@ def compile_each() -> None:
         (each_module.each_pair, _each_pair),
         (each_module.table, _table),
         (each_module.few_or_many, _few_or_many),
+        (each_module.some_or_none, _some_or_none),
     )
     for function, made in forms:
         template = library.make_intrinsic_template(function, made, function.__name__)

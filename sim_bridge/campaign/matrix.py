@@ -18,9 +18,9 @@ from onboard.core.game.advance import (
     Field,
     Game,
     PursuerStrategy,
-    decide_one,
     moved_on,
     still_view,
+    view_of_one,
 )
 from onboard.core.game.planning import planning_by, steps_between, unplanned
 from onboard.core.game.referee import GameResult
@@ -28,6 +28,7 @@ from onboard.core.game.views import PursuerView, sighted
 from onboard.core.math.each import each
 from onboard.core.math.states import Vehicle
 from onboard.core.math.vectors import scale
+from onboard.core.strategy.keep_out import evader_keeps_out, pursuer_keeps_out
 from onboard.core.strategy.knowledge import Decision
 from onboard.core.strategy.team.plan_types import Plan
 from onboard.core.strategy.team.planners import planner_for
@@ -52,14 +53,9 @@ class Asked(NamedTuple):
     number: int
 
 
-def the_view(view: PursuerView) -> PursuerView:
-    """In place of a decision: what it would be made of."""
-    return view
-
-
 def asked_of(view: PursuerView, _index: int, asked: Asked) -> Decision:
     """A pursuer's decision (for `each`)."""
-    return asked.decide(view, asked.number)
+    return pursuer_keeps_out(view, asked.decide(view, asked.number))
 
 
 def no_plan_made(_game: Game, _conditions: Conditions, previous: Plan) -> Plan:
@@ -75,7 +71,6 @@ def _player(
     evade, pursue = among(evaders), among(pursuers)
     planner = only_planner(pursuers)
     plan_by: Any = no_plan_made if planner is None else planning_by(planner)
-    view_of: Any = the_view
     team = tuple(range(1, count + 1))
 
     def play(starts: Starts, conditions: Conditions, ends: Ends, meeting: Meeting) -> None:
@@ -89,11 +84,12 @@ def _player(
             while game.score.verdict == GameResult.RUNNING:
                 if meeting.planning and steps % every == 0:
                     plan = plan_by(game, mine, plan)
-                own = evade(still_view(game, mine), meeting.evader)
+                view = still_view(game, mine)
+                own = evader_keeps_out(view, evade(view, meeting.evader))
                 turned = Vehicle(game.evader.position, scale(own.direction, own.speed), game.evader.speed)
                 seen = sighted(turned, own.direction, mine.control.lookahead)
-                field = Field(game, seen, mine, view_of, plan.assignments)
-                views: Any = each(decide_one, game.pursuers, field)
+                field = Field(game, seen, mine, pursuers[0], plan.assignments)
+                views = each(view_of_one, game.pursuers, field)
                 decided = Decisions(own, each(asked_of, views, Asked(pursue, meeting.pursuers)))
                 now = moved_on(game, mine, decided)
                 game = Game(

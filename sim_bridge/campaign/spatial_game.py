@@ -34,6 +34,7 @@ from onboard.core.math.each import each
 from onboard.core.math.states import Mate, Vehicle
 from onboard.core.math.vectors import Vec, scale
 from onboard.core.safety.policy import Policy
+from onboard.core.strategy.keep_out import evader_keeps_out, pursuer_keeps_out
 from onboard.core.strategy.knowledge import Decision
 from onboard.core.strategy.team.plan_types import Assignment, Plan, Situation
 from onboard.core.strategy.team.planner import no_plan
@@ -200,9 +201,10 @@ def decide_pursuer(vehicle: Vehicle, index: int, side: Side) -> Decision:
     held = held_by(team.decided, index + 1, control.dt, wind)
     part = team.ways.messages.part(team.talk, index)
     nose = known_nose(team.states, index + 1, vehicle.speed)
-    mine = Team(mate, members, index, told(start.conditions.target, rules), held, part, nose)
+    mine = Team(mate, members, index, told(start.conditions.target, rules), held, part, nose, wind)
     view = pursuer_view(me, game.pursuer_limits[index], sighting, mine, control, rules)
-    return team.ways.pursuer(view, team.ways.chosen.pursuers[index])
+    decision: Decision = team.ways.pursuer(view, team.ways.chosen.pursuers[index])
+    return pursuer_keeps_out(view, decision)
 
 
 def order(
@@ -279,7 +281,8 @@ def decide_all(team: Deciding, crew: Array, step: int) -> None:
     start, ways, states, now = team.start, team.ways, team.states, team.now
     game, decided = start.game, team.decided
     ways.messages.exchange(team, step)
-    decision = ways.evader(evader_sees(team), ways.chosen.evader)
+    view = evader_sees(team)
+    decision = evader_keeps_out(view, ways.evader(view, ways.chosen.evader))
     alone = each(nobody, game.pursuers, 0.0)  # nobody is the evader's mate
     store_aboard(crew, 0, 0, order(start, alone, decision, states, (0, now), load_aboard(crew, 0, 0)))
     write_down(decided, 0, decision)

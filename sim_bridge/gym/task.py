@@ -114,6 +114,7 @@ def _demand_playable(scenario: Scenario, motion: Motion) -> None:
     faults: list[tuple[bool, str, object, str]] = [
         (len(accelerations) > 1, "acceleration", sorted(accelerations), "the same of all vehicles")
     ]
+    faults.append((bool(scenario.zones), "zones", f"{len(scenario.zones)} zones", "none"))
     if motion is Motion.SIMPLE:
         for key in ("shear", "gust_sigma", "correlation_m", "recorded"):
             value = getattr(wind, key)

@@ -8,6 +8,7 @@ from onboard.agent.config import POLICY_ALONE, POLICY_KEYS, AgentConfig
 from onboard.autopilot.flight_limits import FlightLimits
 from onboard.config.derive import core_from
 from onboard.core.game.rules import NO_TARGET, Control, Target
+from onboard.core.geometry.zones import NO_ZONES
 from onboard.core.math.constants import STANDARD_GRAVITY
 from onboard.core.math.states import VehicleLimits
 from onboard.core.math.vectors import Vec
@@ -16,7 +17,7 @@ from onboard.core.safety.field_profile import capture_in_space_refused, field_po
 from onboard.core.safety.policy import Envelope, Fence, Policy
 from onboard.pilot.setup import GameSetup, Goals, Player, Side
 from onboard.wire.bus.messages import EvaderTargets, Member, Role, Setup
-from onboard.wire.bus.zone_messages import no_zone
+from onboard.wire.bus.zone_messages import core_zones, no_zone
 
 Places = tuple[Vec, ...]  # [m; NED]
 
@@ -97,6 +98,7 @@ def policy_of(
     given = {name: getattr(_DEFAULT, name) for name in POLICY_ALONE} | {
         "envelope": envelope_of(config, member, hovers, own),
         "fences": tuple(fences),
+        "zones": core_zones(setup.zones) if setup is not None else NO_ZONES,
         "separation": separation,
         "coast": _coast(hovers, own),
         "heartbeat_alone": max(s.heartbeat_age_s, s.heartbeat_alone_s),

@@ -28,6 +28,7 @@ from onboard.core.game.views import (
 from onboard.core.math.each import each, each_pair
 from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import ZERO, Vec, along, scale
+from onboard.core.strategy.keep_out import evader_keeps_out, pursuer_keeps_out
 from onboard.core.strategy.knowledge import Decision
 from onboard.core.strategy.team.plan_types import IDLE, Assignment
 
@@ -113,16 +114,21 @@ def team_of(
     if rules.separation > 0.0:
         mate = nearest_mate(own.position, positions(pursuers), index)
     held = Held(False, False, mate.position, 0.0)
-    return Team(mate, pursuers, index, told(conditions.target, rules), held, part, ZERO)
+    return Team(mate, pursuers, index, told(conditions.target, rules), held, part, ZERO, ZERO)
+
+
+def view_of_one(own: Vehicle, index: int, field: Field) -> PursuerView:
+    """The situation as pursuer `index` sees it (for `each`)."""
+    game, conditions = field.game, field.conditions
+    team = team_of(own, index, game.pursuers, conditions, field.parts[index])
+    limits = game.pursuer_limits[index]
+    return pursuer_view(own, limits, field.sighting, team, conditions.control, conditions.rules)
 
 
 def decide_one(own: Vehicle, index: int, field: Field) -> Decision:
     """Pursuer `index`'s decision (for `each`)."""
-    game, conditions = field.game, field.conditions
-    team = team_of(own, index, game.pursuers, conditions, field.parts[index])
-    limits = game.pursuer_limits[index]
-    view = pursuer_view(own, limits, field.sighting, team, conditions.control, conditions.rules)
-    return field.decide(view)
+    view = view_of_one(own, index, field)
+    return pursuer_keeps_out(view, field.decide(view))
 
 
 def decide_pursuers(
@@ -169,7 +175,8 @@ def decide_by_plan(
     parts: tuple[Assignment, ...],
 ) -> Decisions:
     """Everybody's decision in still air, each pursuer's by its part of the team's plan."""
-    own = decide_evader(still_view(game, conditions))
+    view = still_view(game, conditions)
+    own = evader_keeps_out(view, decide_evader(view))
     turned = Vehicle(game.evader.position, scale(own.direction, own.speed), game.evader.speed)
     seen = sighted(turned, own.direction, conditions.control.lookahead)
     field = Field(game, seen, conditions, decide_pursuer, parts)

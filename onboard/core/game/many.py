@@ -30,6 +30,7 @@ from onboard.core.game.views import NO_MEMBER, EvaderView, Sighting, Team, pursu
 from onboard.core.math.each import each, each_pair
 from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import Vec, scale
+from onboard.core.strategy.keep_out import evader_keeps_out, pursuer_keeps_out
 from onboard.core.strategy.knowledge import Decision, silent
 from onboard.core.strategy.team.plan_types import NOBODY, Assignment, Member, Plan
 from onboard.core.strategy.team.planner import Planner
@@ -275,7 +276,7 @@ def flee(evader: Vehicle, number: int, side: EvadersSide) -> Decision:
     if not live(side.game.scores[number]):
         return silent(evader.velocity, evader.position)
     view = still_view(alone(side.game, number), conditions_alone(side.game, number, side.conditions))
-    return side.decide(view, number)
+    return evader_keeps_out(view, side.decide(view, number))
 
 
 class Seen(NamedTuple):
@@ -308,12 +309,18 @@ def chase_one(own: Vehicle, index: int, side: PursuersSide) -> Decision:
     all_of_us = team_of(own, index, game.pursuers, conditions, side.parts[index])
     members = each(of_group, game.pursuers, Group(game, number))
     team = Team(
-        all_of_us.mate, members, index, all_of_us.target, all_of_us.held, all_of_us.part, all_of_us.nose
+        all_of_us.mate,
+        members,
+        index,
+        all_of_us.target,
+        all_of_us.held,
+        all_of_us.part,
+        all_of_us.nose,
+        all_of_us.wind,
     )
     limits = game.pursuer_limits[index]
-    return side.decide(
-        pursuer_view(own, limits, side.sightings[number], team, conditions.control, conditions.rules)
-    )
+    view = pursuer_view(own, limits, side.sightings[number], team, conditions.control, conditions.rules)
+    return pursuer_keeps_out(view, side.decide(view))
 
 
 def decide_many(

@@ -27,6 +27,7 @@ class EvaderView(NamedTuple):
     target: Target  # where it will be met in the moving air
     rules: Rules
     turn_rates: tuple[float, ...]  # of the pursuers, at most, as they declare [rad/s]; 0 = not declared
+    wind: Vec = ZERO  # where the air moves to over ground, where the zones stand [m/s]
 
 
 NO_MEMBER = Vehicle(Vec(1e9, 1e9, 0.0), ZERO, 0.0)
@@ -71,6 +72,7 @@ class Team(NamedTuple):
     held: Held = NOTHING_HELD
     part: Assignment = IDLE  # its own in the team's plan that it last heard
     nose: Vec = ZERO  # where its own nose points (unit); ZERO: not known, or it flies where it does not point
+    wind: Vec = ZERO  # where the air moves to [m/s]
 
 
 class PursuerView(NamedTuple):
@@ -91,6 +93,7 @@ class PursuerView(NamedTuple):
     held: Held = NOTHING_HELD  # nothing where nobody remembers: in the plane game
     part: Assignment = IDLE  # its own in the team's plan that it last heard
     nose: Vec = ZERO  # where its own nose points (unit); ZERO: not known
+    wind: Vec = ZERO  # where the air moves to over ground, where the zones stand [m/s]
 
 
 def level(v: Vec, planar: bool) -> Vec:
@@ -134,7 +137,7 @@ def evader_view(
     """
     cones = blocked_cones(own, pursuers, rules.rho)
     aim = target_in_air(target, own, wind)
-    return EvaderView(own, limits, pursuers, cones, aim, rules, each(undeclared, pursuers, 0.0))
+    return EvaderView(own, limits, pursuers, cones, aim, rules, each(undeclared, pursuers, 0.0), wind)
 
 
 def undeclared(_pursuer: Vehicle, _index: int, _shared: float) -> float:
@@ -150,7 +153,8 @@ def turn_rate_of(limits: VehicleLimits, _index: int, _shared: float) -> float:
 def with_limits(view: EvaderView, limits: tuple[VehicleLimits, ...]) -> EvaderView:
     """The same view, of pursuers whose limits are known."""
     rates = each(turn_rate_of, limits, 0.0)
-    return EvaderView(view.own, view.limits, view.pursuers, view.cones, view.target, view.rules, rates)
+    own, own_limits, pursuers, cones, target, rules, _rates, wind = view
+    return EvaderView(own, own_limits, pursuers, cones, target, rules, rates, wind)
 
 
 def sighted(evader: Vehicle, heading: Vec, lookahead: float) -> Sighting:
@@ -202,4 +206,5 @@ def pursuer_view(
         team.held,
         team.part,
         team.nose,
+        team.wind,
     )

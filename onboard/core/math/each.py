@@ -46,3 +46,13 @@ def few_or_many(
 ) -> B:
     """`few(items, shared)` of fewer than `MANY` items, else `many(items, shared)`; compiled, one alone."""
     return few(items, shared) if len(items) < MANY else many(items, shared)
+
+
+def some_or_none(
+    some: Callable[[tuple[A, ...], S], B],
+    none: Callable[[tuple[A, ...], S], B],
+    items: tuple[A, ...],
+    shared: S,
+) -> B:
+    """`some(items, shared)` of at least one item, else `none(items, shared)`; compiled, one alone."""
+    return some(items, shared) if items else none(items, shared)

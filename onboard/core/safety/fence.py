@@ -14,19 +14,13 @@ from typing import NamedTuple
 from onboard.core.math.angles import wrap
 from onboard.core.math.each import each
 from onboard.core.math.vectors import TINY, Vec, clamp
+from onboard.core.safety.braking import Nearest, nearest_on, stopping_speed
 from onboard.core.safety.policy import Cause, Envelope, Fence, Policy
+from onboard.core.safety.zones_ahead import beside, inside_zone
 
 PASSES = 4  # of projection on the walls, before what is left is scaled down
 GRID = 32  # steps in which a fence is searched for its innermost place
 LEAD = pi / 3  # a plane's evasive course, ahead of its present one [rad]
-
-
-class Nearest(NamedTuple):
-    """The point of a polygon's boundary nearest to a place."""
-
-    distance: float  # [m]
-    x: float
-    y: float
 
 
 class Fenced(NamedTuple):
@@ -45,17 +39,6 @@ def inside(x: float, y: float, polygon: tuple[tuple[float, float], ...]) -> bool
             odd = not odd
         px, py = qx, qy
     return odd
-
-
-def nearest_on(x: float, y: float, ax: float, ay: float, bx: float, by: float) -> Nearest:
-    """The point of the segment a–b nearest to a place."""
-    ux = bx - ax
-    uy = by - ay
-    n = ux * ux + uy * uy
-    t = clamp(((x - ax) * ux + (y - ay) * uy) / n, 0.0, 1.0) if n > TINY else 0.0
-    qx = ax + t * ux
-    qy = ay + t * uy
-    return Nearest(sqrt((x - qx) * (x - qx) + (y - qy) * (y - qy)), qx, qy)
 
 
 def nearest(x: float, y: float, polygon: tuple[tuple[float, float], ...]) -> Nearest:
@@ -81,14 +64,6 @@ def outside_by(position: Vec, fence: Fence) -> float:
     up = -position.z
     flat = max(0.0, -depth(position.x, position.y, fence.polygon))
     return max(flat, fence.low - up, up - fence.high, 0.0)
-
-
-def stopping_speed(distance: float, deceleration: float, reaction: float) -> float:
-    """The fastest speed from which `distance` suffices to react and stop: v t + v²/2a = d [m/s]."""
-    if distance <= 0.0 or deceleration <= 0.0:
-        return 0.0
-    t = reaction
-    return deceleration * (sqrt(t * t + 2.0 * distance / deceleration) - t)
 
 
 def keep_height(v: Vec, position: Vec, fence: Fence, margin: float, reaction: float, e: Envelope) -> Fenced:
@@ -193,19 +168,22 @@ def turn(v: Vec, position: Vec, ground: Vec, wind: float, policy: Policy) -> Fen
     `ground` is the present ground velocity; `wind` the wind's speed [m/s], which widens the circle.
     """
     fences, margin, reaction, e = policy.fences, policy.fence_margin, policy.reaction, policy.envelope
-    if len(fences) == 0:
+    if len(fences) == 0 and len(policy.zones.areas) == 0:
         return Fenced(v, Cause.NONE)
     level = sqrt(v.x * v.x + v.y * v.y)
     for fence in fences:
         if not inside(position.x, position.y, fence.polygon):
             home = nearest(position.x, position.y, fence.polygon)
             return Fenced(_towards(position, home, level, v.z), Cause.OUTSIDE_FENCE)
+    out = inside_zone(position, policy)
+    if out.x != 0.0 or out.y != 0.0:
+        return Fenced(Vec(out.x * level, out.y * level, v.z), Cause.INSIDE_ZONE)
     radius = turning_radius(e, wind)
     now = sqrt(ground.x * ground.x + ground.y * ground.y)
     pace = max(now, level)
     need = radius + margin
     # No centre of a circle is farther off than this: where that much is left to every wall, any circle fits.
-    if _clearance(position.x, position.y, fences) >= pace * reaction + radius + need + 1e-3:
+    if _clearance(position.x, position.y, position, policy) >= pace * reaction + radius + need + 1e-3:
         return Fenced(v, Cause.NONE)
     course = atan2(ground.y, ground.x) if now > TINY else atan2(v.y, v.x)
     # Where the vehicle is, and how it heads, when an answer to the next decision begins to show.
@@ -213,12 +191,15 @@ def turn(v: Vec, position: Vec, ground: Vec, wind: float, policy: Policy) -> Fen
     later = course + clamp(wrap(atan2(v.y, v.x) - course), -rate * reaction, rate * reaction)
     x = position.x + pace * reaction * cos(later)
     y = position.y + pace * reaction * sin(later)
-    if _room(x, y, later, radius, 1.0, fences) >= need or _room(x, y, later, radius, -1.0, fences) >= need:
+    there = Vec(x, y, position.z)
+    if max(_room(there, later, radius, policy), _room(there, later, -radius, policy)) >= need:
         return Fenced(v, Cause.NONE)
-    right = _room(position.x, position.y, course, radius, 1.0, fences)
-    left = _room(position.x, position.y, course, radius, -1.0, fences)
+    right = _room(position, course, radius, policy)
+    left = _room(position, course, -radius, policy)
     away = course + (LEAD if right >= left else -LEAD)
-    return Fenced(Vec(level * cos(away), level * sin(away), v.z), Cause.FENCE_AHEAD)
+    least = beside(x, y, position, policy)
+    cause = Cause.ZONE_AHEAD if least < _within(x, y, fences) else Cause.FENCE_AHEAD
+    return Fenced(Vec(level * cos(away), level * sin(away), v.z), cause)
 
 
 def turning_radius(e: Envelope, wind: float) -> float:
@@ -247,12 +228,19 @@ def deepest(fence: Fence) -> float:
     return best
 
 
-def _room(x: float, y: float, course: float, radius: float, side: float, fences: tuple[Fence, ...]) -> float:
-    """Depth inside all fences of the centre of the circle to the right (1) or left (−1) [m]."""
-    return _clearance(x - side * radius * sin(course), y + side * radius * cos(course), fences)
+def _room(place: Vec, course: float, radius: float, policy: Policy) -> float:
+    """Clearance of the centre of the circle to the right, or of negative radius to the left [m]."""
+    x = place.x - radius * sin(course)
+    y = place.y + radius * cos(course)
+    return _clearance(x, y, place, policy)
 
 
-def _clearance(x: float, y: float, fences: tuple[Fence, ...]) -> float:
+def _clearance(x: float, y: float, position: Vec, policy: Policy) -> float:
+    """Depth of a place inside all fences and outside all zones at a vehicle's height [m]."""
+    return min(_within(x, y, policy.fences), beside(x, y, position, policy))
+
+
+def _within(x: float, y: float, fences: tuple[Fence, ...]) -> float:
     """Depth of a place inside all fences [m]."""
     least = 1e18
     for fence in fences:

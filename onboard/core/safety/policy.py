@@ -6,6 +6,7 @@ from enum import IntEnum
 from math import inf, pi
 from typing import NamedTuple
 
+from onboard.core.geometry.zones import NO_ZONES, Zones
 from onboard.core.math.states import Mate
 from onboard.core.math.vectors import ZERO, Vec
 
@@ -62,6 +63,8 @@ class Cause(IntEnum):
     FAR_OUTSIDE_FENCE = 23
     OVER = 24
     FAILSAFE = 25
+    ZONE_AHEAD = 26
+    INSIDE_ZONE = 27
 
 
 class Envelope(NamedTuple):
@@ -91,7 +94,8 @@ class Policy(NamedTuple):
 
     envelope: Envelope = Envelope()
     fences: tuple[Fence, ...] = ()  # all of them hold
-    fence_margin: float = 5.0  # kept to the polygon [m]
+    zones: Zones = NO_ZONES  # that are kept out of
+    fence_margin: float = 5.0  # kept to the polygon, and to zones [m]
     height_margin: float = 3.0  # kept to floor and ceiling [m]
     fence_far: float = 30.0  # so far outside the autopilot flies home [m]
     reaction: float = 0.5  # from a decision to the vehicle's answer [s]

@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 from onboard.core.math.states import Mate
 from onboard.core.math.vectors import TINY, Vec
+from onboard.core.safety.braking import stopping_speed
 from onboard.core.safety.envelope import believable
-from onboard.core.safety.fence import stopping_speed
 from onboard.core.safety.passing import Moved, anybody, met, pass_clear, turning
 from onboard.core.safety.policy import Policy
 

@@ -12,11 +12,12 @@ from onboard.core.math.constants import NEVER
 from onboard.core.math.states import Mate
 from onboard.core.math.vectors import ZERO, Vec, add, along, clamp, is_finite, norm, sub
 from onboard.core.safety.envelope import believable, bounded, slewed
-from onboard.core.safety.fence import brake, keep_height, outside_by, turn
+from onboard.core.safety.fence import Fenced, brake, keep_height, outside_by, turn
 from onboard.core.safety.field_profile import keep_layer
 from onboard.core.safety.health import HealthAction, health
 from onboard.core.safety.policy import Action, Cause, Command, Policy, SupervisorInput
 from onboard.core.safety.separation import kept_apart
+from onboard.core.safety.zones_ahead import Asked, kept_clear, slowed_before
 
 PROTECTIVE = (
     Cause.FENCE_AHEAD,
@@ -25,6 +26,8 @@ PROTECTIVE = (
     Cause.OUTSIDE_FENCE,
     Cause.SEPARATION,
     Cause.LAYER,
+    Cause.ZONE_AHEAD,
+    Cause.INSIDE_ZONE,
 )
 
 
@@ -243,8 +246,13 @@ def allow(
         if height.cause != Cause.NONE:
             cause = height.cause
     ground = add(bounded(sub(ground, wind), before, e).velocity, wind)
+    clear = kept_clear(Asked(ground, position, policy))
+    ground = clear.velocity
+    if clear.cause != Cause.NONE:
+        cause = clear.cause
     if e.hovers:
         walls = brake(ground, position, policy)
+        walls = Fenced(slowed_before(Asked(walls.velocity, position, policy)), walls.cause)
     else:
         walls = turn(ground, position, flying.velocity, norm(wind), policy)
     if walls.cause != Cause.NONE:

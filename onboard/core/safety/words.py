@@ -39,5 +39,7 @@ CAUSES: dict[Cause, str] = {
     Cause.FAILSAFE: "the autopilot's own failsafe flies: hands off until control is given back",
     Cause.ORDER: "ordered from the ground",
     Cause.FAR_OUTSIDE_FENCE: "far outside the fence",
+    Cause.ZONE_AHEAD: "a zone is nearer than the way to stop or turn",
+    Cause.INSIDE_ZONE: "in a zone: on the way out",
     Cause.OVER: "the vehicle's part is over",
 }

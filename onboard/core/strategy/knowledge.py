@@ -47,6 +47,8 @@ class RuleId(IntEnum):
     GUARD_TARGET = 41
     BLOCK_CORRIDOR = 42
     ABREAST = 43
+    ROUND_ZONE = 50
+    LEAVE_ZONE = 51
     CUSTOM = 100
 
 

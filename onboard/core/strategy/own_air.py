@@ -48,6 +48,7 @@ def seen_in(view: PursuerView, moving: Vec) -> PursuerView:
         view.held,
         view.part,
         view.nose,
+        add(view.wind, moving),
     )
 
 
