@@ -9,6 +9,7 @@ from __future__ import annotations
 from math import atan, atan2, pi, sin, tan
 from typing import NamedTuple
 
+from onboard.core.geometry.zones import NO_ZONES, Zones
 from onboard.core.guidance.plane import (
     ALTITUDE_STEP,
     CREEP,
@@ -64,7 +65,9 @@ class Instant(NamedTuple):
     id: int
 
 
-def policy_of(limits: VehicleLimits, fences: tuple[Fence, ...], separation: float) -> Policy:
+def policy_of(
+    limits: VehicleLimits, fences: tuple[Fence, ...], separation: float, zones: Zones = NO_ZONES
+) -> Policy:
     """The supervisor's policy of a plane whose agent is configured by its defaults."""
     turn = STANDARD_GRAVITY * tan(BANK_MAX) / max(limits.speed_max, 1.0)
     declared = limits.turn_rate if limits.turn_rate > 0.0 else turn
@@ -77,7 +80,7 @@ def policy_of(limits: VehicleLimits, fences: tuple[Fence, ...], separation: floa
         turn_rate=declared,
         turn_radius=limits.speed_max / max(1e-3, min(declared, turn)),
     )
-    return Policy(envelope=envelope, fences=fences, separation=separation)
+    return Policy(envelope=envelope, fences=fences, zones=zones, separation=separation)
 
 
 def autopilot_of(limits: VehicleLimits, speed: float, turn_rate: float) -> Autopilot:

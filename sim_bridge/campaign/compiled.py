@@ -93,7 +93,8 @@ KERNELS = (
 OUT_OF_LINE = frozenset(
     {"free_ray_limited", "allow", "restart", "listen", "foreseen", "hunted", "two_legs", "chase"}
     | {"assigned", "engaged", "way_out_at", "least_gap"}
-    | {"one_of_many", "way_round", "free_ray_beside", "first_entered", "blocked"}
+    | {"one_of_many", "way_round", "free_ray_beside", "first_entered", "blocked", "entry", "way_out_of"}
+    | {"sector_of", "face_of", "level_met", "first_met", "_spread"}
     | {"blow", "fly_ordered", "fly_commanded", "measure", "hear"}
 )
 

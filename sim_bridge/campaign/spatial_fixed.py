@@ -91,7 +91,12 @@ def _fixed(itself: _Itself) -> Fixed:
         plain(fleet),
         plain(eye_of(scenario, dt)),
         control,
-        plain(tuple(policy_of(spec.limits(), fences, conditions.rules.separation) for spec in specs)),
+        plain(
+            tuple(
+                policy_of(spec.limits(), fences, conditions.rules.separation, conditions.rules.zones)
+                for spec in specs
+            )
+        ),
         tuple(autopilot_of(spec.limits(), spec.speed, radians(spec.turn_rate_deg)) for spec in specs),
         plain(planning_of(scenario, control * dt)),
         tuple(spec.limits() for spec in specs),

@@ -15,6 +15,7 @@ from onboard.core.geometry.assessment import half_angle
 from onboard.core.math.vectors import Vec, norm
 from onboard.core.strategy.evasion import resultant_force, target_direction
 from onboard.game import palette
+from onboard.game.scenario import Scenario
 from onboard.runtime.whole_files import whole_or_nothing
 from sim_bridge.plane_game.program import Played
 
@@ -75,6 +76,7 @@ def draw_stage(axis: Any, played: Played, index: int) -> None:
     game, decisions, target = played.frames[index], played.decisions(index), played.conditions.target
     view = still_view(game, played.conditions)
     span = extent(_points(played))
+    zones_on(axis, played.scenario)
     _paths(axis, played, index)
     for number, pursuer in enumerate(game.pursuers):
         sphere = apollonius_sphere(game.evader.position, game.evader.speed, pursuer.position, pursuer.speed)
@@ -169,6 +171,18 @@ def filmed(
     writer = PillowWriter(fps=fps) if path.suffix.lower() == ".gif" else FFMpegWriter(fps=fps)
     whole_or_nothing(path, lambda part: movie.save(part, writer=writer, dpi=80))
     plt.close(figure)
+
+
+def zones_on(axis: Any, scenario: Scenario) -> None:
+    """The zones of a scenario on a map."""
+    from matplotlib.patches import Polygon
+
+    colour = palette.ZONE.light
+    for spec in scenario.zones:
+        corners = [(east, north) for north, east in spec.prism().polygon]
+        axis.add_patch(Polygon(corners, fc=colour, ec=colour, alpha=0.25, lw=1.0))
+        east, north = (sum(values) / len(corners) for values in zip(*corners, strict=True))
+        axis.annotate(spec.name, (east, north), ha="center", va="center", color=colour, fontsize=9)
 
 
 def _paths(axis: Any, played: Played, index: int) -> None:

@@ -56,6 +56,10 @@ def _plan(axes: Any, s: Situation) -> None:
     if s.target.exists:
         goal = s.target.position
         axes.plot(goal.y / 1000.0, goal.x / 1000.0, "*", color=palette.TARGET.light, ms=13, label="target")
+    for area in s.rules.zones.areas:
+        walls = s.rules.zones.walls[area.first : area.first + area.sides]
+        corners = np.array([[wall.y, wall.x] for wall in walls]) / 1000.0
+        axes.fill(*corners.T, color=palette.ZONE.light, alpha=0.3, lw=0)
     axes.set(xlabel="east [km]", ylabel="north [km]", title="places and noses", aspect="equal")
     axes.legend(fontsize=7, loc="upper right")
 

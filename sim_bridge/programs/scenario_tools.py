@@ -13,6 +13,7 @@ from onboard.core.safety.fence import inside
 from onboard.game.go_or_no_go import engagement_of
 from onboard.game.go_or_no_go import lines as odds_lines
 from onboard.game.scenario import Scenario
+from onboard.game.zone_words import zone_lines
 from sim_bridge.plane_game.setup import conditions_of, turn_rate_of, vehicles_of
 from sim_bridge.plane_game.several import alone
 from sim_bridge.programs.scenario_band import band_lines
@@ -77,6 +78,14 @@ sigma_velocity = 0.05          # [m/s]
 delay_s = 0.1
 dropout = 0.05                 # share of measurements lost
 
+# [[zones]]                    # nobody flies into them: convex, 3 to 12 corners, up to 8 zones
+# name = "wood"
+# polygon = [[-30, -90], [-10, -110], [0, -80]]                     # north, east [m]
+# centre = [60, 60]            # in its place a disc, with its radius
+# radius = 15
+# low = 0                      # of games in space: its heights above the origin
+# high = 80
+
 # [flight.fence]               # everybody starts within it
 # polygon = [[-300, -300], [-300, 300], [300, 300], [300, -300]]    # north, east [m]
 # file = "area.plan"           # in its place: QGroundControl's plan, MAVProxy's fence, KML; see gcs fence
@@ -109,11 +118,11 @@ def check(scenario: Scenario) -> str:
     """What a scenario promises, in lines for people; of several evaders for each and its pursuers."""
     if not scenario.several:
         lines = [*_table(scenario), "", *_prospects(scenario), *knowledge_lines(scenario)]
-        return "\n".join([*lines, *_duration(scenario)])
+        return "\n".join([*lines, *zone_lines(scenario), *_duration(scenario)])
     lines = [f"{scenario.name}: {len(scenario.evading)} evaders, {len(scenario.pursuers)} pursuers"]
     for one, _stem in singly(scenario, ""):
         lines += ["", *_table(one), "", *_prospects(one), *_duration(one)]
-    return "\n".join([*lines, "", *knowledge_lines(scenario)])
+    return "\n".join([*lines, "", *zone_lines(scenario), *knowledge_lines(scenario)])
 
 
 def singly(scenario: Scenario, stem: str) -> list[tuple[Scenario, str]]:
