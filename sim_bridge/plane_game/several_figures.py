@@ -12,7 +12,7 @@ from onboard.core.geometry.assessment import half_angle
 from onboard.core.math.vectors import NORTH, Vec, unit
 from onboard.core.strategy.team.plan_types import NOBODY
 from onboard.game import palette
-from sim_bridge.plane_game.figures import arrow, extent, filmed, frame, pyplot, saved, wedge
+from sim_bridge.plane_game.figures import arrow, extent, filmed, frame, pyplot, saved, wedge, zones_on
 from sim_bridge.plane_game.several import COUNTED, Played
 
 LINES = 600  # points of a path at most
@@ -57,6 +57,7 @@ def draw_stage(axis: Any, played: Played, index: int) -> None:
     scenario, game = played.scenario, played.frames[index]
     points = _points(played)
     span = extent(points)
+    zones_on(axis, played.scenario)
     for number, id in enumerate(scenario.evader_ids):
         _path(axis, [f.evaders[number].position for f in _kept(played, index)], EVADER, "--")
         place, verdict = game.evaders[number].position, game.scores[number].verdict
