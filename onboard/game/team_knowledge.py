@@ -95,7 +95,19 @@ def _rows(found: Any, name: str, kind: type[R], where: str) -> tuple[R, ...]:
             raise ConfigError(f"{where}: {name}: found {type(row).__name__}, expected {kind.__name__}")
         if not callable(row.apply):
             raise ConfigError(f"{where}: {name}: {row.name}: apply: expected a function")
+        if isinstance(row, Relation):
+            _demand_words(row, where)
     return rows
+
+
+def _demand_words(row: Relation, where: str) -> None:
+    try:
+        row.words.format(a="one", b="other", value=0.0)
+    except (LookupError, ValueError, AttributeError) as error:
+        raise ConfigError(
+            f"{where}: RELATIONS: {row.name}: words: found {row.words!r}, expected {{a}}, {{b}} and {{value}}"
+            f" alone: {words_of(error)}"
+        ) from None
 
 
 def _file(path: Path) -> Any:

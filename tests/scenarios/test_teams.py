@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -24,13 +25,26 @@ KEEPER, MATE, LAST = 2, 3, 4
 CHASE = {rule.id.name.lower() for rule in TEAM if rule.id not in STRATEGIC}  # of who has no other part
 
 
-def guarded(**flight: Any) -> Scenario:
+FAILS = """
+from onboard.core.strategy.semantic.goals import GoalRule
+from onboard.core.strategy.team.plan_types import Choice, Goal
+
+def mine(scene, edges):
+    if scene.situation.now > 3.0:
+        raise ZeroDivisionError("nobody thought of this")
+    return Choice(Goal.CHASE, 101, -1, 1.0)
+
+GOALS = (GoalRule(101, "mine", "always", "chase", mine),)
+"""
+
+
+def guarded(strategy: str = "team", **flight: Any) -> Scenario:
     """A faster evader far from its target, which is known; two pursuers can be there before it."""
     places = ((330.0, 60.0), (300.0, -70.0), (-60.0, 0.0))
     return Scenario(
         name="guarded",
         evader=VehicleSpec(position=(0.0, 0.0), speed=5.0, target=(400.0, 0.0)),
-        pursuers=tuple(VehicleSpec(position=at, speed=4.0, strategy="team") for at in places),
+        pursuers=tuple(VehicleSpec(position=at, speed=4.0, strategy=strategy) for at in places),
         # It arrives farther off than it is captured: standing on the target denies nothing, two guard it.
         parameters=Parameters(R=2.0, rho=6.0, epsilon_min=3.0, horizon=100.0, target_known=True),
         flight=Flight(
@@ -103,6 +117,22 @@ async def test_two_guard_the_target_one_chases_and_everybody_says_why() -> None:
         assert [event.text for event in game.events if event.kind == "goal"] == [
             f"deny target 1, as {TARGET_REACHED}"
         ]
+
+
+@virtual
+async def test_a_rule_of_a_users_that_fails_in_flight_leaves_the_team_its_own(tmp_path: Path) -> None:
+    file = tmp_path / "rules.py"
+    file.write_text(FAILS, encoding="utf-8")
+    async with game_of(guarded(strategy=f"team:{file}")) as game:
+        heard = Heard(game)
+        game.expects(KEEPER, "knowledge")
+        await under_way(game, 5.0)
+        rules = [goal.rule for _, plan in heard.plans for goal in plan.goals]
+        assert (rules[0], rules[-1]) == ("mine", "target_reached")
+        told = [event for event in game.events if event.kind == "knowledge"]
+        assert [event.id for event in told] == [KEEPER]
+        assert told[0].text == "nobody thought of this: on by the team's own model"
+        assert set(heard.planners(game.now - 1.0)) == {KEEPER}
 
 
 @virtual

@@ -143,7 +143,8 @@ class GamePlayer:
         game = limits.game_setup(self.config, setup, self._bus.targets, hovers, own)
         self.flying = flying._replace(game=game, approach=self._approach(setup, game))
         if self._team is not None:
-            self._team.seat.field = self._field(setup, game)
+            planner = self._team.seat.field.planner  # the core's own, once a user's has failed
+            self._team.seat.field = self._field(setup, game)._replace(planner=planner)
         return True
 
     def state(self, wall_ns: int) -> PartState:

@@ -9,9 +9,11 @@ from onboard.agent.config import AgentConfig
 from onboard.agent.core.bus_view import BusView
 from onboard.agent.core.events import Instant, Outbox, Publish
 from onboard.agent.core.journal import Journal
+from onboard.config.printable import words_of
 from onboard.core.math.vectors import Vec
-from onboard.core.strategy.semantic.model import Model
+from onboard.core.strategy.semantic.model import MODEL, Model
 from onboard.core.strategy.team.plan_types import NOBODY, Assignment, Band, Plan, Reason, Role
+from onboard.core.strategy.team.planner import engaged
 from onboard.game.knowledge_words import goal_in_words, goal_of, known_of
 from onboard.game.knowledge_words import message as message_of
 from onboard.pilot.pilot import Question
@@ -168,7 +170,20 @@ class TeamTalk:
     ) -> None:
         """After a control step at `t` [s] since t0: plan where that is this vehicle's to do, and say it.
 
-        `crowd` tells of everybody, where there are several evaders."""
+        `crowd` tells of everybody, where there are several evaders. Where a user's relation or rule fails,
+        the team goes on by the core's own model."""
+        try:
+            self._work(now, t, question, crowd)
+        except Exception as error:  # a foreign file may fail in any way
+            if self._model is MODEL:
+                raise
+            self._model = MODEL
+            self.seat.field = self.seat.field._replace(planner=engaged)
+            self._journal.error("knowledge", f"{words_of(error)}: on by the team's own model")
+
+    def _work(
+        self, now: Instant, t: float, question: Question, crowd: Callable[[], Crowd] | None
+    ) -> None:
         bus, seat = self._bus, self.seat
         evader = question.others[0] if question.others else None
         mates = bus.mates_at(now.s)

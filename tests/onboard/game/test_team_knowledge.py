@@ -19,6 +19,10 @@ from sim_bridge.campaign.compiled import Ends, campaign, starts_of
 from tests.support.paths import ROOT
 
 EXAMPLE = f"team:{ROOT}/examples/knowledge-rule/apollonius_engage.py"
+UNSAID = """
+from onboard.core.strategy.semantic.graph import NONE, Node, Relation
+RELATIONS = [Relation(101, "mine", "{who} runs", Node.EVADER, Node.BAND, lambda s, i, j: NONE)]
+"""
 GOAL = Vec(60.0, 0.0, 0.0)
 
 
@@ -60,6 +64,7 @@ def test_a_knowledge_model_plays_compiled_as_it_does_interpreted(name: str) -> N
         ("RELATIONS = 5\n", "RELATIONS: found int, expected a tuple"),
         ("import no_such_module\n", "does not load: No module named 'no_such_module'"),
         ("from onboard.core.strategy.semantic.goals import GOALS\n", "rule enclosed: found number"),
+        (UNSAID, "mine: words: found '{who} runs', expected {a}, {b} and {value} alone"),
         ("1 +\n", "does not load: invalid syntax"),
     ],
 )

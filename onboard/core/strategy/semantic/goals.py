@@ -67,10 +67,12 @@ def several_targets(scene: Scene, edges: list[Edge]) -> Choice:
 def hopeless_chase(scene: Scene, edges: list[Edge]) -> Choice:
     """Somebody covers the target, and the evader has a free ray: no chase forces a capture.
 
-    Who cannot stand has two posts at the target anyway.
+    Who cannot stand, or has to come off the target's middle, has two posts there anyway.
     """
-    first = strongest(edges, COVERS)
-    if first.sink < 0 or not scene.free or not stands(scene.situation.team[first.source].limits):
+    s, first = scene.situation, strongest(edges, COVERS)
+    if first.sink < 0 or not scene.free:
+        return SILENT
+    if not stands(s.team[first.source].limits) or s.rules.epsilon_min > s.rules.R:
         return SILENT
     return Choice(Goal.DENY_IN_DEPTH, HOPELESS_CHASE, first.sink, first.strength)
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 from math import cos, pi, sin
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from onboard.core.game.rules import NO_TARGET, Rules, Target
-from onboard.core.math.states import FREE, Vehicle
+from onboard.core.math.states import FREE, Vehicle, VehicleLimits
 from onboard.core.math.vectors import NORTH, ZERO, Vec, along, distance, scale, sub, unit
 from onboard.core.strategy.semantic.goals import CUSTOM, GOALS, GoalRule
 from onboard.core.strategy.semantic.graph import Edge, Held, Node, Relation, Scene, strongest
@@ -165,3 +167,31 @@ def test_numbers_of_ones_own_begin_at_a_hundred_and_are_given_once() -> None:
         assert len(set(numbers)) == len(numbers)
         assert max(numbers) < CUSTOM
     assert extended() == MODEL
+
+
+@given(
+    st.lists(st.tuples(st.floats(-4e3, 4e3), st.floats(-4e3, 4e3), st.floats(30.0, 49.0)), min_size=3,
+             max_size=7),
+    st.tuples(st.floats(-8e3, 8e3), st.floats(-8e3, 8e3)),
+    st.sets(st.integers(0, 6), max_size=1),
+)  # fmt: skip
+@settings(max_examples=150, deadline=None)
+def test_who_cannot_stand_flies_with_one_target_as_a_team_without_a_model(
+    who: list[tuple[float, float, float]], goal: tuple[float, float], lost: set[int]
+) -> None:
+    """So no game of aircraft with one target ends otherwise: a plan follows from the situation alone."""
+    limits = VehicleLimits(30.0, 50.0, -0.36, 0.36, turn_rate=0.08)
+    team = tuple(
+        Member(Vehicle(Vec(x, y, -1500.0), Vec(v, 0.0, 0.0), v), limits, i not in lost)
+        for i, (x, y, v) in enumerate(who)
+    )
+    evader = Vehicle(Vec(0.0, 0.0, -1500.0), Vec(50.0, 0.0, 0.0), 50.0)
+    target = Target(True, Vec(*goal, -1500.0))
+    s = Situation(
+        1.0, 0.0, evader, limits, team, target, ZERO, Rules(25.0, 88.0, horizon=400.0, target_known=True),
+        Heights(300.0, 3000.0), Margin(0.1, 5.0), evader.position, 1500.0,
+    )  # fmt: skip
+    mine, plain = no_plan(team, 0.5), no_plan(team, 0.5)
+    for now in (1.0, 1.5):
+        mine, plain = engaged(s._replace(now=now), mine), engaged_plainly(s._replace(now=now), plain)
+        assert (mine.assignments, mine.band) == (plain.assignments, plain.band)
