@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
@@ -10,8 +11,9 @@ import pytest
 
 from gcs.replay.decide import decide
 from onboard.core.math.vectors import Vec, distance
-from onboard.game.scenario import Flight, Parameters, Scenario, SensorSpec, VehicleSpec
+from onboard.game.scenario import Flight, Parameters, Scenario, SensorSpec, VehicleSpec, load
 from onboard.pilot.predictor_choice import Predicting
+from onboard.runtime.resources import configs
 from onboard.wire.bus import topics
 from onboard.wire.bus.messages import (
     AgentStage,
@@ -204,15 +206,45 @@ async def test_an_evader_goes_for_the_target_that_is_not_held_and_has_arrived_th
 
 
 @pytest.mark.long
-@virtual
-async def test_the_same_seed_gives_the_same_bytes(tmp_path: Path) -> None:
+def test_the_same_seed_gives_the_same_bytes(tmp_path: Path) -> None:
+    @virtual
+    async def fly(folder: Path) -> None:
+        async with game_of(raid("team", horizon=12.0), folder=folder, seed=7) as game:
+            await game.until_ended()
+            await game.land_agents()
+
     found = []
     for run in ("one", "two"):
         folder = tmp_path / run
         folder.mkdir()
-        async with game_of(raid("team", horizon=12.0), folder=folder, seed=7) as game:
-            await game.until_ended()
-            await game.land_agents()
-        found.append({file.name: file.read_bytes() for file in folder.iterdir() if file.suffix != ".mcap"})
-    assert len(found[0]) >= 10
+        fly(folder)
+        found.append({file.name: file.read_bytes() for file in folder.iterdir()})
+    assert len(found[0]) >= 12
     assert found[0] == found[1]
+
+
+@pytest.mark.long
+@virtual
+async def test_three_evaders_and_ten_pursuers_divide_and_keep_apart() -> None:
+    """The shipped game, given up after 20 s: every evader has its pursuers, nobody comes too near a mate."""
+    scenario = load(configs() / "scenarios" / "flight" / "three-on-ten.toml", several=True)
+    async with game_of(scenario) as game:
+        said = Said(game)
+        await under_way(game, 2.0)
+        apart = 1e9
+        while game.now < 20.0:
+            await game.forward(0.2)
+            places = [place(game, id) for id in scenario.pursuer_ids]
+            apart = min([apart, *(distance(a, b) for a, b in combinations(places, 2))])
+        after = Counter(said.quarry(id) for id in scenario.pursuer_ids)
+        assert set(after) == set(scenario.evader_ids)
+        assert min(after.values()) >= 2
+        assert apart > 0.5 * scenario.parameters.separation
+        game.expects_abort()
+        assert game.bridge.master is not None
+        game.bridge.master.abort("enough was seen")
+        await game.forward(2.0)
+        assert game.outcome is not None
+        assert [end.id for end in game.outcome.evaders] == [1, 12, 13]
+        assert {game.health[id].stage for id in scenario.ids} == {AgentStage.ENDED}
+        assert {mode(game, id) for id in scenario.ids} == {"LOITER"}
