@@ -79,5 +79,26 @@ def within(preferred: Vec, limits: VehicleLimits, planar: bool) -> Vec:
     _slow, _fast, pitch_min, pitch_max, yaw_min, yaw_max, _turn = limits
     if yaw_max - yaw_min >= 2.0 * pi and (planar or (pitch_min <= -pi / 2 and pitch_max >= pi / 2)):
         return preferred
-    ray = free_ray_limited(preferred, (NOTHING,), limits, planar)
-    return ray.direction
+    return nearest_allowed(preferred, limits, planar)
+
+
+def nearest_allowed(preferred: Vec, limits: VehicleLimits, planar: bool) -> Vec:
+    """`within` of a vehicle that has limits: the search among their cones alone."""
+    width = limits.yaw_max - limits.yaw_min
+    if width >= 2.0 * pi:
+        return free_ray(preferred, (NOTHING, NOTHING, *pitch_cones(limits))).direction
+    if width < 0.0:
+        return preferred
+    if width <= pi:
+        return _between(preferred, limits, limits.yaw_min, limits.yaw_max, planar).direction
+    middle = 0.5 * (limits.yaw_min + limits.yaw_max)
+    one = _between(preferred, limits, limits.yaw_min, middle, planar)
+    two = _between(preferred, limits, middle, limits.yaw_max, planar)
+    return two.direction if two.closeness > one.closeness else one.direction
+
+
+def _between(preferred: Vec, limits: VehicleLimits, low: float, high: float, planar: bool) -> Ray:
+    """The nearest direction of a heading wedge at most π wide, within the limits of pitch."""
+    if planar:
+        return free_ray_plane(preferred, yaw_cones(low, high))
+    return free_ray(preferred, (*yaw_cones(low, high), *pitch_cones(limits)))

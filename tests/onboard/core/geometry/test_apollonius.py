@@ -56,7 +56,9 @@ def test_closest_approach_is_the_minimum_over_all_times(e, heading, v_e, p, gamm
     # Whatever the pursuer does, it is left with |e(t) − p| − v_p t at the time t it aims for.
     bound = 4.0 * d / (v_e * sqrt(1.0 - gamma * gamma))
     found = minimize_scalar(
-        lambda t: left_after(e, heading, v_e, p, v_p, t), bounds=(0.0, bound), method="bounded",
+        lambda t: left_after(e, heading, v_e, p, v_p, t),
+        bounds=(0.0, bound),
+        method="bounded",
         options={"xatol": 1e-10 * bound},
     )
     assert meeting.miss == pytest.approx(found.fun, abs=1e-6 * d)

@@ -82,9 +82,7 @@ def test_who_denies_the_target_and_who_intercepts():
 
 def test_encirclement_is_told_in_plane_and_space():
     evader = Vehicle(ZERO, scale(NORTH, 5.0), 5.0)
-    ring = tuple(
-        Vehicle(Vec(40 * cos(k * pi / 2), 40 * sin(k * pi / 2), 0.0), ZERO, 4.0) for k in range(4)
-    )
+    ring = tuple(Vehicle(Vec(40 * cos(k * pi / 2), 40 * sin(k * pi / 2), 0.0), ZERO, 4.0) for k in range(4))
     assert assess(evader, ring, 4.0, False, ZERO, True).encircled
     space = assess(evader, ring, 4.0, False, ZERO, False)
     assert not space.encircled

@@ -75,8 +75,10 @@ def test_free_ray_in_the_plane_is_never_worse_than_sampling_and_never_blocked(te
 @given(pursuers(), headings(), st.floats(-80, 60), st.floats(0, 60), angle, st.floats(0.1, 2 * pi))
 def test_free_ray_within_pitch_and_heading_limits_is_exact(team, preferred, low, width, yaw_low, yaw_width):
     limits = VehicleLimits(
-        pitch_min=np.radians(low), pitch_max=np.radians(min(low + width, 90.0)),
-        yaw_min=yaw_low, yaw_max=yaw_low + yaw_width,
+        pitch_min=np.radians(low),
+        pitch_max=np.radians(min(low + width, 90.0)),
+        yaw_min=yaw_low,
+        yaw_max=yaw_low + yaw_width,
     )
     cones = blocked_cones(EVADER, team, 4.0)
     ray = free_ray_limited(preferred, cones, limits, False)
