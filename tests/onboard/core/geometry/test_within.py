@@ -1,4 +1,4 @@
-"""The limits alone: the search that takes nothing else in finds what the whole search does, to the last bit."""
+"""The limits alone: a search that takes nothing else in finds what the whole search does, to the last bit."""
 
 from __future__ import annotations
 
