@@ -33,8 +33,7 @@ WORST = (
 )
 """Verdicts of single evaders, the worst for the pursuers first: it is the whole game's."""
 
-
-Places = tuple[Vec, ...]
+Places = tuple[Vec, ...]  # [m; NED]
 
 
 class Trial:
