@@ -26,7 +26,7 @@ from onboard.wire.bus.messages import (
     Track,
 )
 from onboard.wire.bus.team_messages import TeamPlan
-from tests.support.lone_agent import EVADER, GAME, VEHICLE, LoneAgent, playing
+from tests.support.lone_agent import EVADER, GAME, VEHICLE, FakeMaster, LoneAgent, playing
 
 OTHER = 9  # a further evader
 PURSUERS = (
@@ -57,9 +57,9 @@ def look(agent: LoneAgent, seconds: float) -> None:
         agent.run(0.1)
 
 
-def out(agent: LoneAgent, id: int) -> None:
-    """The master tells that an evader was captured."""
-    change = agent.master.change(Phase.RUNNING, agent.wall_ns - 10**9, agent.wall_ns)
+def out(agent: LoneAgent, id: int, phase: Phase = Phase.RUNNING) -> None:
+    """The master tells a phase in which an evader is out: it was captured."""
+    change = agent.master.change(phase, agent.wall_ns - 10**9, agent.wall_ns)
     end = EvaderOutcome(id, OutcomeResult.CAPTURED, 4.0, VEHICLE, 2.0)
     agent.hear(msgspec.structs.replace(change, out=(end,)), topics.PHASE)
 
@@ -86,16 +86,18 @@ def test_a_track_that_has_ended_is_an_obstacle_no_more() -> None:
     assert agent.core.flight.output.ground.x > 3.0
 
 
+ROSTER = (
+    Member(VEHICLE, Role.EVADER, 10.0, (0.0, 0.0, -50.0)),
+    Member(EVADER, Role.PURSUER, 8.0, (200.0, 0.0, -50.0)),
+    Member(OTHER, Role.EVADER, 10.0, (0.0, 300.0, -50.0)),
+)
+
+
 def fleeing() -> LoneAgent:
     """Vehicle 2 as one of two evaders."""
     agent = LoneAgent(role=Role.EVADER)
     agent.run(1.0)
-    roster = (
-        Member(VEHICLE, Role.EVADER, 10.0, (0.0, 0.0, -50.0)),
-        Member(EVADER, Role.PURSUER, 8.0, (200.0, 0.0, -50.0)),
-        Member(OTHER, Role.EVADER, 10.0, (0.0, 300.0, -50.0)),
-    )
-    agent.master.setup("several", roster=roster)
+    agent.master.setup("several", roster=ROSTER)
     return agent
 
 
@@ -136,6 +138,32 @@ def test_in_the_next_game_of_one_evader_the_common_brief_counts_again() -> None:
     assert agent.core.bus.targets == ()
     agent.hear(EvaderBrief((1.0, 2.0, -3.0), agent.wall_ns), topics.EVADER_BRIEF)
     assert agent.core.bus.targets == (Vec(1.0, 2.0, -3.0),)
+
+
+def test_who_is_out_stays_out_under_a_master_that_takes_the_game_over() -> None:
+    agent = fleeing()
+    agent.run(3.0)
+    brief(agent, OwnBrief(VEHICLE, agent.wall_ns, ((5.0, 6.0, -7.0),)))
+    for phase in (Phase.STAGING, Phase.READY, Phase.RUNNING):
+        agent.master.phase(phase, 1.0 if phase is Phase.READY else 0.0)
+        agent.run(2.0)
+    assert agent.rate(0.5) > 15.0
+    out(agent, VEHICLE)
+    agent.run(1.0)
+    assert agent.core.stage is AgentStage.ENDED
+    assert agent.rate(0.5) == 0.0
+    other = FakeMaster("laptop-B", 6)
+    other.takes_over = "laptop-A"
+    agent.master = other
+    agent.run(4.0)
+    other.setup("several", roster=ROSTER)
+    agent.run(1.0)
+    assert agent.core.bus.masters.name == "laptop-B"
+    for phase in (Phase.STAGING, Phase.READY, Phase.RUNNING):
+        out(agent, VEHICLE, phase)
+        agent.run(2.0)
+        assert agent.core.stage is AgentStage.ENDED
+        assert agent.rate(1.5) == 0.0
 
 
 GROWN: tuple[tuple[Message, int], ...] = (
