@@ -9,6 +9,7 @@ from onboard.config.strict import ConfigError, FieldError
 from onboard.core.geometry.polygon import area, extent
 from onboard.game.fence_file import GeoFence, polygon_in, read_fence
 from onboard.game.scenario import Scenario, with_fence
+from onboard.game.zone_spec import zones_in
 from onboard.wire.geodesy import Frame
 
 
@@ -23,6 +24,7 @@ def show(file: Path, scenario: Scenario | None) -> list[str]:
     fence = scenario.flight.fence
     polygon = polygon_in(found, Frame(*_place(scenario)), str(file))
     _sound(polygon, str(file))
+    zones: list[str] = []
     lines = [
         _words(file, found, polygon),
         f"in metres from {scenario.name}'s origin, {origin.latitude_deg:.6f}, {origin.longitude_deg:.6f}:",
@@ -30,11 +32,17 @@ def show(file: Path, scenario: Scenario | None) -> list[str]:
         "[flight.fence]",
         f"polygon = [{', '.join(f'[{north:.1f}, {east:.1f}]' for north, east in polygon)}]",
     ]
+    for zone in zones_in(Frame(*_place(scenario)), found, str(file)):
+        shape = f"centre = {list(zone.centre)}\nradius = {zone.radius:g}" if zone.centre else ""
+        if zone.polygon:
+            shape = f"polygon = [{', '.join(f'[{north:.1f}, {east:.1f}]' for north, east in zone.polygon)}]"
+        zones += ["", "[[zones]]", f'name = "{zone.name}"', *shape.splitlines()]
     if fence is None:
-        return [*lines, "# height_min and height_max [m above the origin] are yours to say"]
+        return [*lines, "# height_min and height_max [m above the origin] are yours to say", *zones]
     with_fence(scenario, found, str(file))  # everybody starts within it
     heights = [f"height_min = {fence.height_min:g}", f"height_max = {fence.height_max:g}"]
-    return [*lines, *heights, "", f"all {len(scenario.vehicles)} vehicles of {scenario.name} start within it"]
+    everybody = f"all {len(scenario.vehicles)} vehicles of {scenario.name} start within it"
+    return [*lines, *heights, *zones, "", everybody]
 
 
 def _alone(file: Path, found: GeoFence) -> list[str]:
@@ -42,7 +50,8 @@ def _alone(file: Path, found: GeoFence) -> list[str]:
     polygon = polygon_in(found, Frame(latitude, longitude, 0.0), str(file))
     _sound(polygon, str(file))
     corners = [f"  {one:.7f}, {other:.7f}" for one, other in found.corners]
-    return [_words(file, found, polygon), "corners by latitude, longitude:", *corners]
+    kept = [f"{len(found.outs)} areas to keep out of"] if found.outs else []
+    return [_words(file, found, polygon), *kept, "corners by latitude, longitude:", *corners]
 
 
 def _words(file: Path, found: GeoFence, polygon: tuple[tuple[float, float], ...]) -> str:

@@ -27,11 +27,19 @@ CIRCLE = 36  # corners of a circle's polygon, which lies inside it
 RETURN_POINT, STAY_IN, KEEP_OUT, CIRCLE_IN, CIRCLE_OUT = range(5000, 5005)  # MAV_CMD_NAV_FENCE_…
 
 
+class Out(NamedTuple):
+    """An area to keep out of, by latitude and longitude [deg]."""
+
+    corners: Corners  # of a circle its middle alone
+    radius: float = 0.0  # [m]; 0: a polygon
+
+
 class GeoFence(NamedTuple):
     """One fence by latitude and longitude [deg]."""
 
     corners: Corners
     origin: str  # what kind of file it was
+    outs: tuple[Out, ...] = ()  # what to keep out of within it
 
 
 def read_fence(path: Path) -> GeoFence:
@@ -44,21 +52,29 @@ def read_fence(path: Path) -> GeoFence:
     if len(data) > FILE_MAX:
         raise ConfigError(f"{path}: found more than {FILE_MAX} bytes, expected {FORMS}")
     try:
-        corners, origin = _read(data)
+        fence = _read(data)
     except _RefusalError as error:
         raise ConfigError(f"{path}: {error}") from None
-    for latitude, longitude in corners:
+    for latitude, longitude in (*fence.corners, *(place for out in fence.outs for place in out.corners)):
         if not -90.0 < latitude < 90.0 or not -180.0 <= longitude <= 180.0:
             found = f"latitude {latitude:g}, longitude {longitude:g}"
             raise ConfigError(f"{path}: found {found}, expected degrees on Earth (exchanged?)")
-    return GeoFence(corners, origin)
+    return fence
 
 
 def polygon_in(fence: GeoFence, frame: Frame, name: str) -> Corners:
     """The fence's corners [m; north, east] in a game frame. Raises ConfigError for one far from it."""
+    return places_in(fence.corners, frame, name)
+
+
+def places_in(corners: Corners, frame: Frame, name: str) -> Corners:
+    """Places by latitude and longitude [deg] in a game frame [m; north, east].
+
+    Raises ConfigError for those far from it.
+    """
     found = [
         frame.ned_from_geodetic(latitude, longitude, frame.origin.altitude_m)
-        for latitude, longitude in fence.corners
+        for latitude, longitude in corners
     ]
     far = max(abs(place.x) + abs(place.y) for place in found)
     if far > FAR:
@@ -76,12 +92,12 @@ def _refused(found: str, expected: str) -> _RefusalError:
     return _RefusalError(f"found {found}, expected {expected}")
 
 
-def _read(data: bytes) -> tuple[Corners, str]:
+def _read(data: bytes) -> GeoFence:
     head = data.lstrip(b"\xef\xbb\xbf \t\r\n")
     if head.startswith(b"{"):
-        return _plan(head), "QGroundControl plan"
+        return _plan(head)
     if head.startswith(b"<"):
-        return _kml(head), "KML"
+        return GeoFence(_kml(head), "KML")
     if head.startswith(b"PK"):
         raise _refused("a zipped file", "the KML inside it (unzip the KMZ)")
     try:
@@ -90,14 +106,12 @@ def _read(data: bytes) -> tuple[Corners, str]:
         raise _refused("no text", FORMS) from None
     rows = [line for line in lines if line]
     if rows and rows[0][:2] == ["QGC", "WPL"]:
-        return _waypoints(rows[1:]), "fence items"
-    return _points(rows), "fence points"
+        return _waypoints(rows[1:])
+    return GeoFence(_points(rows), "fence points")
 
 
-def _one(found: Sequence[Corners], outs: int) -> Corners:
+def _one(found: Sequence[Corners]) -> Corners:
     """The one fence to stay in."""
-    if outs:
-        raise _refused(f"{outs} zones to keep out of", "one fence to stay in: a game has no other")
     if len(found) != 1:
         raise _refused(f"{len(found)} fences to stay in" if found else "no fence", "one fence to stay in")
     if len(found[0]) < 3:
@@ -142,7 +156,7 @@ class _Plan(msgspec.Struct):
     geoFence: _GeoFence | None = None  # noqa: N815  (QGroundControl's word)
 
 
-def _plan(data: bytes) -> Corners:
+def _plan(data: bytes) -> GeoFence:
     try:
         plan = msgspec.json.decode(data, type=_Plan)
     except UNDECODABLE as error:
@@ -151,10 +165,9 @@ def _plan(data: bytes) -> Corners:
     areas = [area.polygon for area in fence.polygons if area.inclusion]
     areas += [_circle(*one.circle.center, one.circle.radius) for one in fence.circles if one.inclusion]
     areas += [tuple(fence.polygon)] if fence.polygon else []
-    outs = sum(not area.inclusion for area in fence.polygons) + sum(
-        not one.inclusion for one in fence.circles
-    )
-    return _one(areas, outs)
+    outs = [Out(area.polygon) for area in fence.polygons if not area.inclusion]
+    outs += [Out((one.circle.center,), one.circle.radius) for one in fence.circles if not one.inclusion]
+    return GeoFence(_one(areas), "QGroundControl plan", tuple(outs))
 
 
 # ---------------------------------------------------------------------- MAVProxy, Mission Planner
@@ -174,11 +187,12 @@ def _points(rows: list[list[str]]) -> Corners:
     return tuple((row[0], row[1]) for row in ring[:-1])
 
 
-def _waypoints(rows: list[list[str]]) -> Corners:
+def _waypoints(rows: list[list[str]]) -> GeoFence:
     """The items of a fence as today's MAVProxy saves them, each with its polygon's count of corners."""
     areas: list[Corners] = []
     corners: list[tuple[float, float]] = []
-    outs = 0
+    kept_out: list[tuple[float, float]] = []
+    outs: list[Out] = []
     for row in rows:
         number, _, _, command, count, *_, latitude, longitude, _, _ = _numbers(row, 12)
         if command == STAY_IN:
@@ -188,13 +202,18 @@ def _waypoints(rows: list[list[str]]) -> Corners:
                 corners = []
         elif command == CIRCLE_IN:
             areas.append(_circle(latitude, longitude, count))
-        elif command in (KEEP_OUT, CIRCLE_OUT):
-            outs += 1
+        elif command == KEEP_OUT:
+            kept_out.append((latitude, longitude))
+            if len(kept_out) == count:
+                outs.append(Out(tuple(kept_out)))
+                kept_out = []
+        elif command == CIRCLE_OUT:
+            outs.append(Out(((latitude, longitude),), count))
         elif command != RETURN_POINT and number > 0:
             raise _refused(f"command {command:g}", "items of a fence (5000 to 5004)")
-    if corners:
+    if corners or kept_out:
         raise _refused("a polygon with fewer corners than it says", "a whole fence")
-    return _one(areas, outs)
+    return GeoFence(_one(areas), "fence items", tuple(outs))
 
 
 def _numbers(row: list[str], count: int) -> list[float]:
@@ -227,7 +246,7 @@ def _kml(data: bytes) -> Corners:
     areas = [_ring(ring.text or "") for ring in rings]
     if not polygons and any(area[0] != area[-1] for area in areas if area):
         raise _refused("a line that is not closed", "a polygon")
-    return _one([area[:-1] if area and area[0] == area[-1] else area for area in areas], 0)
+    return _one([area[:-1] if area and area[0] == area[-1] else area for area in areas])
 
 
 def _named(element: Any, name: str) -> list[Any]:

@@ -45,7 +45,7 @@ from onboard.game.vehicle_spec import VehicleSpec as VehicleSpec
 from onboard.game.vehicle_spec import targets_of as targets_of
 from onboard.game.vehicle_spec import vec as vec
 from onboard.game.zone_spec import ZoneSpec as ZoneSpec
-from onboard.game.zone_spec import core_zones, demand_zones
+from onboard.game.zone_spec import core_zones, demand_zones, zones_in
 from onboard.pilot.predictor_choice import Predicting
 from onboard.wire.bus.messages import Role
 from onboard.wire.geodesy import Frame
@@ -307,6 +307,8 @@ def with_fence(scenario: Scenario, found: GeoFence, name: str) -> Scenario:
     frame = Frame(flight.origin.latitude_deg, flight.origin.longitude_deg, flight.origin.altitude_m)
     fence = fence_in(frame, flight.fence, found, name)
     try:
-        return msgspec.structs.replace(scenario, flight=msgspec.structs.replace(flight, fence=fence))
+        zones = (*scenario.zones, *zones_in(frame, found, name))
+        flight = msgspec.structs.replace(flight, fence=fence)
+        return msgspec.structs.replace(scenario, flight=flight, zones=zones)
     except FieldError as error:
         raise ConfigError(f"{name}: {error}") from None

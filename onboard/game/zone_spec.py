@@ -9,7 +9,7 @@ import msgspec
 
 from onboard.config.bounds import Coordinate, PositiveDistance
 from onboard.config.names import Title
-from onboard.config.strict import StrictConfig, demand
+from onboard.config.strict import ConfigError, FieldError, StrictConfig, demand
 from onboard.core.geometry.zones import (
     ENDLESS,
     MOST_ZONES,
@@ -21,6 +21,8 @@ from onboard.core.geometry.zones import (
     zones_of,
 )
 from onboard.core.math.vectors import Vec
+from onboard.game.fence_file import GeoFence, places_in
+from onboard.wire.geodesy import Frame
 
 Place = tuple[Coordinate, Coordinate]
 Corners = Annotated[
@@ -44,12 +46,19 @@ class ZoneSpec(StrictConfig, frozen=True, kw_only=True):
         half = (self.centre is None) != (self.radius is None)
         demand(not half, "centre", f"centre {self.centre} with radius {self.radius}", "both of a disc")
         demand((self.polygon is not None) != disc, "polygon", f"{given} of polygon and disc", "one of them")
+        self.demand_whole()
+        low, high = self.low, self.high
+        demand(low is None or high is None or low < high, "low", low, f"below high = {high} m")
+
+    def demand_whole(self) -> None:
+        """Demand a convex polygon of 3 to 12 corners, or a disc that has a size."""
+        demand(self.radius is None or self.radius > 0.0, "radius", self.radius, "a positive radius [m]")
         if self.polygon is not None:
+            corners = len(self.polygon)
+            demand(3 <= corners <= 12, "polygon", f"{corners} corners", "3 to 12 corners")
             bent = bent_in(self.polygon)
             demand(bent < 0, "polygon", f"corner {bent} at {list(self.polygon[bent])} bends inwards",
                    "a convex polygon (make two zones of it)")  # fmt: skip
-        low, high = self.low, self.high
-        demand(low is None or high is None or low < high, "low", low, f"below high = {high} m")
 
     def prism(self) -> Prism:
         """The zone for the core."""
@@ -59,6 +68,22 @@ class ZoneSpec(StrictConfig, frozen=True, kw_only=True):
         return Prism(
             polygon, -ENDLESS if self.low is None else self.low, ENDLESS if self.high is None else self.high
         )
+
+
+def zones_in(frame: Frame, found: GeoFence, name: str) -> tuple[ZoneSpec, ...]:
+    """The areas of another tool's fence to keep out of, as zones in a game frame. Raises ConfigError."""
+    made = []
+    for number, out in enumerate(found.outs, 1):
+        places = places_in(out.corners, frame, name)
+        title = f"keep out {number}"
+        try:
+            if out.radius:
+                made.append(ZoneSpec(name=title, centre=places[0], radius=out.radius))
+            else:
+                made.append(ZoneSpec(name=title, polygon=places))
+        except FieldError as error:
+            raise ConfigError(f"{name}: {title}: {error}") from None
+    return tuple(made)
 
 
 def core_zones(zones: Sequence[ZoneSpec]) -> Zones:

@@ -13,6 +13,7 @@ from pymavlink import mavutil, mavwp
 
 from gcs.fence import show
 from onboard.config.strict import ConfigError, parse
+from onboard.core.math.vectors import Vec
 from onboard.game.fence_file import GeoFence, polygon_in, read_fence
 from onboard.game.scenario import Scenario, load
 from onboard.wire.geodesy import Frame
@@ -130,8 +131,7 @@ def test_a_circle_is_a_polygon_within_it(tmp_path: Path) -> None:
         (plan(), "no fence, expected one fence to stay in"),
         (plan(polygons=[area(), area()]), "2 fences to stay in"),
         (plan(polygons=[area()], circles=[around(50.0)]), "2 fences to stay in"),
-        (plan(polygons=[area(), area(inclusion=False)]), "1 zones to keep out of"),
-        (plan(polygons=[area()], circles=[around(50.0, inclusion=False)]), "1 zones to keep out of"),
+        (plan(polygons=[area(inclusion=False)]), "no fence, expected one fence to stay in"),
         (plan(polygons=[area(CORNERS[:2])]), "2 corners, expected three"),
         (
             plan(polygons=[area([(lon + 90, lat) for lat, lon in CORNERS])]),
@@ -164,7 +164,8 @@ def test_what_is_no_fence_for_a_game_is_refused_with_the_reason(
 @pytest.mark.parametrize(
     ("command", "count", "reason"),
     [
-        (dialect.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION, 4, "keep out"),
+        (dialect.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION, 4, "no fence, expected one"),
+        (dialect.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION, 5, "fewer corners"),
         (dialect.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION, 5, "fewer corners"),
         (dialect.MAV_CMD_NAV_WAYPOINT, 4, "command 16"),
     ],
@@ -182,6 +183,33 @@ def scenario(tmp_path: Path, line: str) -> Scenario:
     file = tmp_path / "game.toml"
     file.write_text(GAME + line + "\n")
     return load(file)
+
+
+def moved(north: float, size: float) -> list[tuple[float, float]]:
+    """The square of the field, smaller and farther north [m]."""
+    frame = Frame(*ORIGIN)
+    corners = [(north + size, -size), (north + size, size), (north - size, size), (north - size, -size)]
+    places = [frame.geodetic_from_ned(Vec(x, y, 0.0)) for x, y in corners]
+    return [(place.latitude_deg, place.longitude_deg) for place in places]
+
+
+def test_what_another_tool_keeps_out_of_becomes_zones(tmp_path: Path) -> None:
+    polygons = [area(), area(moved(80.0, 10.0), inclusion=False)]
+    middle = {"center": list(moved(-90.0, 0.0)[0]), "radius": 12.0}
+    out = {"circle": middle, "inclusion": False, "version": 1}
+    (tmp_path / "area.plan").write_text(plan(polygons=polygons, circles=[out]))
+    found = scenario(tmp_path, 'file = "area.plan"')
+    block, disc = found.zones
+    assert block.polygon is not None
+    assert disc.centre is not None
+    for corner, expected in zip(block.polygon, [(90, -10), (90, 10), (70, 10), (70, -10)], strict=True):
+        assert corner == pytest.approx(expected, abs=0.1)
+    assert (*disc.centre, disc.radius) == pytest.approx((-90.0, 0.0, 12.0), abs=0.1)
+    assert len(found.rules.zones.areas) == 2
+    bent = [*moved(80.0, 10.0)[:2], moved(80.0, 0.0)[0], *moved(80.0, 10.0)[2:]]
+    (tmp_path / "area.plan").write_text(plan(polygons=[area(), area(bent, inclusion=False)]))
+    with pytest.raises(ConfigError, match=r"keep out 1: polygon: found corner .* bends inwards"):
+        scenario(tmp_path, 'file = "area.plan"')
 
 
 def test_a_scenario_names_the_file_beside_it(tmp_path: Path) -> None:
