@@ -167,26 +167,40 @@ def spread(
     rules: Rules,
     left: float,
 ) -> None:
-    """Write everybody's quarry into `given`: the assignment of least time to places at the evaders."""
+    """Write everybody's quarry into `given`: the assignment of least time to places at the evaders.
+
+    Beyond what evaders need there is room for all, so that one's best place there stands for all of them.
+    """
     who = [i for i in range(len(team)) if team[i].fit]
     share = shares(team, quarries, rules)
     places = [0 for _ in range(0)]
-    beyond = [0.0 for _ in range(0)]
     for j in range(len(quarries)):
-        if quarries[j].live:
-            for k in range(len(who)):
-                places.append(j)
-                beyond.append(0.0 if k < share[j] else BEYOND)
-    n = len(places)
+        for _ in range(share[j]):
+            places.append(j)
+    wanted = len(places)
+    n = wanted + len(who)
     costs = [0.0] * (len(who) * n)
+    others = [0 for _ in range(len(who))]
     for i in range(len(who)):
-        own = team[who[i]].vehicle
+        times = times_to(team[who[i]].vehicle, quarries, previous[who[i]], left)
+        least = 1e300
+        for j in range(len(quarries)):
+            beyond = times[j] if times[j] >= LATE else times[j] + BEYOND
+            if quarries[j].live and beyond < least:
+                least = beyond
+                others[i] = j
         for p in range(n):
-            time = time_to_catch(own, quarries[places[p]])
-            if places[p] == previous[who[i]]:
-                time *= KEEP
-            time += LATE if late(own, quarries[places[p]], left) else beyond[p]
-            costs[i * n + p] = time
+            costs[i * n + p] = times[places[p]] if p < wanted else least
     found = assigned(costs, len(who), n)
     for i in range(len(who)):
-        given[who[i]] = places[found[i]]
+        given[who[i]] = places[found[i]] if found[i] < wanted else others[i]
+
+
+def times_to(own: Vehicle, quarries: tuple[Quarry, ...], before: int, left: float) -> list[float]:
+    """What a pursuer whose quarry is `before` needs for each evader [s], LATE added where it is too late."""
+    times = [0.0 for _ in range(len(quarries))]
+    for j in range(len(quarries)):
+        times[j] = time_to_catch(own, quarries[j]) * (KEEP if j == before else 1.0)
+        if late(own, quarries[j], left):
+            times[j] += LATE
+    return times
