@@ -115,10 +115,10 @@ def play(scenario: Scenario, strategy: str, dt: float | None = None, keep: bool 
     plans, every, steps = unplanned_many(game), steps_between(conditions.control.dt), 0
     frames = []
     while not over(game):
-        if keep:
-            frames.append(game)
         due = steps % every == 0 or deserted(game)
         before = prepared(game, conditions, due, quarries_of)
+        if keep:
+            frames.append(before)
         if due and planner is not None:
             plans = planned_many(before, conditions, plans, planner)
         decided = decide_many(before, conditions, flee, chase, plans)

@@ -93,10 +93,11 @@ def _path(axis: Any, line: list[Vec], colour: str, style: str) -> None:
 
 
 def _targets(axis: Any, played: Played, number: int, id: int) -> None:
-    for target in played.conditions.targets[number]:
+    for k, target in enumerate(played.conditions.targets[number]):
         if target.exists:
             place = target.position
-            axis.plot(place.y, place.x, "*", color=TARGET, ms=14, label="target" if number == 0 else None)
+            label = "target" if number == 0 and k == 0 else None
+            axis.plot(place.y, place.x, "*", color=TARGET, ms=14, label=label)
             axis.annotate(f"of {id}", (place.y, place.x), (8, -10), textcoords="offset points", color=TARGET)
 
 
