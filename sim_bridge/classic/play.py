@@ -10,17 +10,24 @@ from collections.abc import Callable
 from math import cos, inf, pi, sin
 from typing import NamedTuple
 
-from onboard.core.game.advance import Conditions, Game, decide_pursuers, positions, still_view
+from onboard.core.game.advance import (
+    Conditions,
+    Game,
+    PursuerStrategy,
+    decide_pursuers,
+    positions,
+    still_view,
+)
 from onboard.core.game.referee import passage
 from onboard.core.game.views import NOTHING_HELD, Nearest, Team, heading_at, pursuer_view, sighted, told
 from onboard.core.math.angles import wrap
 from onboard.core.math.states import Vehicle
 from onboard.core.math.vectors import ZERO, Vec, along, clamp, norm, scale, yaw_of
 from onboard.core.strategy.team.plan_types import Heights, Margin, Member, Plan, Situation, nearest_staged
-from onboard.core.strategy.team.planner import no_plan, plan
+from onboard.core.strategy.team.planner import Planner, no_plan, plan
+from onboard.core.strategy.team.planners import planner_for
 from onboard.game.plugins import evader_strategy, pursuer_strategy
 
-TEAM = "team"  # the strategy that flies a plan
 PLANS_EVERY = 0.5  # [s]
 
 
@@ -86,14 +93,16 @@ def ours(name: str) -> Callable[[], Pursuers]:
         seen = sighted(game.evader, heading_at(game.evader), conditions.control.lookahead)
         return tuple(scale(d.direction, d.speed) for d in decide_pursuers(game, seen, conditions, decide))
 
-    return Planned if name == TEAM else lambda: fly
+    planner = planner_for(decide)
+    return (lambda: fly) if planner is None else lambda: Planned(decide, planner)
 
 
 class Planned:
     """Pursuers who fly the team's plan, made anew twice a second and heard at once by all."""
 
-    def __init__(self) -> None:
-        self.decide = pursuer_strategy(TEAM)
+    def __init__(self, decide: PursuerStrategy, planner: Planner) -> None:
+        self.decide = decide
+        self.planner = planner
         self.plan: Plan | None = None
         self.made = -inf
 
@@ -108,7 +117,8 @@ class Planned:
                 game.time, 0.0, game.evader, game.evader_limits, members, target, ZERO, conditions.rules,
                 Heights(), Margin(), game.evader.position, nearest_staged(conditions.rules),
             )  # fmt: skip
-            self.plan, self.made = plan(now, self.plan or no_plan(members, game.time)), game.time
+            before = self.plan or no_plan(members, game.time)
+            self.plan, self.made = plan(now, before, self.planner), game.time
         seen = sighted(game.evader, heading_at(game.evader), conditions.control.lookahead)
         velocities = []
         for index, own in enumerate(game.pursuers):
