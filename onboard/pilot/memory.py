@@ -72,12 +72,15 @@ class Memory:
         self._fastest[id] = (best, t)
         return best
 
-    def train(self, now: float, slices: int = 1, *, asked: bool = True) -> int:
+    def train(self, now: float, slices: int = 1, *, asked: bool = True, only: int | None = None) -> int:
         """Advance the predictors' training by at most `slices` of about 1 ms; returns how many were done.
 
-        `asked`: predictions are asked for about now, and what the next one needs is reckoned."""
+        `asked`: predictions are asked for about now, and what the next one needs is reckoned, of all tracks
+        or of the one that is asked for at each step."""
         done = self.trainer.advance(now, self.tracks, slices)
-        if asked:
+        if asked and only is not None:
+            self.prepare(only)
+        elif asked:
             for predictor in self.tracks.values():
                 predictor.prepare()
         return done

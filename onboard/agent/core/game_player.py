@@ -260,7 +260,9 @@ class GamePlayer:
             left = self._to_start(wall_ns)
             soon = left is not None and left < SOON_S
             asked = soon or self._participation.running(self._bus.phase, wall_ns)
-            self._memory.train(self._seconds(wall_ns), TRAINING_SLICES, asked=asked)
+            hunt = self.flying.viewpoint.hunt
+            only = None if hunt is None or not hunt.quarry else hunt.quarry
+            self._memory.train(self._seconds(wall_ns), TRAINING_SLICES, asked=asked, only=only)
 
     def _crowd(self, now: Instant, question: Question) -> Callable[[], Crowd] | None:
         """What tells of everybody, for a plan against several evaders; None where there is one."""
