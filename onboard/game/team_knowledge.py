@@ -8,10 +8,11 @@ core's own. Written in kernel style they also compile.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from importlib.util import module_from_spec, spec_from_file_location
+from inspect import getsourcefile, unwrap
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -55,6 +56,15 @@ def planner(name: str) -> Planner:
     found = planner_for(strategy(name))
     assert found is not None
     return found
+
+
+def files_of(name: str) -> tuple[Path, ...]:
+    """The files in which relations and rules stand that are not the core's own. Raises ConfigError."""
+    known = model(name)
+    own: list[Callable[..., Any]] = [row.apply for row in known.relations if row not in MODEL.relations]
+    own += [row.apply for row in known.goals if row not in MODEL.goals]
+    files = (getsourcefile(unwrap(one)) for one in own)
+    return tuple(sorted({Path(file) for file in files if file is not None}))
 
 
 def trouble(name: str) -> str:

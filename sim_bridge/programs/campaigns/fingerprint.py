@@ -15,6 +15,7 @@ from onboard.config.version import version
 from onboard.core.strategy.registry import EVADERS, PURSUERS
 from onboard.game.plugins import evader_strategy, plugins, pursuer_strategy
 from onboard.game.policy_file import PREFIX, is_policy
+from onboard.game.team_knowledge import files_of, is_team
 from onboard.runtime.resources import configs
 
 ROOT = Path(__file__).resolve().parent.parent.parent.parent
@@ -69,9 +70,13 @@ def sources(parts: tuple[str, ...]) -> str:
 
 
 def _source_of(name: str) -> str:
-    """SHA-256 of a policy's file, or of that in which a plug-in's function stands; "": it has none."""
+    """SHA-256 of a policy's file, of those of a team's knowledge, or of that in which a plug-in's function
+    stands; "": it has none."""
     if is_policy(name):
         return sha256(Path(name.removeprefix(PREFIX)).read_bytes()).hexdigest()[:16]
+    if is_team(name):
+        contents = b"".join(file.read_bytes() for file in files_of(name))
+        return sha256(contents).hexdigest()[:16] if contents else ""
     for find in (pursuer_strategy, evader_strategy):
         try:
             file = inspect.getsourcefile(inspect.unwrap(find(name)))

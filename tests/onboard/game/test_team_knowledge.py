@@ -14,8 +14,9 @@ from onboard.core.math.states import FREE, Vehicle
 from onboard.core.math.vectors import NORTH, ZERO, Vec, scale
 from onboard.core.strategy.registry import EVADERS
 from onboard.game.plugins import demand_name, pursuer_strategy
-from onboard.game.team_knowledge import model, planner, trouble
+from onboard.game.team_knowledge import files_of, model, planner, trouble
 from sim_bridge.campaign.compiled import Ends, campaign, starts_of
+from sim_bridge.programs.campaigns.fingerprint import fingerprint
 from tests.support.paths import ROOT
 
 EXAMPLE = f"team:{ROOT}/examples/knowledge-rule/apollonius_engage.py"
@@ -46,6 +47,20 @@ def test_a_file_changes_what_the_team_does() -> None:
     assert not np.array_equal(own.trace, mine.trace, equal_nan=True)
     assert model(EXAMPLE).relations[-1].name == "near"
     assert model(EXAMPLE).goals[0].name == "engage"
+
+
+def test_campaigns_tell_apart_what_a_team_knows(tmp_path: Path) -> None:
+    """A campaign that goes on by another file, or by one that has changed, would mix two teams."""
+    text = Path(EXAMPLE.removeprefix("team:")).read_text(encoding="utf-8")
+    found = []
+    for number, changed in enumerate((text, text, text.replace("REACH = 10.0", "REACH = 11.0"))):
+        file = tmp_path / f"rules{number}.py"
+        file.write_text(changed, encoding="utf-8")
+        assert files_of(f"team:{file}") == (file,)
+        found.append(fingerprint((f"team:{file}",), flown=False).plugins[f"team:{file}"])
+    assert found[0] == found[1] != found[2]
+    plain = fingerprint(("team:plain",), flown=False).plugins
+    assert plain["team:plain"].strip() == ""
 
 
 @pytest.mark.long
