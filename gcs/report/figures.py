@@ -86,8 +86,9 @@ def plan(run: Run) -> Drawing | None:
         axes.plot([], [], "o", mfc="none", mec=palette.CAPTURE.light, ms=9, ls="", label=label)
         each = "each evader at the end of its" if len(run.evaders) > 1 else "the evader at the end of the"
         note += f" The ring is the capture radius around {each} game."
-    for name, place in run.named_targets():
-        axes.plot(place[1], place[0], "*", color=palette.TARGET.light, ms=14, ls="", label=name)
+    for number, (name, place) in enumerate(run.named_targets()):
+        label = "" if number else "target" if len(run.targets) == 1 else "targets"
+        axes.plot(place[1], place[0], "*", color=palette.TARGET.light, ms=14, ls="", label=label)
         if len(run.targets) > 1:
             axes.annotate(name, (place[1], place[0]), (6, -10), textcoords="offset points", clip_on=True)
     axes.set(xlabel="east [m]", ylabel="north [m]")

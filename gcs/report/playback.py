@@ -48,7 +48,10 @@ def _field(run: Run) -> Document:
         origin = [setup.origin.latitude_deg, setup.origin.longitude_deg, setup.origin.altitude_m]
     return {
         "targets": documents.targets(run.targets),
-        "roster": [{"id": id, "role": flown.role.value} for id, flown in sorted(run.flown.items())],
+        "roster": [
+            {"id": id, "role": flown.role.value, "start": flown.position[0].tolist()}
+            for id, flown in sorted(run.flown.items())
+        ],
         "capture": run.capture_radius, "safety": run.safety_distance, "flat": run.flat,
         "planar": bool(setup.rules.planar) if setup is not None else run.flat, "origin": origin,
     } | documents.limits(setup)  # fmt: skip

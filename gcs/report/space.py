@@ -67,6 +67,16 @@ def space(run: Run) -> Drawing | None:
         scene.line(way, color=colour, lw=1.9, label=run.role_of(vehicle))
         scene.mark(way[0], "o", color=colour, mfc=PAPER, ms=5)
         scene.mark(way[-1], "o", color=colour, ms=6)
+    for number, zone in enumerate(run.zones):
+        ring = np.array([(east, north, low) for north, east in [*zone.polygon, zone.polygon[0]]])
+        label = "" if number else "zone: everybody keeps out"
+        scene.line(ring, color=palette.ZONE.light, lw=1.2, label=label)
+        if not run.flat:
+            top = min(zone.high, box.high[2])
+            scene.line(ring * (1, 1, 0) + (0, 0, top), color=palette.ZONE.light, lw=1.2)
+            for corner in ring[:-1]:
+                edge = np.array([corner, corner * (1, 1, 0) + (0, 0, top)])
+                scene.line(edge, color=palette.ZONE.light, lw=0.8)
     for name, place in run.named_targets():
         target = _upright(np.array([place]))[0]
         scene.line(np.array([target * (1, 1, 0) + (0, 0, low), target]), color=FAINT, lw=0.8, ls=":")

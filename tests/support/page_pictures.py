@@ -72,6 +72,7 @@ SEVERAL = (
     Shot("page-knowledge", WIDE, dark=True, since_s=20.0, select=7, keys="vg",
          script="document.getElementById('knowledge').scrollIntoView()"),
 )  # fmt: skip
+ZONES = (Shot("page-zones", dark=True, since_s=42.0, select=1),)
 ALERTS = (Shot("page-alerts", since_s=20.0),)
 HEIGHTS = (Shot("page-spheres", since_s=9.0, select=1),)
 MAP = (Shot("page-map", keys="v"),)
@@ -100,12 +101,13 @@ class Runs(NamedTuple):
     lossy: Path
     heights: Path
     several: Path
+    zones: Path
 
 
 def flown(folder: Path) -> Runs:
     """Fly the games: the demo, a target that is guarded, the same by the paper's rules, the same by a team of
-    which one begins nearer to the target, a game with loss on every link, the demo at several heights, and a
-    game of three evaders."""
+    which one begins nearer to the target, a game with loss on every link, the demo at several heights, a
+    game of three evaders, and one with two obstacles."""
     text = (FLIGHT / "goalkeeper.toml").read_text(encoding="utf-8")
     paper, team = folder / "paper.toml", folder / "team.toml"
     paper.write_text(text.replace('"goalkeeper', '"paper'), encoding="utf-8")
@@ -116,7 +118,8 @@ def flown(folder: Path) -> Runs:
     planar = (FLIGHT / "demo.toml").read_text(encoding="utf-8")
     spatial = re.sub(r"(position|target) = \[(.*)\]", lambda m: f"{m[1]} = [{m[2]}, {next(up)}]", planar)
     heights.write_text(spatial.replace("five on one", "five on one, in space"), encoding="utf-8")
-    scenarios = ("demo", "goalkeeper", str(paper), str(team), "heavy-loss", str(heights), "three-on-ten")
+    made = (str(paper), str(team), "heavy-loss", str(heights), "three-on-ten", "two-obstacles")
+    scenarios = ("demo", "goalkeeper", *made)
     found = []
     for name, scenario in zip(Runs._fields, scenarios, strict=True):
         command = [sys.executable, "-m", "sim_bridge.cli", "fly", "--fast", "--quiet", scenario]
@@ -256,6 +259,7 @@ async def pictures(runs: Runs, folder: Path) -> None:
         await shown(browser, source_of(runs.team, AsLive), TEAM, folder)
         await shown(browser, source_of(runs.heights, AsLive), HEIGHTS, folder)
         await shown(browser, source_of(runs.several, AsLive), SEVERAL, folder)
+        await shown(browser, source_of(runs.zones, AsLive), ZONES, folder)
         await shown(browser, lossy, ALERTS, folder)
         await shown(browser, source_of(runs.demo), REPLAY, folder)
         await both(browser, (runs.guarded, runs.paper), folder, Shot("page-two-runs", WIDE))

@@ -134,13 +134,14 @@ export class Ground {
     });
   }
 
-  // A zone with its floor and ceiling; in the plane it lies on the ground, without an end it is as high as the
-  // fence, or as what is seen.
+  // A zone with its floor and ceiling. Without an end it is as high as the fence, or as what is seen; of a plane game
+  // half as high again as it is flown, and flat where that is on the ground.
   drawZone(zone) {
     const { colours, field, reach } = this;
     const floor = zone.floor === null ? 0 : zone.floor;
-    const end = Math.max(floor, field.fence && !field.planar ? field.fence.ceiling : round(reach / 2));
-    const ceiling = field.planar ? floor : zone.ceiling === null ? end : zone.ceiling;
+    const flown = Math.max(0, ...(field.roster || []).map(({ start }) => (start ? -start[2] : 0)));
+    const high = field.planar ? 1.5 * flown : field.fence ? field.fence.ceiling : round(reach / 2);
+    const ceiling = zone.ceiling === null || field.planar ? Math.max(floor, high) : zone.ceiling;
     this.drawWalls({ polygon: zone.polygon, floor, ceiling }, colours.zone, 0.2);
     const corners = zone.polygon.map(([north, east]) => [east, -north]);
     for (const height of new Set([floor, ceiling])) {
