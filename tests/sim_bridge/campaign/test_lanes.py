@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
 from onboard.core.math.angles import wrap
 from onboard.core.math.vectors import Vec
@@ -139,13 +140,15 @@ def flat(value: object) -> list[float]:
 
 
 @pytest.fixture(scope="module")
-def two() -> Scenario:
-    return spatial("two")
+def five() -> Scenario:
+    """Of a game that test_spatial_game.py plays, too: its kernels are compiled once for both."""
+    found = spatial("five")
+    return replace(found, parameters=replace(found.parameters, horizon=10.0))
 
 
 @pytest.mark.timeout(480)
-def test_a_game_in_lanes_is_that_of_one_vehicle_at_a_time(two: Scenario) -> None:
-    lanes, single = (draw(two, 3, 2.0, compiled) for compiled in (True, False))
+def test_a_game_in_lanes_is_that_of_one_vehicle_at_a_time(five: Scenario) -> None:
+    lanes, single = (draw(five, 3, 2.0, compiled) for compiled in (True, False))
     for a, b in zip(lanes.players, single.players, strict=True):
         assert isinstance(a, Flown)
         np.testing.assert_allclose(flat(a), flat(b), rtol=1e-12, atol=1e-12)
