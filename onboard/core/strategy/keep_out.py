@@ -12,20 +12,19 @@ from typing import NamedTuple
 
 from onboard.core.game.rules import Rules
 from onboard.core.game.views import EvaderView, PursuerView, heading_at
-from onboard.core.geometry.cones import NOTHING, Cone, is_free
+from onboard.core.geometry.cones import NOTHING, is_free
 from onboard.core.geometry.zone_rays import (
     Look,
     Stand,
-    blocked_arc,
     first_entered,
     free_ray_beside,
     held_course,
     looking,
     over_ground,
 )
-from onboard.core.geometry.zone_ways import way_round
+from onboard.core.geometry.zone_ways import first_met, way_round
 from onboard.core.geometry.zones import Area, in_any, way_out_of
-from onboard.core.math.each import each, some_or_none
+from onboard.core.math.each import some_or_none
 from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import NORTH, TINY, Vec, add, along, distance, norm, sub, unit
 from onboard.core.strategy.evasion import resultant_force
@@ -125,10 +124,10 @@ def blocked(direction: Vec, look: Look) -> bool:
     """Whether a direction through the air leads into a zone within reach, or one is in it already."""
     if in_any(look.zones, look.position, look.planar):
         return True
-    if look.planar:
-        arcs: tuple[Cone, ...] = each(blocked_arc, look.zones.areas, look)
-        return not is_free(direction, arcs)
-    return first_entered(direction, look) >= 0
+    if not look.planar:
+        return first_entered(direction, look) >= 0
+    end = along(look.position, unit(over_ground(direction, look), direction), look.reach)
+    return first_met(look, look.position, end, True) >= 0
 
 
 def towards(aim: Vec, decision: Decision, look: Look) -> Vec:
