@@ -8,7 +8,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from onboard.core.geometry.zones import NO_ZONES, Prism, clearance, least_clearance, round_about, zones_of
+from onboard.core.geometry.zones import (
+    NO_ZONES,
+    Prism,
+    clearance,
+    least_clearance,
+    round_about,
+    way_out_of,
+    zones_of,
+)
 from onboard.core.math.vectors import Vec, norm
 from onboard.core.safety.fence import outside_by
 from onboard.core.safety.policy import Action, Cause
@@ -59,6 +67,22 @@ def test_no_plane_enters_a_zone_in_wind(wishes: list[Vec], heading: float, wind:
         flight.step(Vec(25.0 * wish.x / max(norm(wish), 1e-3), 25.0 * wish.y / max(norm(wish), 1e-3), wish.z))
         assert least_clearance(LARGE, flight.seen.position, False) > 0.0
         assert outside_by(flight.seen.position, FIELD) == 0.0
+
+
+def test_a_zone_is_approached_as_fast_as_a_fence_is() -> None:
+    """v t + v²/2a = d with the time until the vehicle answers: that of a dead agent's last word included."""
+    policy = COPTER._replace(zones=zones_of([SHED]), coast=1.0)
+    east = -22.0  # of the shed's nearest wall there, about
+    flight = SupervisedVehicle(policy, Vec(0.0, -60.0, -20.0), Vec(0.0, 5.0, 0.0))
+    verdict = flight.step(Vec(0.0, 5.0, 0.0))
+    for _ in range(200):
+        verdict = flight.step(Vec(0.0, 5.0, 0.0))
+        if verdict.cause is Cause.ZONE_AHEAD:
+            break
+    gap = way_out_of(policy.zones, policy.zones.areas[0], flight.seen.position, True).clearance - 5.0
+    v, t, a = norm(verdict.ground), policy.reaction + policy.coast, policy.envelope.deceleration
+    assert flight.seen.position.y < east
+    assert v * t + v * v / (2.0 * a) == pytest.approx(gap, abs=1.0)
 
 
 def test_who_slides_along_a_zone_is_not_stopped() -> None:

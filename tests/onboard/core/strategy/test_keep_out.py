@@ -29,6 +29,7 @@ from onboard.core.math.vectors import (
     add,
     along,
     clamp,
+    direction,
     distance,
     scale,
     unit,
@@ -203,6 +204,22 @@ def test_pressed_against_a_wall_rule_3_does_not_lead_into_it() -> None:
     assert kept.direction.x >= -CLEARANCE / 10.0 - 0.9
     reach = 4.0 / max(1e-9, -kept.direction.x)
     assert along(ZERO, kept.direction, min(reach, 300.0)).x >= -10.0 + CLEARANCE - 2.1
+
+
+def test_where_pursuers_and_zones_block_every_ray_rule_3_speaks() -> None:
+    """Pursuers leave rays into the wall alone: along F_res beside it, not along the ray that is blocked."""
+    wall = zones_of([Prism(((-30.0, -400.0), (-10.0, -400.0), (-10.0, 400.0), (-30.0, 400.0)))])
+    rules = Rules(2.0, 4.0, planar=True, zones=wall)
+    own = Vehicle(ZERO, Vec(-10.0, 0.0, 0.0), 10.0)
+    places = ((60.0, 0.0), (60.0, radians(-100.0)), (12.0, radians(90.0)))
+    team = tuple(Vehicle(scale(direction(0.0, yaw), d), ZERO, 9.0) for d, yaw in places)
+    target = Target(True, Vec(0.0, 500.0, 0.0))
+    view = evader_view(own, COPTER, team, target, ZERO, rules)
+    bare = EVADERS["paper"].decide(view)
+    assert bare.rule == RuleId.FREE_RAY_TO_TARGET
+    assert bare.direction.y > 0.05
+    kept = evader_keeps_out(view, bare)
+    assert (kept.rule, kept.direction.y < -0.5) == (RuleId.ROUND_ZONE, True)
 
 
 def test_who_is_in_a_zone_leaves_it_by_the_shortest_way() -> None:
