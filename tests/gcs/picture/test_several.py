@@ -38,8 +38,9 @@ from onboard.wire.bus.knowledge_messages import (
 from onboard.wire.bus.messages import EvaderOutcome, OutcomeResult, Phase, Role, Setup
 from onboard.wire.bus.team_messages import TeamPlan
 from tests.support.chase_messages import EPOCH_NS
-from tests.support.sample_messages import Tower, phase, setup, state
+from tests.support.sample_messages import Tower, decision, phase, setup, state
 from tests.support.three_on_ten import AFTER, EVADERS, TARGETS, R, flight
+from tests.support.three_on_ten import setup as flight_setup
 
 
 def at(since_t0_s: float) -> Picture:
@@ -293,3 +294,26 @@ def test_a_scenario_of_several_evaders_is_assessed_each_by_each(capsys: pytest.C
     assert len(words) == 3
     assert code == (1 if "no-go" in words else 0)
     assert sum("the table's games have 1" in line for line in told) == 3
+
+
+def test_of_those_who_cover_a_target_the_best_is_told_whatever_their_order() -> None:
+    nodes = (
+        KnowledgeNode(NodeKind.TARGET, 1, "target 1", (0.0, 0.0, 0.0)),
+        *(KnowledgeNode(NodeKind.PURSUER, id, f"pursuer {id}", (10.0 * id, 0.0, 0.0)) for id in (2, 3, 4)),
+    )
+    strengths = (0.4, 0.9, 0.2)
+    edges = [KnowledgeEdge("covers", k, 0, s, 1.0, f"{s}") for k, s in enumerate(strengths, 1)]
+    for order in (edges, edges[::-1]):
+        word = Knowledge(2, 0, 1.0, 1, nodes, tuple(order), PlannedGoal(1, TeamGoal.NONE, 0, "", ""))
+        assert [edge.words for edge in knowledge.told(word, {})] == ["0.9"]
+
+
+def test_nobody_is_after_an_evader_that_is_out_though_old_words_say_so() -> None:
+    several = flight_setup("test")
+    told = decision(2, quarry=1), decision(6, quarry=12)
+    tower = Tower()
+    running = phase(Phase.RUNNING, tower.now_ns)
+    tower.hear(several, running, *told)
+    assert tower.picture.game.quarries == ((2, 1), (6, 12))
+    tower.hear(replace(running, out=(EvaderOutcome(1, OutcomeResult.CAPTURED, 1.0, 2, 1.0),)))
+    assert tower.picture.game.quarries == ((6, 12),)
