@@ -3,7 +3,8 @@
 Numba compiles each function that another calls as if Python would call it, too: it optimises it with all
 that it calls in turn, makes machine code of it, and then inlines it once more. A kernel of many functions
 spends half its compile time so, for code that nobody runs. Here the functions of a kernel are linked as
-they are, and the whole is optimised once. What is computed is the same to the last bit.
+they are, and the whole is optimised once. What is computed is the same to the last bit; games of 20 pursuers
+play 5 % slower than twice optimised, of five and with aircraft as fast.
 """
 
 from __future__ import annotations
