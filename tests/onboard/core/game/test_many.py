@@ -26,7 +26,8 @@ from onboard.core.game.many import (
 from onboard.core.game.planning import planned, steps_between, unplanned
 from onboard.core.game.referee import GameResult
 from onboard.core.game.rules import NO_TARGET, Control, Rules, Target
-from onboard.core.game.views import EvaderView
+from onboard.core.game.targets import NONE, chosen
+from onboard.core.game.views import EvaderView, PursuerView
 from onboard.core.math.states import FREE, Vehicle
 from onboard.core.math.vectors import NORTH, Vec, distance, scale
 from onboard.core.strategy.knowledge import Decision
@@ -221,3 +222,31 @@ def test_denied_only_where_every_target_is_held(
     goals = conditions_of((target(50, 0), target(0, 50)), rules=RULES._replace(horizon=1.0))
     frames = played(game, goals, "straight", "paper")
     assert frames[-1].scores[0].verdict == verdict
+
+
+def test_a_target_is_left_for_a_clearly_sooner_one_only() -> None:
+    """50 m, and 46 or 35 m the other way: 8 % less is not enough, 30 % is."""
+    own, goal = vehicle(0, 0, 5.0), target(50, 0)
+    for other, expected in ((target(-46, 0), (0, 1, 1)), (target(-35, 0), (1, 1, 1))):
+        found = (chosen(own, FREE, (), (goal, other), True, before) for before in (0, 1, NONE))
+        assert tuple(found) == expected
+    assert chosen(own, FREE, (), (NO_TARGET, NO_TARGET), True, NONE) == NONE
+
+
+def test_a_pursuer_knows_those_of_its_own_quarry_as_its_team() -> None:
+    """Others stand in the tuple without speed and far away, and are still mates to keep away from."""
+    pursuers = [vehicle(10, 0, 4.0), vehicle(12, 0, 4.0), vehicle(500, 0, 4.0)]
+    game = game_of([vehicle(0, 30, 5.0), vehicle(500, 30, 5.0)], pursuers)._replace(quarries=(0, 1, 1))
+    conditions = conditions_of((NO_TARGET,), (NO_TARGET,), rules=RULES._replace(separation=5.0))
+    seen: list[PursuerView] = []
+
+    def spy(view: PursuerView) -> Decision:
+        seen.append(view)
+        return PURSUERS["paper"].decide(view)
+
+    decide_many(game, conditions, by("paper"), spy, unplanned_many(game))
+    assert [[member.speed > 0.0 for member in view.members] for view in seen] == [
+        [True, False, False], [False, True, True], [False, True, True],
+    ]  # fmt: skip
+    assert [view.evader.position.x for view in seen] == [0.0, 500.0, 500.0]
+    assert seen[0].mate.position == pursuers[1].position
