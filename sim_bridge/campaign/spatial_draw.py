@@ -249,19 +249,24 @@ def kernel_of(
         players = len(start.policies)
         if log.ndim != 3 or log.shape[1:] != (players, LOGGED):
             raise ValueError(f"log: shape {log.shape}, expected (steps, {players}, {LOGGED})")
-        found: SpatialPlay = game(start, chosen, Flying(sky, desk_of(players)), log)
+        run = game
+        if compiled and start.conditions.rules.zones.areas:
+            run = _compiled_game(evaders, pursuers, True)
+        found: SpatialPlay = run(start, chosen, Flying(sky, desk_of(players)), log)
         return found
 
     return play
 
 
+@cache
 def _compiled_game(
-    evaders: tuple[EvaderStrategy, ...], pursuers: tuple[PursuerStrategy, ...]
+    evaders: tuple[EvaderStrategy, ...], pursuers: tuple[PursuerStrategy, ...], lists: bool = False
 ) -> Callable[..., Any]:
-    # A team keeps its plans in lists, a plug-in may make some; others play without counting references.
+    # A team keeps its plans in lists, the way round zones is searched in some (`lists`), a plug-in may make
+    # some; others play without counting references.
     own: set[Any] = {one.decide for one in EVADERS.values()} | {one.decide for one in PURSUERS.values()}
     free = {one for one in own if planner_for(one) is None}
-    counted = not free.issuperset((*evaders, *pursuers))
+    counted = lists or not free.issuperset((*evaders, *pursuers))
     evaders, pursuers = in_arrays(evaders), in_arrays(pursuers)
     register_strategies((*evaders, *pursuers))
     return compiled_kernel(machine(evaders, pursuers, in_lanes=True), counted)
