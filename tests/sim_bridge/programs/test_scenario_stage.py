@@ -83,7 +83,7 @@ def test_check_tells_the_turn_that_the_aircraft_can_fly() -> None:
 
 @pytest.mark.parametrize("path", sorted(SCENARIOS.rglob("*.toml")), ids=lambda path: path.stem)
 def test_shipped_scenarios_declare_turns_that_their_airframes_hold(path: Path) -> None:
-    scenario = load(path)
+    scenario = load(path, several=True)
     for index, spec in enumerate(scenario.vehicles):
         assert turn_rate_of(scenario, index) == pytest.approx(radians(spec.turn_rate_deg))
 
