@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from onboard.config.strict import ConfigError
 from onboard.core.game.advance import EvaderStrategy, PursuerStrategy
 from onboard.core.game.referee import GameResult
-from onboard.core.strategy.registry import EVADERS, PURSUERS, evader_named, pursuer_named
+from onboard.core.strategy.registry import EVADERS, PURSUERS
 from onboard.game.plugins import evader_strategy, pursuer_strategy
 from onboard.game.scenario import Scenario
 from onboard.runtime.progress import Tell, silent
@@ -22,6 +22,7 @@ from sim_bridge.campaign.spatial_game import Chosen
 from sim_bridge.plane_game.setup import conditions_of, game_of
 from sim_bridge.programs.campaigns import several
 from sim_bridge.programs.campaigns.plan import Cell, Plan, Shard, is_spatial, spread_of
+from sim_bridge.programs.campaigns.playing import compiled_or_not
 from sim_bridge.programs.campaigns.rows import EvaderRow, Row
 
 PAIRS = 6  # of strategies up to which each has the fastest kernel, its own; beyond, compiling takes longer
@@ -153,23 +154,9 @@ def _together(shared: _Shared, count: int) -> Callable[..., Any]:
 @cache
 def _simple(evader: str, pursuers: str, count: int) -> Callable[..., Any]:
     """The play of many games, compiled; interpreted where a plug-in does not compile."""
-    from numba.core.errors import NumbaError
-
-    decide_evader: EvaderStrategy = evader_strategy(evader)
-    decide_pursuer: PursuerStrategy = pursuer_strategy(pursuers)
-    own = evader_named(evader) in EVADERS and pursuer_named(pursuers) in PURSUERS
-    compiled = campaign(decide_evader, decide_pursuer, count)
-    if own:
-        return compiled
-    interpreted = campaign(decide_evader, decide_pursuer, count, compiled=False)
-
-    def play(*arguments: Any) -> Any:
-        try:
-            return compiled(*arguments)
-        except NumbaError:  # a foreign strategy need not be in kernel style
-            return interpreted(*arguments)
-
-    return play
+    flee: EvaderStrategy = evader_strategy(evader)
+    chase: PursuerStrategy = pursuer_strategy(pursuers)
+    return compiled_or_not((evader,), pursuers, lambda kernel: campaign(flee, chase, count, kernel))
 
 
 # ---------------------------------------------------------------- flights

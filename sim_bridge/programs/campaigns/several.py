@@ -7,12 +7,12 @@ from functools import cache
 from typing import Any
 
 from onboard.core.game.referee import GameResult
-from onboard.core.strategy.registry import EVADERS, PURSUERS, evader_named, pursuer_named
 from onboard.game.plugins import evader_strategy, pursuer_strategy
 from onboard.game.scenario import Scenario
 from onboard.game.trials import WORST
 from sim_bridge.campaign.many import ManyEnds, Size, many_campaign, starts_of
 from sim_bridge.plane_game.several import conditions_of, game_of
+from sim_bridge.programs.campaigns.playing import compiled_or_not
 from sim_bridge.programs.campaigns.rows import EvaderRow, Row
 
 RANKS = tuple(result.value for result in WORST)  # verdicts, the worst for the pursuers first
@@ -55,18 +55,5 @@ def whole(number: int, seed: int, evaders: list[EvaderRow]) -> Row:
 @cache
 def _play(evaders: tuple[str, ...], pursuers: str, size: Size) -> Callable[..., Any]:
     """The play of many games, compiled; interpreted where a plug-in does not compile."""
-    from numba.core.errors import NumbaError
-
     flee, chase = tuple(evader_strategy(name) for name in evaders), pursuer_strategy(pursuers)
-    compiled = many_campaign(flee, chase, size)
-    if {evader_named(name) for name in evaders} <= set(EVADERS) and pursuer_named(pursuers) in PURSUERS:
-        return compiled
-    interpreted = many_campaign(flee, chase, size, compiled=False)
-
-    def play(*arguments: Any) -> Any:
-        try:
-            return compiled(*arguments)
-        except NumbaError:  # a foreign strategy need not be in kernel style
-            return interpreted(*arguments)
-
-    return play
+    return compiled_or_not(evaders, pursuers, lambda kernel: many_campaign(flee, chase, size, kernel))
