@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING
 
 from gcs.console.plain_lines import PlainLines
 from gcs.console.plain_lines import status as status_lines
-from gcs.picture.alert_rules import Thresholds
 from gcs.picture.assessment import beyond_one, engagements_in
 from gcs.picture.json_document import to_json
 from gcs.picture.several import verdict_in_words
 from gcs.picture.terminal_text import printable
+from gcs.picture.thresholds import Thresholds
 from gcs.picture.values import Picture
 from gcs.session import Session, on_air
 from gcs.settings import Settings

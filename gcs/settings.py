@@ -5,7 +5,7 @@ from __future__ import annotations
 import getpass
 from pathlib import Path
 
-from gcs.picture.alert_rules import Thresholds
+from gcs.picture.thresholds import Thresholds
 from onboard.config import strict as config
 from onboard.config.bounds import HttpPort
 from onboard.config.names import GameName

@@ -14,9 +14,9 @@ from typing import NamedTuple
 from uuid import uuid4
 
 from gcs.picture import station_journal
-from gcs.picture.alert_rules import Thresholds
 from gcs.picture.courier import Courier
 from gcs.picture.reducer import GRID_NS, PictureReducer
+from gcs.picture.thresholds import Thresholds
 from gcs.picture.values import Picture
 from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.protocols import Bus, Clock, Sample, Subscription

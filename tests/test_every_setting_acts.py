@@ -18,7 +18,7 @@ import msgspec
 import pytest
 
 from gcs import settings as gcs_settings
-from gcs.picture.alert_rules import Thresholds
+from gcs.picture.thresholds import Thresholds
 from onboard.agent import config as agent_config
 from onboard.config.strict import StrictConfig, parse
 from onboard.game import field_roster, flight_spec, route_file, scenario, vehicle_spec, zone_spec

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gcs.page.access import Doors, loopback
-from gcs.picture.alert_rules import Thresholds
+from gcs.picture.thresholds import Thresholds
 from gcs.session import Session, on_air
 from gcs.settings import PageSettings, Settings
 from onboard.config.strict import ConfigError

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gcs.page.documents import Document
-from gcs.picture.alert_rules import Thresholds
+from gcs.picture.thresholds import Thresholds
 from gcs.picture.values import Picture
 from gcs.recording.reader import Recording
 from gcs.replay.player import SPEEDS, Player

@@ -8,18 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from math import isinf
-from typing import Annotated
-
-from msgspec import Meta
 
 from gcs.picture.alerts import Finding
+from gcs.picture.thresholds import Thresholds
 from gcs.picture.trouble_rules import troubles
 from gcs.picture.values import LegState, Picture, Presence, VehicleView
-from onboard.config.bounds import Distance, Duration, GpsFix, Share
-from onboard.config.strict import StrictConfig, demand
 from onboard.core.math.vectors import Vec, distance
 from onboard.core.safety import fence as fences
-from onboard.core.safety.policy import Cause, Policy
+from onboard.core.safety.policy import Cause
 from onboard.core.safety.words import CAUSES
 from onboard.wire.bus.messages import (
     SCHEMA,
@@ -34,7 +30,6 @@ from onboard.wire.bus.messages import (
 )
 
 InForce = Callable[[str], bool]
-SUPERVISOR = Policy()  # what both judge, they judge by the same thresholds and functions
 GUIDED_MODES = frozenset({"GUIDED", "OFFBOARD"})
 ACTIVE = frozenset({Phase.STAGING, Phase.READY, Phase.RUNNING})
 ERROR, WARNING = Severity.ERROR, Severity.WARNING
@@ -42,32 +37,6 @@ NO_ALERT = frozenset({SupervisorAction.OK, SupervisorAction.CLIP})
 BAD_S = 5.0  # a bad message is an alert for so long
 
 
-ClearAt = Annotated[float, Meta(ge=1, le=1000, description="1 or more")]
-
-
-class Thresholds(StrictConfig, frozen=True):
-    """When alerts are raised; each clears at the value beside it or at the one the rule states."""
-
-    state_stale_s: Duration = SUPERVISOR.telemetry_age  # own state older than this
-    telemetry_stale_s: Duration = SUPERVISOR.telemetry_age  # the autopilot's, as the agent reports it
-    heartbeat_stale_s: Duration = SUPERVISOR.heartbeat_age  # the autopilot's heartbeat, likewise
-    track_stale_s: Duration = 1.0  # the evader's track older than this, in a running game
-    battery_low: Share = 0.30  # share left: go home
-    battery_critical: Share = SUPERVISOR.battery  # the supervisor acts
-    battery_margin: Share = 0.03  # above the limit, to clear
-    gps_fix: GpsFix = SUPERVISOR.gps_fix  # the least, as MAVLink counts it: 3 = in space
-    link_low: Share = 0.70  # share of expected telemetry that arrives
-    link_margin: Share = 0.10  # above the limit, to clear
-    clock_offset_s: Duration = 0.05  # an agent's clock against the master's
-    clock_unready_s: Duration = 0.2  # an agent is not ready beyond this
-    fence_near_m: Distance = SUPERVISOR.fence_margin  # nearer than this to a wall, floor or ceiling
-    fence_clear_m: Distance = 2.0  # beyond the limit, to clear
-    separation_clear: ClearAt = 1.15  # clears at this multiple of the separation
-    confirm_s: Duration = 2.0  # a command not confirmed by then
-
-    def __post_init__(self) -> None:
-        demand(self.battery_critical <= self.battery_low, "battery_critical", self.battery_critical,
-               f"at most battery_low = {self.battery_low:g}")  # fmt: skip
 
 
 def rules(picture: Picture, in_force: InForce, limits: Thresholds, version: str) -> Iterator[Finding]:

@@ -10,11 +10,12 @@ from msgspec.structs import astuple
 
 from gcs.picture.several import evaders_of
 from gcs.picture.values import AssessmentView, GameView, Presence, ProspectView, TrackView, VehicleView
-from onboard.core.game.rules import NO_TARGET, Target
+from onboard.core.game.rules import NO_TARGET, Target, goal_disc
 from onboard.core.geometry import assessment
 from onboard.core.geometry.apollonius import in_time
+from onboard.core.geometry.assessment import NO_GOAL, Goal
 from onboard.core.math.states import Vehicle, VehicleLimits
-from onboard.core.math.vectors import ZERO, Vec, direction, distance, scale, sub
+from onboard.core.math.vectors import Vec, direction, distance, scale, sub
 from onboard.core.strategy.registry import DEFAULT
 from onboard.core.strategy.team.plan_types import Heights, Member, Situation
 from onboard.game.odds import engagement, headline, odds, one_each
@@ -66,8 +67,8 @@ def _assessed(game: GameView, id: int, known: Players, alone: bool) -> Assessmen
         pursuers = sorted(pursuers, key=lambda p: distance(p[1].position, place))[:most]
     goal = _nearest(game.targets_of(id), evader.position)
     found = assessment.assess(
-        evader, tuple(vehicle for _, vehicle in pursuers), rules.rho, goal is not None, goal or ZERO,
-        rules.planar,
+        evader, tuple(vehicle for _, vehicle in pursuers), rules.rho,
+        NO_GOAL if goal is None else Goal(True, goal, goal_disc(game.setup.core_rules())), rules.planar,
     )  # fmt: skip
     word, why, captured = _odds(game, id, known, alone, many)
     return AssessmentView(
@@ -90,8 +91,11 @@ def _assessed(game: GameView, id: int, known: Players, alone: bool) -> Assessmen
 def _all_denied(game: GameView, id: int, known: Players) -> bool:
     """Whether each of an evader's targets is denied: somebody can be there first."""
     evader, pursuers = known
+    assert game.setup is not None
+    disc = goal_disc(game.setup.core_rules())
+    e = evader
     return all(
-        any(in_time(Vec(*goal), p.position, p.speed, evader.position, evader.speed) for _, p in pursuers)
+        any(in_time(Vec(*goal), p.position, p.speed, e.position, e.speed, disc) for _, p in pursuers)
         for goal in game.targets_of(id)
     )
 

@@ -18,6 +18,7 @@ from gcs.picture.assessment import assess
 from gcs.picture.command_book import CommandBook
 from gcs.picture.fleet import Fleet
 from gcs.picture.station_journal import Acknowledged, Remark, Replied, Sent
+from gcs.picture.thresholds import Thresholds
 from gcs.picture.values import Alert, LogLine, Picture
 from onboard.core.math.constants import NS_PER_S
 from onboard.wire.bus.messages import Severity
@@ -33,11 +34,11 @@ class PictureReducer:
     `limits` decide about alerts, `version` (the station's own) is compared with the agents'.
     """
 
-    def __init__(self, game: str, limits: rules.Thresholds | None = None, version: str = "") -> None:
+    def __init__(self, game: str, limits: Thresholds | None = None, version: str = "") -> None:
         self.fleet = Fleet(game)
         self.book = CommandBook()
         self.alerts = Alerts()
-        self._limits = limits or rules.Thresholds()
+        self._limits = limits or Thresholds()
         self._version = version
         self.remarks: dict[str, Finding] = {}  # standing ones, by kind
         self._next_ns: int | None = None

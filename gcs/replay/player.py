@@ -9,8 +9,8 @@ from __future__ import annotations
 import pickle
 from collections.abc import Callable, Iterator
 
-from gcs.picture.alert_rules import Thresholds
 from gcs.picture.reducer import GRID_NS, PictureReducer
+from gcs.picture.thresholds import Thresholds
 from gcs.picture.values import Picture
 from gcs.recording.reader import Entry, Recording
 from onboard.core.math.constants import NS_PER_S

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from gcs.picture.alert_rules import Thresholds
 from gcs.picture.reducer import PictureReducer
+from gcs.picture.thresholds import Thresholds
 from gcs.recording.reader import Recording
 from gcs.report.data import Band, Beside, Flown, Link, Run, thinned
 from onboard.core.math.constants import NS_PER_S

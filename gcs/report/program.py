@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import NamedTuple
 
-from gcs.picture.alert_rules import Thresholds
+from gcs.picture.thresholds import Thresholds
 from gcs.recording.reader import Recording
 from gcs.recording.shell import RECORDING
 from gcs.report.data import Run, beside

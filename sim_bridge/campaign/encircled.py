@@ -14,7 +14,7 @@ import numpy as np
 from onboard.core.game.advance import Conditions, Game, begin
 from onboard.core.game.referee import GameResult
 from onboard.core.game.rules import NO_TARGET, Control, Rules, Target
-from onboard.core.geometry.assessment import assess
+from onboard.core.geometry.assessment import Goal, assess
 from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import NORTH, ZERO, Vec, scale
 from onboard.core.strategy.registry import EVADERS, PURSUERS
@@ -61,7 +61,7 @@ def draw_game(
     for _ in range(MOST_TRIES):
         places = _places(rng, pursuers, ring)
         team = tuple(Vehicle(place, scale(NORTH, PURSUER_SPEED), PURSUER_SPEED) for place in places)
-        seen = assess(evader, team, RHO, target.exists, target.position, True)
+        seen = assess(evader, team, RHO, Goal(target.exists, target.position), True)
         if seen.encircled == encircled:
             return begin(evader, team, free, (free,) * pursuers)
     return None

@@ -6,7 +6,8 @@ from math import degrees, pi
 from pathlib import Path
 
 from onboard.config.strict import ConfigError
-from onboard.core.geometry.assessment import assess
+from onboard.core.game.rules import goal_disc
+from onboard.core.geometry.assessment import Assessment, Goal, assess
 from onboard.core.geometry.cones import blocked_cones
 from onboard.core.math.vectors import ZERO, distance
 from onboard.core.safety.fence import inside
@@ -137,7 +138,7 @@ def _table(scenario: Scenario) -> list[str]:
     """The vehicles of a game of one evader."""
     rules, target, _ = conditions_of(scenario)
     evader, *pursuers = vehicles_of(scenario)
-    seen = assess(evader, tuple(pursuers), rules.rho, target.exists, target.position, rules.planar)
+    seen = _assessed(scenario)
     denied = denies(scenario)
     lines = [
         f"{scenario.name}: {len(pursuers)} pursuers, {'plane' if rules.planar else 'in space'}, "
@@ -162,15 +163,23 @@ def _table(scenario: Scenario) -> list[str]:
     return lines
 
 
+def _assessed(scenario: Scenario) -> Assessment:
+    """What geometry says of the start of a game of one evader."""
+    rules, target, _ = conditions_of(scenario)
+    evader, *pursuers = vehicles_of(scenario)
+    goal = Goal(target.exists, target.position, goal_disc(rules))
+    return assess(evader, tuple(pursuers), rules.rho, goal, rules.planar)
+
+
 def _prospects(scenario: Scenario) -> list[str]:
     """What to expect of a game of one evader."""
     return [*odds_lines(engagement_of(scenario)), *_freedom(scenario), *band_lines(scenario)]
 
 
 def _freedom(scenario: Scenario) -> list[str]:
-    rules, target, _ = conditions_of(scenario)
+    rules = scenario.rules
     evader, *pursuers = vehicles_of(scenario)
-    seen = assess(evader, tuple(pursuers), rules.rho, target.exists, target.position, rules.planar)
+    seen = _assessed(scenario)
     if seen.encircled:
         return [
             "free rays at the start: none, the evader is encircled. By outcome 1 of 3.4.2 it is captured;",

@@ -23,7 +23,7 @@ import psutil
 from playwright.sync_api import Page, sync_playwright
 
 from gcs.page.replay import opened
-from gcs.picture.alert_rules import Thresholds
+from gcs.picture.thresholds import Thresholds
 from gcs.replay.source import open_run
 from onboard.runtime.resources import configs
 from tests.support.benchmark_record import write

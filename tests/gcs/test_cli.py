@@ -18,8 +18,8 @@ import typer
 
 from gcs import cli, options, settings, urgent
 from gcs.console.plain_lines import PlainLines
-from gcs.picture.alert_rules import Thresholds
 from gcs.picture.json_document import document
+from gcs.picture.thresholds import Thresholds
 from onboard.config import strict as config
 from onboard.runtime.bus_zenoh import open_zenoh
 from onboard.runtime.clock import RealClock

@@ -30,7 +30,7 @@ from gcs.page.hub import Hub
 from gcs.page.replay import PageReplay, marks_of, opened
 from gcs.page.server import Address, PageServer, served
 from gcs.page.tiles import TileMap, opened_map
-from gcs.picture.alert_rules import Thresholds
+from gcs.picture.thresholds import Thresholds
 from gcs.replay.source import open_run
 from gcs.report.program import read_run
 from onboard.runtime.clock import RealClock

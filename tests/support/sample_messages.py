@@ -5,9 +5,9 @@ from __future__ import annotations
 import msgspec
 
 from gcs.picture import station_journal
-from gcs.picture.alert_rules import Thresholds
 from gcs.picture.reducer import PictureReducer
 from gcs.picture.station_journal import HEARD_HERE
+from gcs.picture.thresholds import Thresholds
 from gcs.picture.values import Picture, VehicleView
 from onboard.core.game.rules import Rules
 from onboard.core.math.constants import NS_PER_S

@@ -6,7 +6,7 @@ from enum import IntEnum
 from math import inf, sqrt
 from typing import NamedTuple
 
-from onboard.core.game.rules import NO_TARGET, Rules, Target
+from onboard.core.game.rules import NO_TARGET, Rules, Target, goal_disc
 from onboard.core.geometry.apollonius import in_time
 from onboard.core.math.vectors import TINY, Vec, sub
 
@@ -142,7 +142,7 @@ def judge(score: Score, step: Step, rules: Rules, target: Target) -> Score:
             smallest = min(score.smallest, _nearest(arrival.entry, e0, e1, before, after))
             return Score(GameResult.ARRIVED, start + arrival.entry * dt, -1, smallest, unsafe)
     if share <= 1.0 + 1e-9:
-        kept = target.exists and held(step, min(1.0, share), target.position)
+        kept = target.exists and held(step, min(1.0, share), target.position, goal_disc(rules))
         result = GameResult.DENIED if kept else GameResult.ESCAPED
         return Score(result, rules.horizon, -1, smallest, unsafe)
     return Score(GameResult.RUNNING, start + dt, -1, smallest, unsafe)
@@ -173,8 +173,10 @@ def _sooner(a: Score, b: Score) -> bool:
     return a.verdict == GameResult.ESCAPED and b.verdict == GameResult.DENIED
 
 
-def held(step: Step, share: float, place: Vec) -> bool:
+def held(step: Step, share: float, place: Vec, disc: float) -> bool:
     """Whether a pursuer can be at a place [m] no later than the evader, that share of a step later.
+
+    Where `disc` [m] is not 0 it can at every point of that disc about the place.
 
     It is the test of time to block (`in_time`), by which a defender wins the game of degree of a target that
     does not move: what is held at the horizon is not had by flying straight at it.
@@ -183,7 +185,7 @@ def held(step: Step, share: float, place: Vec) -> bool:
     for index in range(len(step.before)):
         p = _part(step.before[index], step.after[index], share)
         speed = step.speeds[index] if index < len(step.speeds) else 0.0
-        if in_time(place, p, speed, e, step.speed):
+        if in_time(place, p, speed, e, step.speed, disc):
             return True
     return False
 

@@ -23,6 +23,14 @@ class Rules(NamedTuple):
     zones: Zones = NO_ZONES  # that everybody keeps out of
 
 
+def goal_disc(rules: Rules) -> float:
+    """The radius about a target that must be held as a whole [m].
+
+    It is 0 where who stands on the target captures everybody that comes within ε_min of it (ε_min ≤ R).
+    """
+    return 0.0 if rules.epsilon_min <= rules.R else rules.epsilon_min
+
+
 class Target(NamedTuple):
     """The evader's target g. Apart from the rules: pursuers know it only where the rules say so."""
 

@@ -29,12 +29,16 @@ class Meeting(NamedTuple):
     miss: float  # distance left at T [m]; 0 for an intercept
 
 
-def in_time(place: Vec, p: Vec, v_p: float, e: Vec, v_e: float) -> bool:
+def in_time(place: Vec, p: Vec, v_p: float, e: Vec, v_e: float, disc: float = 0.0) -> bool:
     """Whether a pursuer can be at a place [m] no later than the evader: |p − g| / v_p ≤ |e − g| / v_e.
 
-    The test of time to block: an evader that flies straight at the place is met there or before. Where either
+    The test of time to block: an evader that flies straight at the place is met there or before. Of a region,
+    the disc of so many metres about the place, that must hold of every point (`disc_margin`). Where either
     speed is not known (0 or less) the two count as equally fast.
     """
+    if disc > 0.0:
+        known = v_p > 0.0 and v_e > 0.0
+        return disc_margin(place, disc, p, v_p if known else 1.0, e, v_e if known else 1.0) >= 0.0
     if v_p <= 0.0 or v_e <= 0.0:
         return distance(p, place) <= distance(e, place)
     return distance(p, place) * v_e <= distance(e, place) * v_p

@@ -192,9 +192,18 @@ def _three_coplanar(one: Seat, two: Seat, three: Seat) -> list[Vec]:
     return []
 
 
-def prospect(
-    pursuer: Vehicle, cone: Cone, evader: Vehicle, heading: Vec, has_target: bool, target: Vec
-) -> Prospect:
+class Goal(NamedTuple):
+    """Where the evader wants to be."""
+
+    exists: bool
+    place: Vec  # [m; NED]
+    disc: float = 0.0  # radius about it that must be held as a whole [m]; 0: its middle (`goal_disc`)
+
+
+NO_GOAL = Goal(False, NORTH)
+
+
+def prospect(pursuer: Vehicle, cone: Cone, evader: Vehicle, heading: Vec, goal: Goal) -> Prospect:
     """What one pursuer can do against the evader's present heading and target."""
     meeting = intercept(evader.position, heading, evader.speed, pursuer.position, pursuer.speed)
     closing = dot(heading, Vec(
@@ -203,20 +212,20 @@ def prospect(
         pursuer.position.z - evader.position.z,
     ))
     meets = meeting.exists and (closing > 0.0 or pursuer.speed >= evader.speed)
-    denies = has_target and in_time(
-        target, pursuer.position, pursuer.speed, evader.position, evader.speed
+    denies = goal.exists and in_time(
+        goal.place, pursuer.position, pursuer.speed, evader.position, evader.speed, goal.disc
     )
     return Prospect(meets, meeting.time if meets else -1.0, denies, half_angle(cone))
 
 
 def assess(
-    evader: Vehicle, pursuers: tuple[Vehicle, ...], rho: float, has_target: bool, target: Vec, planar: bool
+    evader: Vehicle, pursuers: tuple[Vehicle, ...], rho: float, goal: Goal, planar: bool
 ) -> Assessment:
     """The assessment of a situation; `rho` is the safety distance ρ of (4) [m]."""
     cones = blocked_cones(evader, pursuers, rho)
     heading = unit(evader.velocity, NORTH)
     prospects = tuple(
-        prospect(p, cone, evader, heading, has_target, target)
+        prospect(p, cone, evader, heading, goal)
         for p, cone in zip(pursuers, cones, strict=True)
     )
     open_gaps = gaps(cones) if planar else ()

@@ -14,7 +14,7 @@ from gcs.page.access import Doors
 from gcs.page.hub import Hub
 from gcs.page.replay import PageReplay, marks_of, opened
 from gcs.page.server import Address, PageServer, served
-from gcs.picture.alert_rules import Thresholds
+from gcs.picture.thresholds import Thresholds
 from gcs.replay.source import open_run
 from gcs.report.program import read_run
 from onboard.core.math.constants import NS_PER_S

@@ -8,8 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gcs.picture import station_journal
-from gcs.picture.alert_rules import SUPERVISOR, Thresholds, room_inside
+from gcs.picture.alert_rules import room_inside
 from gcs.picture.alerts import CLEAR_NS, Alerts, Finding
+from gcs.picture.thresholds import SUPERVISOR, Thresholds
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.vectors import Vec
 from onboard.wire.bus import messages

@@ -19,10 +19,10 @@ from gcs.picture.assessment import beyond_one, engagements_in
 from gcs.picture.reducer import PictureReducer
 from gcs.picture.values import Picture
 from gcs.programs import assess_file
-from onboard.core.geometry.assessment import assess
+from onboard.core.geometry.assessment import NO_GOAL, assess
 from onboard.core.math.constants import NS_PER_S
 from onboard.core.math.states import Vehicle
-from onboard.core.math.vectors import ZERO, Vec, sub
+from onboard.core.math.vectors import Vec, sub
 from onboard.game import palette, sides
 from onboard.game.go_or_no_go import lines
 from onboard.game.knowledge_words import goal_in_words
@@ -90,7 +90,7 @@ def test_every_evader_is_judged_against_all_pursuers(early: Picture) -> None:
         evader = moving[found.evader]
         nearest = sorted(AFTER, key=lambda id: _apart(early, id, found.evader))[:8]
         team = tuple(moving[id] for id in nearest)
-        alone = assess(evader, team, rules.rho, False, ZERO, bool(rules.planar))
+        alone = assess(evader, team, rules.rho, NO_GOAL, bool(rules.planar))
         assert found.largest_gap == pytest.approx(2.0 * alone.cap.radius)
         assert {p.id for p in found.prospects} == set(nearest)
 

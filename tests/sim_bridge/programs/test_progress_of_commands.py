@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from gcs import programs as station
-from gcs.picture.alert_rules import Thresholds
+from gcs.picture.thresholds import Thresholds
 from onboard.runtime import progress
 from onboard.wire.bus.messages import Role
 from sim_bridge.programs import planar as command

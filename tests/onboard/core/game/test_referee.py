@@ -95,9 +95,24 @@ def test_a_target_that_a_pursuer_holds_at_the_horizon_is_denied(place, speed, re
     goal = Vec(30.0, 50.0, 0.0)
     e = Vec(0.0, 50.0, 0.0)
     still = Step(99.5, 1.0, e, e, guard, guard, 5.0, (speed, speed))
-    rules = Rules(0.5, 1.0, horizon=100.0)
+    rules = Rules(0.5, 1.0, epsilon_min=0.5, horizon=100.0)
     assert judge(FRESH, still, rules, Target(True, goal)).verdict == result
     assert judge(FRESH, still, rules, Target(False, goal)).verdict == GameResult.ESCAPED
+
+
+@pytest.mark.parametrize(("line", "result"), [
+    (50.0, GameResult.DENIED),  # every point of the edge, from 50 m on, is nearer to the guard
+    (30.0, GameResult.DENIED),
+    (20.0, GameResult.ESCAPED),  # the nearest point of the edge is nearer to the evader
+])  # fmt: skip
+def test_a_target_that_is_a_region_is_held_as_a_whole(line, result):
+    """A border: the edge of a disc of 200 km, north of it; evader and guard, 50 m apart, are as fast."""
+    far = 200_000.0
+    e, guard = ZERO, (Vec(50.0, 0.0, 0.0),)
+    still = Step(99.5, 1.0, e, e, guard, guard, 5.0, (5.0,))
+    rules = Rules(1.0, 2.0, epsilon_min=far, horizon=100.0)
+    score = judge(opening(e, guard), still, rules, Target(True, Vec(line + far, 0.0, 0.0)))
+    assert score.verdict == result
 
 
 def test_a_verdict_stands():

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 
-from onboard.core.geometry.assessment import assess, gaps, half_angle, largest_free_cap
+from onboard.core.geometry.assessment import NO_GOAL, Goal, assess, gaps, half_angle, largest_free_cap
 from onboard.core.geometry.cones import blocked_cones, is_free
 from onboard.core.math.states import Vehicle
 from onboard.core.math.vectors import NORTH, ZERO, Vec, scale
@@ -69,7 +69,7 @@ def test_who_denies_the_target_and_who_intercepts():
     evader = Vehicle(ZERO, scale(NORTH, 5.0), 5.0)
     guard = Vehicle(Vec(90.0, 5.0, 0.0), ZERO, 4.0)
     far = Vehicle(Vec(-300.0, 0.0, 0.0), ZERO, 4.0)
-    seen = assess(evader, (guard, far), 4.0, True, Vec(100.0, 0.0, 0.0), True)
+    seen = assess(evader, (guard, far), 4.0, Goal(True, Vec(100.0, 0.0, 0.0)), True)
     assert [p.denies_target for p in seen.prospects] == [True, False]
     assert [p.intercepts for p in seen.prospects] == [True, False]
     assert seen.prospects[0].time > 0.0
@@ -83,8 +83,8 @@ def test_who_denies_the_target_and_who_intercepts():
 def test_encirclement_is_told_in_plane_and_space():
     evader = Vehicle(ZERO, scale(NORTH, 5.0), 5.0)
     ring = tuple(Vehicle(Vec(40 * cos(k * pi / 2), 40 * sin(k * pi / 2), 0.0), ZERO, 4.0) for k in range(4))
-    assert assess(evader, ring, 4.0, False, ZERO, True).encircled
-    space = assess(evader, ring, 4.0, False, ZERO, False)
+    assert assess(evader, ring, 4.0, NO_GOAL, True).encircled
+    space = assess(evader, ring, 4.0, NO_GOAL, False)
     assert not space.encircled
     assert abs(space.cap.axis.z) == pytest.approx(1.0, abs=1e-9)
 
