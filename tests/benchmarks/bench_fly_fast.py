@@ -53,7 +53,8 @@ def play(predicting: Predicting, folder: Path) -> Played:
         async with Rehearsal(scenario, clock, Options(folder=folder)) as rehearsal:
             outcome = await rehearsal.until_ended()
             await rehearsal.land_agents()
-            return Played(clock.monotonic_ns() / 1e9, 0.0, f"{outcome.verdict} after {outcome.time:.1f} s")
+            ended = f"{outcome.verdict.value} after {outcome.time:.1f} s"
+            return Played(clock.monotonic_ns() / 1e9, 0.0, ended)
 
     begun = process_time()
     played = run_virtual(game())
