@@ -3,8 +3,10 @@
 Numba compiles each function that another calls as if Python would call it, too: it optimises it with all
 that it calls in turn, makes machine code of it, and then inlines it once more. A kernel of many functions
 spends half its compile time so, for code that nobody runs. Here the functions of a kernel are linked as
-they are, and the whole is optimised once. What is computed is the same to the last bit; games of 20 pursuers
-play 5 % slower than twice optimised, of five and with aircraft as fast.
+they are, and the whole is optimised once. What is computed is the same to the last bit.
+
+This reaches into numba. Where its release is not the one that this was written for (`RELEASE`), a kernel is
+compiled as numba does by itself, in twice the time.
 """
 
 from __future__ import annotations
@@ -14,11 +16,15 @@ import threading
 from collections.abc import Callable
 from typing import Any
 
+import numba
 from numba.core import codegen, cpu
+
+RELEASE = "0.68"  # of numba, that of locks/all.lock
+KNOWN = ".".join(numba.__version__.split(".")[:2]) == RELEASE
 
 _Library: Any = codegen.JITCodeLibrary
 _Context: Any = cpu.CPUContext
-_make_function: Callable[..., Any] = vars(cpu)["_dynfunc"].make_function
+_make_function: Any = vars(cpu)["_dynfunc"].make_function if KNOWN else None
 
 # Where the address of a function that nobody calls is wanted: called all the same, it raises MemoryError.
 _NOBODY = ctypes.cast(ctypes.pythonapi.PyErr_NoMemory, ctypes.c_void_p).value
@@ -38,7 +44,9 @@ _get_executable: Callable[..., Any] = _Context.get_executable
 
 
 def as_one(machine: Any) -> None:
-    """Have a dispatcher of numba's compile its function so."""
+    """Have a dispatcher of numba's compile its function so; as numba does where its release is not known."""
+    if not KNOWN:
+        return
     compiler = machine._compiler
     compile_it, function = compiler.compile, machine.py_func
 
@@ -79,5 +87,6 @@ def _executable(context: Any, library: Any, described: Any, environment: Any) ->
     return _get_executable(context, library, described, environment)
 
 
-_Library.finalize = _finalized
-_Context.get_executable = _executable
+if KNOWN:
+    _Library.finalize = _finalized
+    _Context.get_executable = _executable

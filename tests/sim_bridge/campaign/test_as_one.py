@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import threading
+from importlib.util import module_from_spec, spec_from_file_location
 from math import sqrt
+from pathlib import Path
 from typing import Any
 
 import numba
 import pytest
-from numba.core import codegen
+from numba.core import codegen, cpu
 from numba.core.errors import TypingError
 from numba.extending import register_jitable
 
+from sim_bridge.campaign import as_one
 from sim_bridge.campaign.kernel_cache import kernel
 from sim_bridge.campaign.kernel_folder import FOLDER, OFF
 
@@ -92,3 +95,22 @@ def test_what_another_thread_compiles_meanwhile_runs(made: list[str]) -> None:
         assert kernel(around)(3.0, 4.0) == 12.0
     thread.join()
     assert found == [0.5, 1.5, 2.5, 3.5, 4.5]
+
+
+def test_another_release_of_numba_is_left_as_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its inner names may be others: nothing is asked of them, nothing is put in their place."""
+    assert as_one.KNOWN, "the release that is installed here is the one of the lock"
+    finalize, executable = codegen.JITCodeLibrary.finalize, cpu.CPUContext.get_executable
+    monkeypatch.setattr(numba, "__version__", "0.99.0")
+    monkeypatch.delattr(cpu, "_dynfunc")
+    spec = spec_from_file_location("as_one_of_another", Path(as_one.__file__))
+    assert spec is not None
+    assert spec.loader is not None
+    other = module_from_spec(spec)
+    spec.loader.exec_module(other)
+    assert codegen.JITCodeLibrary.finalize is finalize
+    assert cpu.CPUContext.get_executable is executable
+    machine = numba.njit(lambda x: x + 1.0)
+    compile_it = machine._compiler.compile
+    other.as_one(machine)
+    assert machine._compiler.compile == compile_it
