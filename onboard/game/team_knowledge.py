@@ -41,6 +41,11 @@ def is_team(name: str) -> bool:
     return name == TEAM or name.startswith(PREFIX)
 
 
+def names_file(name: str) -> bool:
+    """Whether a strategy's name is that of a file, which would be run."""
+    return name.startswith(PREFIX) and name.endswith(".py")
+
+
 @cache
 def strategy(name: str) -> PursuerStrategy:
     """The strategy of a team by its name. Raises ConfigError."""
@@ -83,7 +88,7 @@ def model(name: str) -> Model:
     if name in (TEAM, PLAIN):
         return MODEL
     source = name.removeprefix(PREFIX)
-    found = _file(Path(source)) if source.endswith(".py") else _entry(source)
+    found = _file(Path(source)) if names_file(name) else _entry(source)
     where = f"knowledge: {source}"
     relations = _rows(found, "RELATIONS", Relation, where)
     goals = _rows(found, "GOALS", GoalRule, where)

@@ -87,8 +87,15 @@ class GamePlayer:
     def heard_setup(self, setup: Setup) -> None:
         """A setup arrived: its strategy is looked up before it is considered."""
         name = self._strategy_of(setup)
-        if name not in self._asked_for:
-            self._asked_for.add(name)
+        if name in self._asked_for:
+            return
+        self._asked_for.add(name)
+        if team_knowledge.names_file(name) and not self.config.strategy:  # whoever speaks as the master
+            self._loaded[name] = (
+                f"the setup's strategy: found the file '{name}', expected a name: what is to be run from a"
+                " file is said to the agent itself (`strategy` of its configuration, --strategy)"
+            )
+        else:
             self._out.put(Load(self.side, name))
 
     def loaded(self, strategy: str, error: str) -> None:
@@ -300,7 +307,7 @@ class GamePlayer:
             self.flying = None
         hovers, own = self._vehicle.hovers, self._vehicle.limits
         why = limits.contradiction(self.config, setup, hovers, own) or strategy_error
-        why = why or team_knowledge.trouble(self._strategy_of(setup))
+        why = why or team_knowledge.trouble(self._strategy_of(setup))  # opens no file that was refused
         if why:
             if why != self.why_not:
                 self._journal.error("setup_refused", why)
