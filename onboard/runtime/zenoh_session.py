@@ -124,8 +124,8 @@ class ZenohBus:
         return ""
 
     def counters(self) -> dict[str, int]:
-        """published, received, and what was dropped by cause."""
-        return dict(self._inbox.counts) | self._limit.counters()
+        """published, received, how often threads woke the loop, and what was dropped by cause."""
+        return {**self._inbox.counts, "woken": self._inbox.wakes, **self._limit.counters()}
 
     def publish(self, key: str, payload: bytes, delivery: Delivery) -> None:
         """Put a message; never blocks. Counts `no_bus` where nobody is connected."""
@@ -179,7 +179,7 @@ class ZenohBus:
             elif newest and not every:
                 inbox.latest((slot, key), call)
             else:
-                inbox.queue(call)
+                inbox.queue(call, soon=not newest)
 
         def deliver(sample: Sample) -> None:
             if declared.active:
