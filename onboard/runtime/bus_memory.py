@@ -15,11 +15,10 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from onboard.runtime.impairment import Channel, Impairment
-from onboard.runtime.inbox import LATER_S
 from onboard.runtime.memory_delivery import Kept, Listener, MemoryDelivery, Parcel, Watcher
 from onboard.runtime.patterns import matches
 from onboard.runtime.protocols import Sample
-from onboard.runtime.rate_limit import PAYLOAD_MAX, BusLimit
+from onboard.runtime.rate_limit import LATER_S, PAYLOAD_MAX, BusLimit
 from onboard.wire.bus.topics import Delivery
 
 if TYPE_CHECKING:

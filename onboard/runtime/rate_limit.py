@@ -13,6 +13,7 @@ from onboard.wire.bus.topics import ID, PLACES_KEPT, TOPICS, Delivery, Topic
 
 BUCKETS_MAX = 1024  # of a link
 PAYLOAD_MAX = 65_536  # [bytes] of a message on the bus: none of the table comes near it
+LATER_S = 0.05  # of a key whose latest value counts, the newest is heard at this pace though over its bound
 
 
 class Rate(NamedTuple):

@@ -1,9 +1,10 @@
 """A session of Zenoh that may come later, go and return: with `zenoh_config` what imports Zenoh.
 
-Zenoh calls back on threads of its own. Here they touch one locked, bounded `Inbox` and wake the
-event loop; all else happens on the loop. LATEST messages overwrite each other by key, the rest waits
-in a queue. Cached values and events go through Zenoh's advanced publisher, which keeps them, and its
-advanced subscriber, which asks for what it missed: a late joiner, or after the router was away.
+What subscriptions bring waits for the loop in channels of Zenoh's (`zenoh_streams`). For requests and
+presence Zenoh calls back on threads of its own, which touch one locked, bounded `Inbox` and wake the
+event loop at once; all else happens on the loop. Cached values and events go through Zenoh's advanced
+publisher, which keeps them, and its advanced subscriber, which asks for what it missed: a late joiner,
+or after the router was away.
 """
 
 from __future__ import annotations
@@ -22,13 +23,15 @@ from onboard.runtime.inbox import Inbox
 from onboard.runtime.off_loop import off_loop
 from onboard.runtime.patterns import intersects
 from onboard.runtime.protocols import Sample, Subscription
-from onboard.runtime.rate_limit import PAYLOAD_MAX, BusLimit
+from onboard.runtime.rate_limit import BusLimit
 from onboard.runtime.zenoh_config import Candidate, first_sentence, of_zenoh
+from onboard.runtime.zenoh_streams import CHANNEL_MAX, Stream, Streams
 from onboard.wire.bus.topics import TOPICS, Delivery
 
 EVENTS_KEPT = 256  # events a publisher keeps of each key
 RETRY_S = 0.5  # between attempts to connect
 CLOSE_S = 2.0
+ASKED_S = 0.2  # so long a session's answer holds whether somebody is there; it counts messages, no more
 _HEARTBEAT_S = 0.5  # of advanced publishers: how soon a lost last event is noticed
 _KEPT = (Delivery.CACHED, Delivery.EVENT)
 _KEPT_PATTERNS = tuple(topic.key("*") for topic in TOPICS if topic.delivery in _KEPT)
@@ -37,10 +40,13 @@ _KEPT_PATTERNS = tuple(topic.key("*") for topic in TOPICS if topic.delivery in _
 class _Declared:
     """Something declared on the session, now or once there is one; closing undeclares it."""
 
-    def __init__(self, bus: ZenohBus, declare: Callable[[Any], Any]) -> None:
+    def __init__(
+        self, bus: ZenohBus, declare: Callable[[Any], Any], ended: Callable[[], None] | None = None
+    ) -> None:
         self.active = True
         self._bus = bus
         self._declare = declare
+        self._ended = ended
         self._entity: Any = None
 
     def open(self, session: Any) -> None:
@@ -56,7 +62,9 @@ class _Declared:
             self._bus._loop.call_later(RETRY_S, self.open, session)
 
     def forget(self) -> None:
-        """Its session is gone."""
+        """Its session is gone, or going."""
+        if self._ended is not None:
+            self._ended()
         self._entity = None
 
     def close(self) -> None:
@@ -65,9 +73,11 @@ class _Declared:
             return
         self.active = False
         self._bus._declared.remove(self)
-        if self._entity is not None:
+        entity = self._entity
+        self.forget()
+        if entity is not None:
             try:
-                self._entity.undeclare()
+                entity.undeclare()
             except BaseException as error:
                 if not of_zenoh(error):
                     raise
@@ -86,6 +96,8 @@ class ZenohBus:
         self._loop = asyncio.get_running_loop()
         self._inbox = Inbox(self._loop)
         self._limit = BusLimit()
+        self._met, self._asked_at = False, float("-inf")
+        self._streams = Streams(self._loop, self._inbox.counts, self._limit)
         self._declared: list[_Declared] = []
         self._publishers: dict[str, Any] = {}
         self._kept: dict[str, tuple[Delivery, deque[bytes]]] = {}  # for a session that is yet to come
@@ -96,7 +108,6 @@ class ZenohBus:
         self._gone = False  # closed: a session that opens after all is nobody's
         self._closing: deque[threading.Thread] = deque(maxlen=4)  # that close what was given up
         self._attempted = asyncio.Event()
-        self._slots = 0
         self._thread = threading.Thread(target=self._open_in_thread, name="zenoh-open", daemon=True)
         self._thread.start()
 
@@ -117,15 +128,22 @@ class ZenohBus:
 
     def connected(self) -> bool:
         """Whether at least one other session is connected to this one."""
-        return self._session is not None and bool(self._session.info.transports())
+        self._asked_at = self._loop.time()
+        self._met = self._session is not None and bool(self._session.info.transports())
+        return self._met
+
+    def _somebody(self) -> bool:
+        """`connected` as it was when last asked, within `ASKED_S`: Zenoh answers it on another thread."""
+        return self._met if self._loop.time() - self._asked_at < ASKED_S else self.connected()
 
     def trouble(self) -> str:
         """Why a session that is open does not serve; "" where it does, as far as is known."""
         return ""
 
     def counters(self) -> dict[str, int]:
-        """published, received, how often threads woke the loop, and what was dropped by cause."""
-        return {**self._inbox.counts, "woken": self._inbox.wakes, **self._limit.counters()}
+        """published, received, how often the loop was woken, and what was dropped by cause."""
+        woken = self._inbox.wakes + self._streams.looks
+        return {**self._inbox.counts, "woken": woken, **self._limit.counters()}
 
     def publish(self, key: str, payload: bytes, delivery: Delivery) -> None:
         """Put a message; never blocks. Counts `no_bus` where nobody is connected."""
@@ -139,7 +157,7 @@ class ZenohBus:
         if session is None:
             counts["no_bus"] += 1
             return
-        counts["published" if self.connected() else "no_bus"] += 1
+        counts["published" if self._somebody() else "no_bus"] += 1
         self._put(session, key, payload, delivery)
 
     def _put(self, session: Any, key: str, payload: bytes, delivery: Delivery) -> None:
@@ -160,48 +178,25 @@ class ZenohBus:
 
         With `every` a loop that is late gets all messages, up to `QUEUE_MAX`, not the latest of each key.
         """
-        self._slots += 1
-        slot = self._slots
-        inbox = self._inbox
-
-        def arrived(sample: Any) -> None:  # on a thread of Zenoh's
-            if sample.kind != zenoh.SampleKind.PUT:
-                return
-            key = str(sample.key_expr)
-            admitted = self._limit.admits(key, len(sample.payload), self._loop.time())
-            place = TOPICS.find(key)
-            newest = place is not None and place.topic.delivery is Delivery.LATEST
-            if not admitted and (not newest or len(sample.payload) > PAYLOAD_MAX):
-                return
-            call = partial(deliver, Sample(key, sample.payload.to_bytes()))
-            if not admitted:  # the newest of a flood counts, but not every one of them
-                inbox.latest_later((slot, key), call)
-            elif newest and not every:
-                inbox.latest((slot, key), call)
-            else:
-                inbox.queue(call, soon=not newest)
-
-        def deliver(sample: Sample) -> None:
-            if declared.active:
-                inbox.counts["received"] += 1
-                receiver(sample)
-
+        stream = Stream(receiver, every)
         kept = any(intersects(pattern, other) for other in _KEPT_PATTERNS)
 
         def declare(session: Any) -> Any:
-            callback = handlers.Callback(arrived, indirect=False)
+            channel: Any = handlers.RingChannel(CHANNEL_MAX)
             if not kept:
-                return session.declare_subscriber(pattern, callback)
-            return ext.declare_advanced_subscriber(
-                session,
-                pattern,
-                callback,
-                history=ext.HistoryConfig(detect_late_publishers=True),
-                recovery=ext.RecoveryConfig(heartbeat=True, periodic_queries=None),
-            )
+                entity = session.declare_subscriber(pattern, channel)
+            else:
+                entity = ext.declare_advanced_subscriber(
+                    session,
+                    pattern,
+                    channel,
+                    history=ext.HistoryConfig(detect_late_publishers=True),
+                    recovery=ext.RecoveryConfig(heartbeat=True, periodic_queries=None),
+                )
+            self._streams.attach(stream, entity.handler.try_recv)
+            return entity
 
-        declared = self._declare(declare)
-        return declared
+        return self._declare(declare, partial(self._streams.detach, stream))
 
     def serve(self, key: str, handler: Callable[[bytes], bytes]) -> Subscription:
         """Answer requests on `key`; the handler runs on the loop."""
@@ -309,6 +304,7 @@ class ZenohBus:
         self._stop.set()
         for declared in self._declared:
             declared.active = False
+            declared.forget()
         self._declared.clear()
         for thread in (self._thread, *self._closing):  # whoever ends inside Zenoh's code dies by SIGABRT
             if thread.is_alive():
@@ -331,8 +327,8 @@ class ZenohBus:
         except TimeoutError:
             self._trouble = self._trouble or "no answer yet"
 
-    def _declare(self, declare: Callable[[Any], Any]) -> _Declared:
-        declared = _Declared(self, declare)
+    def _declare(self, declare: Callable[[Any], Any], ended: Callable[[], None] | None = None) -> _Declared:
+        declared = _Declared(self, declare, ended)
         self._declared.append(declared)
         if self._session is not None:
             declared.open(self._session)

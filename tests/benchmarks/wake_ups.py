@@ -1,99 +1,65 @@
-"""What it saves that messages of a stream wake an event loop together: a ground station and agents, in turn.
+"""What it saves that messages wait for the loop in Zenoh's channels: a ground station and agents, beside before.
 
-`python -m tests.benchmarks.wake_ups [--rounds N]` writes benchmarks/results/wake-ups.md, in four minutes. In one
-run each message of the bus wakes the loop by itself (unless it is on its way already), in the next those of a
-stream together, as the product does it (`onboard/runtime/inbox.py`).
+`python -m tests.benchmarks.wake_ups [--rounds N]` writes benchmarks/results/wake-ups.md, in four minutes. Before:
+a thread of Zenoh's entered Python for each message, left it in a queue and woke the loop. Each state of the
+project is measured in processes of its own, in turn.
 """
 
 from __future__ import annotations
 
 import argparse
-import asyncio
-import os
-from collections.abc import Callable
-from contextlib import ExitStack, contextmanager
+import sys
 from pathlib import Path
 from statistics import median
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING
-from unittest.mock import patch
 
-from onboard.runtime import inbox
-from tests.benchmarks import bench_agent, bench_station
+from tests.benchmarks.campaign_speed import unpacked
+from tests.benchmarks.speed import State, measure
 from tests.support import benchmark_record
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-LOOK_S = 10.0
-NEVER = -1.0  # seconds after which nothing counts as a stream
-AGENTS = "from onboard.runtime import inbox\ninbox.STREAM_S = -1.0\n"
-WAYS = ("each", "together")
-
-
-@contextmanager
-def way(name: str) -> Iterator[list[inbox.Inbox]]:
-    """Inboxes of this process and of agents it starts work that way; gives those of this process."""
-    made: list[inbox.Inbox] = []
-    begin: Callable[..., None] = inbox.Inbox.__init__
-
-    def counted(self: inbox.Inbox, loop: asyncio.AbstractEventLoop) -> None:
-        begin(self, loop)
-        made.append(self)
-
-    with ExitStack() as stack:
-        stack.enter_context(patch.object(inbox.Inbox, "__init__", counted))
-        if name == "each":
-            folder = stack.enter_context(TemporaryDirectory())
-            Path(folder, "sitecustomize.py").write_text(AGENTS, encoding="utf-8")
-            paths = os.pathsep.join((folder, os.environ.get("PYTHONPATH", os.getcwd())))
-            stack.enter_context(patch.object(inbox, "STREAM_S", NEVER))
-            stack.enter_context(patch.dict(bench_agent.ENV, PYTHONPATH=paths))
-        yield made
-
-
-def station(name: str) -> tuple[float, float]:
-    """A station that hears 200 × 20 Hz, with recorder and console: share of a core, wake-ups a message."""
-    with way(name) as made:
-        found = asyncio.run(bench_station.measure(bench_station.Load(200, False)))
-    assert found.received == found.recorded == found.sent, found
-    return found.core, made[0].wakes / found.received
-
-
-def agents(name: str) -> dict[str, float]:
-    """Shares of a core of a pursuer and of the evader among six, at 20 Hz."""
-    with way(name), patch.object(bench_agent, "LOOK_S", LOOK_S):
-        return {one.role: one.core for one in bench_agent.resources()}
+BEFORE = "c4482fd"  # a call for each message
+STATION = """
+from tests.benchmarks import bench_station
+async def play():
+    return await bench_station.measure(bench_station.Load(200, False))
+found = asyncio.run(play())
+tell({"station, 200 vehicles at 20 Hz, of a core [%]": 100.0 * found.core,
+      "station, messages that came of a hundred": 100.0 * found.recorded / found.sent})
+"""
+AGENTS = """
+from tests.benchmarks import bench_agent
+bench_agent.LOOK_S = 10.0
+tell({f"{one.role} among six at 20 Hz, of a core [%]": 100.0 * one.core for one in bench_agent.resources()})
+"""
 
 
 def main() -> None:
     """Measure in turn, print, write the page."""
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--rounds", type=int, default=3)
     rounds = parser.parse_args().rounds
     found: dict[str, dict[str, list[float]]] = {}
-    for _ in range(rounds):
-        for name in WAYS:
-            core, wakes = station(name)
-            row = {"station, 200 vehicles at 20 Hz, of a core [%]": 100.0 * core}
-            row["station, wake-ups a hundred messages"] = 100.0 * wakes
-            row |= {
-                f"{role} among six at 20 Hz, of a core [%]": 100.0 * c for role, c in agents(name).items()
-            }
-            print(name, row, flush=True)
-            for what, value in row.items():
-                found.setdefault(what, {}).setdefault(name, []).append(value)
+    with TemporaryDirectory() as name:
+        states = [
+            State(which, unpacked(which, Path(name) / which), sys.executable) for which in (BEFORE, "HEAD")
+        ]
+        for _ in range(rounds):
+            for state in states:
+                for script in (STATION, AGENTS):
+                    for what, cost in measure(state, script).items():
+                        print(state.name, what, f"{cost.value:.2f}", flush=True)
+                        found.setdefault(what, {}).setdefault(state.name, []).append(cost.value)
     lines = [
-        f"Medians of {rounds} runs in turn (all in brackets); CPU of whole processes, Zenoh's threads included.",
-        f"Together: in a stream the loop looks every {1e3 * inbox.TOGETHER_S:g} ms; a lone message and an order",
-        "wake it at once in both.",
+        f"Medians of {rounds} runs in turn (all in brackets); CPU of whole processes, with Zenoh's threads.",
+        f"Before is {BEFORE}: a thread of Zenoh's entered Python and woke the loop for each message. Now messages",
+        "wait in Zenoh's channels and the loop looks fifty times a second; requests are answered at once in both.",
         "",
-        "| what | each by itself | together | ratio |",
+        "| what | before | now | ratio |",
         "|---|---|---|---|",
     ]
     for what, each in found.items():
-        cells = [f"{median(each[n]):.2f} ({', '.join(f'{v:.2f}' for v in each[n])})" for n in WAYS]
-        ratio = median(each["together"]) / median(each["each"])
+        cells = [f"{median(all_of):.2f} ({', '.join(f'{v:.2f}' for v in all_of)})" for all_of in each.values()]
+        ratio = median(each["HEAD"]) / median(each[BEFORE])
         lines.append(f"| {what} | {cells[0]} | {cells[1]} | {ratio:.2f} |")
     print("\n".join(lines))
     benchmark_record.write(

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import asyncio
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from onboard.runtime.inbox import Inbox
 from onboard.runtime.rate_limit import BUCKETS_MAX, PAYLOAD_MAX, BusLimit, Rate, RateLimit
 from onboard.wire.bus.topics import (
     COMMAND,
@@ -95,13 +92,3 @@ def test_memory_is_bounded_whoever_comes() -> None:
     for n in range(PLACES_KEPT + 5000):  # in as many games
         bus.admits(STATE.key(f"game{n}", 2), 200, 0.0)
     assert len(bus._limit._buckets) <= PLACES_KEPT + 1
-
-
-async def test_the_newest_of_a_flood_is_delivered_in_the_end() -> None:
-    inbox, ran = Inbox(asyncio.get_running_loop()), list[int]()
-    for number in range(1000):
-        inbox.latest_later((1, "state"), lambda number=number: ran.append(number))  # type: ignore[misc]
-    await asyncio.sleep(0)
-    assert ran == []
-    await asyncio.sleep(0.2)
-    assert ran == [999]

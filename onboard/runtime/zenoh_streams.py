@@ -1,0 +1,112 @@
+"""What subscriptions over Zenoh bring: it waits in a channel of Zenoh's until the event loop takes it.
+
+No thread of Zenoh's enters Python for a message, and none wakes the loop for one: on a small computer either
+costs more than most messages. The loop looks every `LOOK_S` and takes all that has come.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections import Counter
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import zenoh
+
+from onboard.runtime.protocols import Sample
+from onboard.runtime.rate_limit import LATER_S, PAYLOAD_MAX, BusLimit
+from onboard.wire.bus.topics import TOPICS, Delivery
+
+LOOK_S = 0.02  # a message waits so long at most for a loop that is not late
+CHANNEL_MAX = 8192  # messages that wait in a channel; beyond them the oldest are lost, and that is counted
+
+
+class Stream:
+    """One subscription: its channel, where the session has one, and who hears."""
+
+    def __init__(self, receiver: Callable[[Sample], None], every: bool) -> None:
+        self.receiver = receiver
+        self.every = every
+        self.take: Callable[[], Any] | None = None  # the channel's next message, or None
+        self.over: dict[str, Sample] = {}  # over their bounds, the newest of each key
+        self.over_at = float("-inf")  # when such were heard last [s]
+
+
+class Streams:
+    """All subscriptions of a bus; made on its loop, with the bus's counts and its bounds for each key."""
+
+    def __init__(self, loop: asyncio.AbstractEventLoop, counts: Counter[str], limit: BusLimit) -> None:
+        self.looks = 0  # how often the loop looked
+        self._loop = loop
+        self._counts = counts
+        self._limit = limit
+        self._open: list[Stream] = []
+        self._timer: asyncio.TimerHandle | None = None
+
+    def attach(self, stream: Stream, take: Callable[[], Any]) -> None:
+        """A session has declared it: from now on the loop looks into its channel."""
+        stream.take = take
+        if stream not in self._open:
+            self._open.append(stream)
+        if self._timer is None:
+            self._timer = self._loop.call_later(LOOK_S, self._look)
+
+    def detach(self, stream: Stream) -> None:
+        """Nobody hears it any more, or its session is gone; idempotent."""
+        stream.take = None
+        if stream in self._open:
+            self._open.remove(stream)
+        if not self._open and self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
+
+    def _look(self) -> None:
+        self._timer = self._loop.call_later(LOOK_S, self._look)
+        self.looks += 1
+        for stream in tuple(self._open):
+            for sample in self._heard(stream):
+                if stream.take is None:
+                    break
+                self._counts["received"] += 1
+                try:
+                    stream.receiver(sample)
+                except Exception as error:
+                    said = {"message": "a receiver failed", "exception": error}
+                    self._loop.call_exception_handler(said)
+
+    def _heard(self, stream: Stream) -> Iterator[Sample]:
+        """What has come and is within its bounds; of a LATEST key the newest, unless every one is wanted."""
+        now, admits, find = self._loop.time(), self._limit.admits, TOPICS.find
+        queue, newest = list[Sample](), dict[str, Sample]()
+        for sample in self._taken(stream):
+            key, payload = str(sample.key_expr), sample.payload
+            size = len(payload)
+            admitted = admits(key, size, now)
+            place = find(key)
+            latest = place is not None and place.topic.delivery is Delivery.LATEST
+            if not admitted and (not latest or size > PAYLOAD_MAX):
+                continue
+            heard = Sample(key, payload.to_bytes())
+            if admitted and (stream.every or not latest):
+                queue.append(heard)
+                continue
+            self._counts["overwritten"] += (key in newest) + (stream.over.pop(key, None) is not None)
+            (newest if admitted else stream.over)[key] = heard
+            if not admitted:
+                newest.pop(key, None)
+        if stream.over and now - stream.over_at >= LATER_S:
+            newest |= stream.over
+            stream.over_at = now
+            stream.over.clear()
+        yield from queue
+        yield from newest.values()
+
+    def _taken(self, stream: Stream) -> Iterator[Any]:
+        put = zenoh.SampleKind.PUT
+        for _ in range(CHANNEL_MAX):
+            sample = stream.take() if stream.take is not None else None
+            if sample is None:
+                return
+            if sample.kind == put:
+                yield sample
+        self._counts["overflow"] += 1  # it was full: how many went before is not known
