@@ -1,8 +1,8 @@
-"""What it saves that messages wait for the loop in Zenoh's channels: a ground station and agents, beside before.
+"""What it saves that messages wait for the loop in Zenoh's channels: a ground station and agents.
 
-`python -m tests.benchmarks.wake_ups [--rounds N]` writes benchmarks/results/wake-ups.md, in four minutes. Before:
-a thread of Zenoh's entered Python for each message, left it in a queue and woke the loop. Each state of the
-project is measured in processes of its own, in turn.
+`python -m tests.benchmarks.wake_ups [--rounds N]` writes benchmarks/results/wake-ups.md, in four minutes.
+Before, a thread of Zenoh's entered Python for each message, left it in a queue and woke the loop. Each
+state of the project is measured in processes of its own, in turn.
 """
 
 from __future__ import annotations
@@ -51,14 +51,15 @@ def main() -> None:
                         found.setdefault(what, {}).setdefault(state.name, []).append(cost.value)
     lines = [
         f"Medians of {rounds} runs in turn (all in brackets); CPU of whole processes, with Zenoh's threads.",
-        f"Before is {BEFORE}: a thread of Zenoh's entered Python and woke the loop for each message. Now messages",
-        "wait in Zenoh's channels and the loop looks fifty times a second; requests are answered at once in both.",
+        f"Before is {BEFORE}: a thread of Zenoh's entered Python and woke the loop for each message. Now",
+        "messages wait in Zenoh's channels and the loop looks fifty times a second; requests are answered at",
+        "once in both.",
         "",
         "| what | before | now | ratio |",
         "|---|---|---|---|",
     ]
     for what, each in found.items():
-        cells = [f"{median(all_of):.2f} ({', '.join(f'{v:.2f}' for v in all_of)})" for all_of in each.values()]
+        cells = [f"{median(them):.2f} ({', '.join(f'{v:.2f}' for v in them)})" for them in each.values()]
         ratio = median(each["HEAD"]) / median(each[BEFORE])
         lines.append(f"| {what} | {cells[0]} | {cells[1]} | {ratio:.2f} |")
     print("\n".join(lines))
