@@ -6,9 +6,14 @@ computer, and what a richer library imports (some 12 MB) would stay with it.
 
 from __future__ import annotations
 
-from onboard.runtime.early import one_line_interrupts
+from onboard.runtime import early
 
-one_line_interrupts("onboard-agent", __name__)
+early.one_line_interrupts("onboard-agent", __name__)
+
+from onboard.agent.lean import begin, lean
+
+if early.program():
+    begin()
 
 import argparse
 import os
@@ -68,6 +73,7 @@ def _typed(kind: str, name: str) -> Callable[[str], Any]:
     """
 
     def read(text: str) -> Any:
+        lean()  # before the first import of what it leaves out
         from onboard.agent import config
         from onboard.config.option_value import parsed
 
@@ -135,8 +141,6 @@ def run(arguments: list[str] | None = None) -> int:
 
         print(version())
         return 0
-    from onboard.agent.lean import lean
-
     lean()
     file = Path(given["config"]) if "config" in given else None
     options: dict[str, Any] = {name: given[name] for name in OPTIONS if name in given}

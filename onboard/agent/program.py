@@ -13,6 +13,7 @@ import threading
 from pathlib import Path
 
 from onboard.agent.config import AgentConfig
+from onboard.agent.lean import settle
 from onboard.agent.opening import close_bus, master_of, open_bus, open_links, signing_of
 from onboard.agent.shell import Agent, Equipment
 from onboard.agent.written_files import WrittenFiles
@@ -60,6 +61,7 @@ async def _fly(config: AgentConfig, timing: Path | None) -> int:
         )
         agent = Agent(config, clock, links, bus, equipment)
         _catch_signals(agent)
+        settle()
         gc.collect()
         gc.freeze()  # what was imported is never garbage: collections in flight stay short
         notifier.ready()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from difflib import get_close_matches
 from enum import Enum
 from typing import Any
 
@@ -26,6 +25,8 @@ def shown(value: Any) -> str:
 
 def nearest(found: object, known: Iterable[str]) -> str:
     """`; did you mean 'hold'?` where one of the known words is near what was found, else nothing."""
+    from difflib import get_close_matches  # for who has mistyped
+
     near = get_close_matches(str(found).lower(), list(known), n=1, cutoff=0.7)
     return f"; did you mean '{near[0]}'?" if near else ""
 

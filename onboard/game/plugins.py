@@ -8,8 +8,8 @@ also compiles.
 
 from __future__ import annotations
 
-from importlib.metadata import EntryPoint, entry_points
-from typing import Any, cast
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, cast
 
 from onboard.config.in_words import nearest
 from onboard.config.printable import words_of
@@ -20,6 +20,9 @@ from onboard.game.policy_file import is_policy
 from onboard.game.policy_file import strategy as policy
 from onboard.game.team_knowledge import is_team
 from onboard.game.team_knowledge import strategy as team
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
 
 GROUP = "apollonius.strategies"
 
@@ -72,18 +75,24 @@ def demand_name(name: str, role: str, where: str) -> None:
 
 def plugin_names() -> tuple[str, ...]:
     """Names that other distributions add."""
-    return tuple(sorted({point.name for point in entry_points(group=GROUP)}))
+    return tuple(sorted({point.name for point in _points()}))
 
 
 def plugins() -> list[tuple[str, str]]:
     """Names that other distributions add, with the distribution and its release."""
     found = {(point.name, f"{d.name} {d.version}" if (d := point.dist) else point.value)
-             for point in entry_points(group=GROUP)}  # fmt: skip
+             for point in _points()}  # fmt: skip
     return sorted(found)
 
 
+def _points() -> Iterable[EntryPoint]:
+    from importlib.metadata import entry_points  # it brings the parser of e-mails: for who needs it
+
+    return entry_points(group=GROUP)
+
+
 def _plugin(name: str, role: str, known: list[str]) -> Any:
-    points = [point for point in entry_points(group=GROUP) if point.name == name]
+    points = [point for point in _points() if point.name == name]
     if not points:
         names = [*known, *plugin_names()]
         words = f"{', '.join(names)}{nearest(name, names)}"

@@ -8,7 +8,6 @@ outputs are the action. `policy:FILE` names such a strategy.
 
 from __future__ import annotations
 
-import zipfile
 from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -64,6 +63,8 @@ def save(path: Path, policy: Policy) -> None:
 
 def load(path: Path) -> Policy:
     """Read a policy's file. Raises ConfigError that names the file, the key, what was found and expected."""
+    from zipfile import BadZipFile  # with five compressors: for who has a policy
+
     try:
         found = np.load(path, allow_pickle=False)
         if isinstance(found, np.ndarray):
@@ -72,7 +73,7 @@ def load(path: Path) -> Policy:
             content = {key: data[key] for key in data.files}
     except OSError as error:
         raise ConfigError(f"{path}: {(error.strerror or str(error)).lower()}") from None
-    except (ValueError, EOFError, KeyError, zipfile.BadZipFile) as error:
+    except (ValueError, EOFError, KeyError, BadZipFile) as error:
         raise ConfigError(f"{path}: found no policy, expected NumPy's .npz: {error}") from None
     read = _Reader(str(path), content)
     if read.number("format", 1, 1) != FORMAT:

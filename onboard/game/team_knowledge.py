@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from functools import cache
-from importlib.metadata import EntryPoint, entry_points
 from importlib.util import module_from_spec, spec_from_file_location
 from inspect import getsourcefile, unwrap
 from pathlib import Path
@@ -139,6 +138,8 @@ def _file(path: Path) -> Any:
 
 
 def _entry(name: str) -> Any:
+    from importlib.metadata import EntryPoint, entry_points  # it brings the parser of e-mails
+
     points: dict[str, EntryPoint] = {point.name: point for point in entry_points(group=GROUP)}
     if name not in points:
         names = ["plain", *sorted(points)]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import json
 import socket
-import tempfile
 from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -124,13 +123,14 @@ def _places(config: zenoh.Config) -> list[str]:
 
 def _context(config_file: Path) -> ssl.SSLContext:
     import ssl  # 5 MB that a process without keys does without
+    from tempfile import TemporaryDirectory
 
     tls = json.loads(config_file.read_text(encoding="utf-8"))["transport"]["link"]["tls"]
     root = base64.b64decode(tls["root_ca_certificate_base64"]).decode("ascii")
     context = ssl.create_default_context(cadata=root)
     if "connect_certificate_base64" not in tls:
         return context
-    with tempfile.TemporaryDirectory() as place:  # mode 0700; ssl takes its own keys from files alone
+    with TemporaryDirectory() as place:  # mode 0700; ssl takes its own keys from files alone
         pair = Path(place, "pair.pem")
         pair.touch(0o600)
         pair.write_bytes(

@@ -26,6 +26,7 @@ ALWAYS: dict[str, object] = {
     "connect/retry": {"period_init_ms": 500, "period_max_ms": 500, "period_increase_factor": 1},
     "connect/timeout_ms": 0,
     "connect/exit_on_failure": True,
+    "transport/shared_memory/enabled": False,  # payloads are bytes of this process; 0.3 MB
 }
 NO_SCOUTING: dict[str, object] = {"scouting/multicast/enabled": False, "scouting/gossip/enabled": False}
 

@@ -1,6 +1,7 @@
 """What an agent takes: memory, share of a core, start; and how soon its setpoint follows a position.
 
-Promises: at most 80 MB and 5 % of a core at 20 Hz in a game with five pursuers; started within 1.5 s;
+Promises: at most 66 MB (the evader, which learns five opponents, 70) and 5 % of a core at 20 Hz in a game
+with five pursuers; started within 1.5 s;
 from the position's datagram to the setpoint at most twice the median of a bare asyncio + pymavlink echo
 and less than MAVSDK's asyncio path, with signing at most 2.5 times the echo.
 `python -m tests.benchmarks.bench_agent`, or with pytest.
@@ -48,10 +49,12 @@ from tests.support.setpoint_stopwatch import Stopwatch
 GAME = "bench"
 EVADER, PURSUER = 21, 22  # beyond the numbered ports: other games may be played on this machine
 HEAVY = ("scipy", "control", "numba", "matplotlib", "pymavlink.mavutil")
+MEMORY_MB = {"pursuer": 66.0, "evader": 70.0}  # at most, resident, in flight
 SETTLE_S, LOOK_S = 3.0, 20.0
 ROUND_S, ROUNDS = 6.0, 3
 STAGED_S = 6.0  # the agent is there by then; on a busy machine at the second try
-ENV = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+ENV = {k: v for k, v in os.environ.items() if k != "PYTHONDONTWRITEBYTECODE"}  # compiled, as installed
+ENV |= {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 
 
 class Taken(NamedTuple):
@@ -352,7 +355,8 @@ def report() -> tuple[list[Taken], dict[str, float]]:
             for one in taken
         ),
         "",
-        "Promised: 1.5 s, 80 MB, 5 %. Started: the best of six. On its import path of "
+        f"Promised: 1.5 s, {MEMORY_MB['pursuer']:g} MB (the evader, which learns five opponents, "
+        f"{MEMORY_MB['evader']:g}), 5 %. Started: the best of six. On its import path of "
         f"{', '.join(HEAVY)}: {', '.join(heavy) or 'none'}.",
         "",
         "From a position's datagram to the setpoint it causes, stamped by the kernel; a pursuer among five,",
@@ -387,7 +391,7 @@ def test_an_agent_takes_what_was_promised() -> None:
     for one in taken:
         yardstick.cost(f"an agent's second in flight, {one.role}", one.core)
         yardstick.cost(f"an agent's start, {one.role}", one.start_cpu_s)
-        assert one.memory_later_mb <= 80.0, one
+        assert one.memory_later_mb <= MEMORY_MB[one.role], one
         assert one.start_s < 1.5, one
     assert taken[0].role == "pursuer"
     assert taken[0].core <= 0.05, taken[0]

@@ -7,6 +7,7 @@ checked by is enough.
 
 from __future__ import annotations
 
+from struct import Struct
 from typing import Any
 
 from onboard.wire.mavlink.dialect import KNOWN, dialect
@@ -17,16 +18,19 @@ NEEDED = READ | WRITTEN
 
 
 class _Outline:
-    """What `dialect.Layout` asks of a message's class."""
+    """What frames of a message are checked by. Its fields, which nobody asks for, stand as one."""
 
-    __slots__ = (
-        "array_lengths", "crc_extra", "fieldnames", "fieldtypes", "id", "lengths", "msgname",
-        "ordered_fieldnames", "orders", "unpacker",
-    )  # fmt: skip
+    __slots__ = ("crc_extra", "id", "msgname", "unpacker")
+    fieldnames = ordered_fieldnames = ("unread",)
+    fieldtypes = ("uint8_t",)
+    array_lengths = orders = (0,)
+    lengths = (1,)
 
     def __init__(self, kind: Any) -> None:
-        for name in self.__slots__:
-            setattr(self, name, getattr(kind, name))
+        self.crc_extra: int = kind.crc_extra
+        self.id: int = kind.id
+        self.msgname: str = kind.msgname
+        self.unpacker: Struct = kind.unpacker
 
 
 def let_go() -> None:

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import subprocess
 import sys
+from pathlib import Path
+
+import pytest
 
 from tests.support.paths import ROOT
 from tests.support.real_time import patience
@@ -94,3 +98,100 @@ def test_who_needs_openssl_later_has_it() -> None:
         stdout=subprocess.PIPE, env={**os.environ, "PYTHONPATH": str(ROOT)},
     ).stdout  # fmt: skip
     assert told.split() == ["CERT_REQUIRED", "2d711642", "c38edc88"]
+
+
+@pytest.mark.real
+@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
+def test_an_agent_as_it_is_started_has_no_openssl_in_its_memory() -> None:
+    """Whatever options are typed: what reads them imports half of the agent."""
+    command = [sys.executable, "-m", "onboard.cli", "--id", "7", "--role", "pursuer", "--game", "lean",
+               "--link", "udpin://127.0.0.1:0", "--bus", "tcp/127.0.0.1:1"]  # fmt: skip
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, cwd=ROOT) as process:
+        assert process.stderr is not None
+        for line in process.stderr:
+            if "started: pursuer 7" in line:
+                break
+        maps = Path(f"/proc/{process.pid}/maps").read_text("utf-8")
+        process.send_signal(signal.SIGTERM)
+        process.communicate(timeout=patience(5.0))
+    files = {Path(line.split()[-1]).name for line in maps.splitlines() if "/" in line}
+    assert any(name.startswith("zenoh") for name in files)
+    assert [name for name in files if name.startswith(("libcrypto", "libssl", "_ssl", "_hashlib"))] == []
+
+
+LOOP = """
+from onboard.agent.lean import lean
+lean()
+import asyncio, sys
+from onboard.runtime.fast_loop import loop_factory, loop_name
+
+class Echo(asyncio.DatagramProtocol):
+    def connection_made(self, transport): self.transport = transport
+    def datagram_received(self, data, address): self.transport.sendto(data.upper(), address)
+
+class Ask(asyncio.DatagramProtocol):
+    def __init__(self): self.heard = asyncio.get_running_loop().create_future()
+    def datagram_received(self, data, address): self.heard.set_result(data)
+
+async def main():
+    loop = asyncio.get_running_loop()
+    there, _ = await loop.create_datagram_endpoint(Echo, local_addr=("127.0.0.1", 0))
+    here, ask = await loop.create_datagram_endpoint(Ask, remote_addr=there.get_extra_info("sockname")[:2])
+    here.sendto(b"heard")
+    print(loop_name(loop), (await asyncio.wait_for(ask.heard, 10)).decode(), "ssl" in sys.modules)
+    import ssl
+    async with asyncio.timeout(10):
+        server = await asyncio.start_server(lambda r, w: None, "127.0.0.1", 0)
+        port = server.sockets[0].getsockname()[1]
+        try:
+            context = ssl.create_default_context()
+            await loop.create_connection(asyncio.Protocol, "127.0.0.1", port, ssl=context)
+        except (RuntimeError, TypeError, ValueError) as error:
+            print(type(error).__name__)
+
+with asyncio.Runner(loop_factory=loop_factory()) as runner:
+    runner.run(main())
+"""
+
+
+def test_the_loop_of_a_lean_process_moves_datagrams_and_refuses_tls() -> None:
+    pytest.importorskip("uvloop")
+    told = subprocess.run(
+        [sys.executable, "-c", LOOP], check=True, timeout=patience(40.0), cwd=ROOT, text=True,
+        stdout=subprocess.PIPE, env={**os.environ, "PYTHONPATH": str(ROOT)},
+    ).stdout.split()  # fmt: skip
+    assert told[:3] == ["uvloop", "HEARD", "False"]
+    assert told[3] in {"RuntimeError", "TypeError", "ValueError"}
+
+
+HINTS = """
+import sys
+import onboard.agent.program
+from typing import ForwardRef, get_type_hints
+from onboard.agent.lean import settle
+
+kinds = [kind for kind in tuple.__subclasses__() if kind.__module__.startswith("onboard.")]
+
+def hints(kind):
+    try:
+        return get_type_hints(kind)
+    except NameError as error:  # a type that is imported for checking alone
+        return str(error)
+
+before = {kind: hints(kind) for kind in kinds}
+count = sum(isinstance(one, ForwardRef) for kind in kinds for one in kind.__annotations__.values())
+settle()
+left = sum(isinstance(one, ForwardRef) for kind in kinds for one in kind.__annotations__.values())
+print(len(kinds), count, left, before == {kind: hints(kind) for kind in kinds})
+"""
+
+
+def test_named_tuples_tell_the_same_types_afterwards() -> None:
+    told = subprocess.run(
+        [sys.executable, "-c", HINTS], check=True, timeout=patience(40.0), cwd=ROOT, text=True,
+        stdout=subprocess.PIPE, env={**os.environ, "PYTHONPATH": str(ROOT)},
+    ).stdout.split()  # fmt: skip
+    assert int(told[0]) > 100
+    assert told[2:] == ["0", "True"]
+    if sys.version_info < (3, 14):
+        assert int(told[1]) > 300  # words of types that typing had compiled
