@@ -111,7 +111,7 @@ class ClockWatch:
 class Sample:
     """One place with its velocity, as north, east and down [m] of the first sample of its run."""
 
-    __slots__ = ("at", "down", "east", "north", "velocity")
+    __slots__ = ("at", "down", "east", "north", "velocity", "way_east", "way_north")
 
     def __init__(self, at: float, place: GlobalPosition, origin: GlobalPosition) -> None:
         self.at = at  # on the autopilot's clock [s]
@@ -120,6 +120,7 @@ class Sample:
         self.east = away * METRES * cos(radians(origin.latitude_deg))
         self.down = origin.altitude_m - place.altitude_m
         self.velocity = place.velocity
+        self.way_north = self.way_east = 0.0  # covered by the velocities since the first sample [m]
 
 
 class Track:
@@ -150,11 +151,13 @@ class Track:
         new, last = Sample(at, place, self._origin), samples[-1]
         dt = at - last.at
         v, u = new.velocity, last.velocity
-        north = new.north - last.north - 0.5 * (v.x + u.x) * dt
-        east = new.east - last.east - 0.5 * (v.y + u.y) * dt
+        way_north, way_east = 0.5 * (v.x + u.x) * dt, 0.5 * (v.y + u.y) * dt
+        north = new.north - last.north - way_north
+        east = new.east - last.east - way_east
         down = new.down - last.down - 0.5 * (v.z + u.z) * dt
         if hypot(north, east, down) > JUMP + JUMP_RATE * dt * dt:
             return "position_jump"
+        new.way_north, new.way_east = last.way_north + way_north, last.way_east + way_east
         samples.append(new)
         while len(samples) > 2 and at - samples[1].at >= WINDOW:
             samples.popleft()
@@ -163,24 +166,16 @@ class Track:
     def _frozen(self) -> bool:
         """Whether the place has stood still in any window that ends now while velocity has covered a way."""
         last = self._samples[-1]
-        after, (vx, vy, _) = last.at, last.velocity
-        north = east = 0.0
-        for sample in reversed(self._samples):
-            dt = after - sample.at
-            after, (ux, uy, _) = sample.at, sample.velocity
-            north += 0.5 * (ux + vx) * dt
-            east += 0.5 * (uy + vy) * dt
-            vx, vy = ux, uy
-            if last.at - after < LEAST:
-                continue
-            dn, de = last.north - sample.north, last.east - sample.east
-            if dn * dn + de * de > 2.0 * STILL * STILL * (north * north + east * east):
-                continue  # it has moved by more than that, whatever the rounding
-            covered = hypot(north, east)
-            if covered >= MOVED:
-                moved = hypot(last.north - sample.north, last.east - sample.east)
-                if moved < STILL * covered:
-                    return True
+        at, north, east = last.at, last.north, last.east
+        way_north, way_east = last.way_north, last.way_east
+        for sample in self._samples:
+            if at - sample.at < LEAST:
+                break
+            dn, de = north - sample.north, east - sample.east
+            wn, we = way_north - sample.way_north, way_east - sample.way_east
+            covered = wn * wn + we * we
+            if dn * dn + de * de < STILL * STILL * covered and covered >= MOVED * MOVED:
+                return True
         return False
 
 

@@ -45,13 +45,15 @@ class Closest(NamedTuple):
 
 def closest(a0: Vec, a1: Vec, b0: Vec, b1: Vec) -> Closest:
     """Closest approach of a (a0 → a1) and b (b0 → b1), without a root, and a division only within."""
-    r0 = sub(a0, b0)
-    x = a1.x - b1.x - r0.x
-    y = a1.y - b1.y - r0.y
-    z = a1.z - b1.z - r0.z
-    cc = r0.x * r0.x + r0.y * r0.y + r0.z * r0.z
+    rx = a0.x - b0.x
+    ry = a0.y - b0.y
+    rz = a0.z - b0.z
+    x = a1.x - b1.x - rx
+    y = a1.y - b1.y - ry
+    z = a1.z - b1.z - rz
+    cc = rx * rx + ry * ry + rz * rz
     aa = x * x + y * y + z * z
-    bb = r0.x * x + r0.y * y + r0.z * z
+    bb = rx * x + ry * y + rz * z
     when = 0.0
     if aa > TINY * TINY and bb < 0.0:
         when = 1.0 if -bb >= aa else -bb / aa

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 import threading
 from itertools import pairwise
 
@@ -12,7 +13,14 @@ from hypothesis import strategies as st
 
 from onboard.core.math.constants import NS_PER_S
 from onboard.runtime.clock import VirtualClock
-from onboard.runtime.loop import EPOCH_NS, VirtualLoop, VirtualTimeError, run_virtual, virtual_clock
+from onboard.runtime.loop import (
+    COLLECT_AFTER,
+    EPOCH_NS,
+    VirtualLoop,
+    VirtualTimeError,
+    run_virtual,
+    virtual_clock,
+)
 from tests.support.virtual_time import virtual
 
 
@@ -176,3 +184,19 @@ def test_an_exception_in_a_callback_ends_the_run() -> None:
 async def test_the_virtual_clock_is_not_to_be_had_on_a_real_loop() -> None:
     with pytest.raises(VirtualTimeError, match="not in virtual time"):
         virtual_clock()
+
+
+def test_the_search_for_garbage_is_as_it_was_after_a_run_and_after_one_that_failed() -> None:
+    before = gc.get_threshold(), gc.get_freeze_count(), gc.isenabled()
+    inside: list[tuple[int, bool]] = []
+
+    async def game(fails: bool) -> None:
+        inside.append((gc.get_threshold()[0], gc.get_freeze_count() > before[1]))
+        if fails:
+            raise RuntimeError("over")
+
+    run_virtual(game(False))
+    assert inside == [(COLLECT_AFTER, True)]
+    with pytest.raises(RuntimeError, match="over"):
+        run_virtual(game(True))
+    assert (gc.get_threshold(), gc.get_freeze_count(), gc.isenabled()) == before
