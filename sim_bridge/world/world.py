@@ -1,7 +1,8 @@
 """The world: simulated vehicles, each an autopilot, an airframe and its links, in one air.
 
 `World.step` is plain: give it the time and it moves everything on by whole physics steps, on the
-virtual loop and the real one alike. What arrives on a link is answered at once.
+virtual loop and the real one alike; autopilots that have nothing to do in a step are left alone. What
+arrives on a link is answered at once.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from onboard.game.scenario import Kind, Scenario, VehicleSpec
 from onboard.runtime.protocols import Clock, Link
 from sim_bridge.vehicle.autopilot.autopilot import Autopilot
 from sim_bridge.vehicle.autopilot.make import autopilot_for, options_of, parameter_names
-from sim_bridge.vehicle.motion import CALM, Airframe, Motion
+from sim_bridge.vehicle.motion import CALM, Air, Airframe, Demand, Motion
 from sim_bridge.world.staging import (
     Wind,
     airframe_of,
@@ -33,17 +34,73 @@ BEHIND_MAX = 50  # physics steps made up for in one call; beyond them time is lo
 
 
 class SimVehicle:
-    """One vehicle: what flies it, what moves it, and who hears it."""
+    """One vehicle: what flies it, what moves it, and who hears it.
+
+    Its autopilot is stepped where something is due for it or it was told something; in between the airframe
+    flies on under what was demanded last, and the autopilot makes up for those steps before anything else.
+    """
 
     def __init__(
         self, id: int, spec: VehicleSpec, autopilot: Autopilot, airframe: Airframe, links: Sequence[Link]
     ) -> None:
         self.id = id
         self.spec = spec
-        self.autopilot = autopilot
         self.airframe = airframe
         self.links = list(links)
         self.air = CALM
+        self._autopilot = autopilot
+        self._demand: Demand | None = None
+        self._rests_ns = 0  # before which its autopilot is not stepped
+        self._rested = 0  # steps that the autopilot rested through
+        self._seen = airframe.motion  # at the beginning of the last of them
+        self._at_ns = 0  # when that was
+        self._shown = False
+
+    @property
+    def autopilot(self) -> Autopilot:
+        """What flies it. Who has asked for it may look at any time: from then on it is stepped each time."""
+        self._shown = True
+        self._wake()
+        return self._autopilot
+
+    def move(self, now_ns: int, air: Air) -> None:
+        """One physics step."""
+        airframe, self.air = self.airframe, air
+        if now_ns < self._rests_ns and self._demand is not None:
+            self._rested += 1
+            self._seen, self._at_ns = airframe.motion, now_ns
+            airframe.step(self._demand, air, STEP_S)
+            return
+        if self._rested:
+            self._wake()
+        autopilot = self._autopilot
+        self._demand = demand = autopilot.step(now_ns, airframe.motion, air)
+        if not autopilot.landed:  # else it stands where it is
+            airframe.step(demand, air, STEP_S)
+        if not self._shown:
+            self._rests_ns = autopilot.rests_until()
+        if autopilot.speaks:
+            self._flush()
+
+    def hear(self, now_ns: int, data: bytes, peer: Hashable) -> None:
+        """Take a datagram, and answer it at once."""
+        self._wake()
+        self._autopilot.receive(now_ns, data, peer)
+        self._flush()
+
+    def _wake(self) -> None:
+        """Let the autopilot make up for what it rested through, and be stepped next time."""
+        self._rests_ns = 0
+        if self._rested:
+            steps, self._rested = self._rested, 0
+            self._autopilot.rested(steps, self._at_ns, self._seen, self.air)
+
+    def _flush(self) -> None:
+        frames = self._autopilot.outgoing()
+        if frames:
+            for link in self.links:
+                for frame in frames:
+                    link.send(frame)
 
 
 class World:
@@ -142,29 +199,10 @@ class World:
             now_ns = self.elapsed_ns
             now_s = now_ns / NS_PER_S
             for vehicle in self.vehicles.values():
-                self._move(vehicle, now_ns, now_s)
-
-    def _move(self, vehicle: SimVehicle, now_ns: int, now_s: float) -> None:
-        """One physics step: what the autopilot has to do beside steering, it does only when it is due."""
-        autopilot, airframe = vehicle.autopilot, vehicle.airframe
-        motion = airframe.motion
-        vehicle.air = air = self._wind(vehicle.id, motion, now_s)
-        demand = autopilot.step(now_ns, motion, air)
-        if not autopilot.landed:  # else it stands where it is
-            airframe.step(demand, air, STEP_S)
-        if autopilot.speaks:
-            self._flush(vehicle)
-
-    def _flush(self, vehicle: SimVehicle) -> None:
-        frames = vehicle.autopilot.outgoing()
-        if frames:
-            for link in vehicle.links:
-                for frame in frames:
-                    link.send(frame)
+                vehicle.move(now_ns, self._wind(vehicle.id, vehicle.airframe.motion, now_s))
 
     def _listen(self, vehicle: SimVehicle, link: Link, number: int) -> None:
         def arrived(data: bytes, peer: Hashable) -> None:
-            vehicle.autopilot.receive(self.elapsed_ns, data, (number, peer))
-            self._flush(vehicle)
+            vehicle.hear(self.elapsed_ns, data, (number, peer))
 
         link.receive(arrived)

@@ -21,7 +21,6 @@ from sim_bridge.vehicle.autopilot.command import ACCEPTED, FAILED, UNSUPPORTED, 
 from sim_bridge.vehicle.autopilot.commands import COMMANDS
 from sim_bridge.vehicle.autopilot.company import Company
 from sim_bridge.vehicle.autopilot.generations import REMOVED
-from sim_bridge.vehicle.autopilot.health import Fault, pack_voltage
 from sim_bridge.vehicle.autopilot.microservices import SERVICES
 from sim_bridge.vehicle.autopilot.resting import AWAKE, DELAYED, SETPOINTS
 from sim_bridge.vehicle.autopilot.setup import Setup
@@ -51,7 +50,6 @@ class Autopilot(AutopilotState):
         self._ground_station_ns = -1  # last heartbeat of the watched one; −1 = never
         self._any_station_ns = -1  # last heartbeat of any ground station; −1 = never
         self._heartbeat_ns = now_ns  # when the next one is due
-        self._rest_ns = AWAKE  # until when nothing is due, if nobody tells it anything
         self._rest_values = 0  # `changes` of the parameters then
         self._steady: Demand | None = None  # what it demands until then, where motion does not change it
         self.enter(now_ns, self.mode)
@@ -91,15 +89,25 @@ class Autopilot(AutopilotState):
             self._steady = demand if self.steady_until(now_ns) >= self._rest_ns else None
         return demand
 
+    def rests_until(self) -> int:
+        """The instant [ns] before which `step` would demand the same again and do nothing else, as long as
+        it is told nothing and nobody looks at it; 0: it is to be stepped. `rested` makes up for the steps."""
+        steady = self._steady is not None and self.armed and not self.landed
+        return self._rest_ns if steady and self.wind_filter.still else AWAKE
+
+    def rested(self, steps: int, now_ns: int, motion: Motion, air: Air) -> None:
+        """Make up for as many equal steps that it rested through, the last of them at `now_ns` [ns]."""
+        dt = (now_ns - self._last_step_ns) // steps * 1e-9
+        self._last_step_ns = now_ns
+        self.motion, self.air = motion, air
+        self.wind_filter.step(now_ns, motion, air, self.landed)
+        self.health.drain(dt, True, steps)
+
     def _steered(self, now_ns: int, dt: float) -> Demand:
         """What `guide` says now, kept where it will say the same until the end of the rest."""
         demand = self.guide(now_ns, dt)
         self._steady = demand if self.steady_until(now_ns) >= self._rest_ns else None
         return demand
-
-    def wake(self) -> None:
-        """Look at everything in the next step: something was done to the vehicle."""
-        self._rest_ns = AWAKE
 
     # ------------------------------------------------------------------ faults
 
@@ -128,29 +136,6 @@ class Autopilot(AutopilotState):
         self.wake()
         self.transmitter.choose(name)
         self._change(now_ns, self.modes[name])
-
-    def fail(self, fault: Fault, failed: bool = True) -> None:
-        """Make something fail, or recover."""
-        self.wake()
-        if failed:
-            self.health.faults.add(fault)
-        else:
-            self.health.faults.discard(fault)
-
-    def set_battery(self, share: float) -> None:
-        """Set the flight battery's charge, 0…1."""
-        self.wake()
-        self.health.battery = min(1.0, max(0.0, share))
-
-    def set_voltage(self, voltage: float) -> None:
-        """Let the flight battery's voltage drop to `voltage` [V] at its present charge."""
-        self.wake()
-        self.health.sag = max(0.0, pack_voltage(self.health.battery) - voltage)
-
-    def set_throttle(self, now_ns: int, throttle: float | None) -> None:
-        """Move the pilot's throttle stick, 0…1; None: the transmitter is no longer heard."""
-        self.wake()
-        self.transmitter.put(throttle, now_ns)
 
     # ------------------------------------------------------------------ the personality's side
 

@@ -62,10 +62,13 @@ class Health:
         self.faults: set[Fault] = set()
         self.drain_rate = 1.0 / battery_s  # [1/s] in flight
 
-    def drain(self, dt: float, flying: bool) -> None:
-        """Use the battery for `dt` seconds."""
+    def drain(self, dt: float, flying: bool, steps: int = 1) -> None:
+        """Use the battery for so many steps of `dt` seconds each."""
         share = 1.0 if flying else CURRENT_IDLE / CURRENT_FLYING
-        self.battery = max(0.0, self.battery - self.drain_rate * share * dt)
+        used, left = self.drain_rate * share * dt, self.battery
+        for _ in range(steps):
+            left -= used
+        self.battery = left if left > 0.0 else 0.0
 
     @property
     def voltage(self) -> float:

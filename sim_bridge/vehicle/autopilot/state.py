@@ -14,8 +14,9 @@ from onboard.core.math.vectors import Vec
 from onboard.game.scenario import Firmware
 from onboard.wire.geodesy import Frame, Geodetic
 from onboard.wire.mavlink.dialect import DialectSender, MavMessage, dialect
-from sim_bridge.vehicle.autopilot.health import Health
+from sim_bridge.vehicle.autopilot.health import Fault, Health, pack_voltage
 from sim_bridge.vehicle.autopilot.parameters import Parameters
+from sim_bridge.vehicle.autopilot.resting import AWAKE
 from sim_bridge.vehicle.autopilot.setup import Setup
 from sim_bridge.vehicle.autopilot.streams import Streams
 from sim_bridge.vehicle.autopilot.transmitter import Transmitter
@@ -61,6 +62,7 @@ class AutopilotState(ABC):
         self._last_step_ns = now_ns
         self._out: list[bytes] = []
         self._place: tuple[Vec, Geodetic] | None = None
+        self._rest_ns = AWAKE  # until when nothing is due, if nobody tells it anything
         self._boot(now_ns)
 
     def _boot(self, now_ns: int) -> None:
@@ -140,6 +142,35 @@ class AutopilotState(ABC):
         out = self._out
         self._out = []
         return out
+
+    # ------------------------------------------------------------------ what is done to the vehicle
+
+    def wake(self) -> None:
+        """Look at everything in the next step: something was done to the vehicle."""
+        self._rest_ns = AWAKE
+
+    def fail(self, fault: Fault, failed: bool = True) -> None:
+        """Make something fail, or recover."""
+        self.wake()
+        if failed:
+            self.health.faults.add(fault)
+        else:
+            self.health.faults.discard(fault)
+
+    def set_battery(self, share: float) -> None:
+        """Set the flight battery's charge, 0…1."""
+        self.wake()
+        self.health.battery = min(1.0, max(0.0, share))
+
+    def set_voltage(self, voltage: float) -> None:
+        """Let the flight battery's voltage drop to `voltage` [V] at its present charge."""
+        self.wake()
+        self.health.sag = max(0.0, pack_voltage(self.health.battery) - voltage)
+
+    def set_throttle(self, now_ns: int, throttle: float | None) -> None:
+        """Move the pilot's throttle stick, 0…1; None: the transmitter is no longer heard."""
+        self.wake()
+        self.transmitter.put(throttle, now_ns)
 
     # ------------------------------------------------------------------ what it knows
 

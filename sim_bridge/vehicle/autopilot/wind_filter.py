@@ -38,6 +38,11 @@ class WindFilter:
         self._due_ns = -1  # −1: not begun
         self._velocity = ZERO  # [m/s] at the last update
 
+    @property
+    def still(self) -> bool:
+        """Whether it knows the wind, and needs no steps for it."""
+        return self._errors is None
+
     def step(self, now_ns: int, motion: Motion, air: Air, landed: bool) -> None:
         """Take the vehicle's `motion`; of `air` an estimate knows nothing but what it starts with."""
         if self._errors is None:

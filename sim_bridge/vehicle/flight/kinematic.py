@@ -10,12 +10,12 @@ Deterministic: the same demands give the same motion to the last bit.
 
 from __future__ import annotations
 
-from math import asin, atan, cos, exp, radians, sin, sqrt, tan
+from math import asin, atan, atan2, cos, exp, radians, sin, sqrt, tan
 from typing import NamedTuple
 
 from onboard.core.math.angles import wrap
 from onboard.core.math.constants import STANDARD_GRAVITY
-from onboard.core.math.vectors import ZERO, Vec, add, along, clamp, norm, sub, yaw_of
+from onboard.core.math.vectors import ZERO, Vec, add, along, clamp, norm, sub
 from onboard.game.scenario import WINGED, Kind, VehicleSpec
 from sim_bridge.vehicle.flight.multicopter_wind import (
     DRAG,
@@ -75,38 +75,44 @@ class KinematicMulticopter:
         return self._motion
 
     def step(self, demand: Demand, air: Air, dt: float) -> Motion:
-        a = self._ability
-        old = self._motion
-        velocity, (sx, sy, _) = self._follow(demand, dt), self._still
-        self._still = velocity
-        ax, ay = (velocity.x - sx) / dt, (velocity.y - sy) / dt
-        moving = ZERO
-        if air is not CALM:
-            moving = Vec(air.wind.x + air.gust.x, air.wind.y + air.gust.y, air.wind.z + air.gust.z)
-        if moving != ZERO or (self._deviation is not STILL and self._deviation != STILL):
-            thrust = Vec(ax + DRAG * velocity.x, ay + DRAG * velocity.y, 0.0)
-            self._deviation = deviated(self._deviation, self._loop, moving, thrust, dt)
-            ax, ay = thrust.x + self._deviation.lean.x, thrust.y + self._deviation.lean.y
-            velocity = add(velocity, self._deviation.velocity)
-        x, y, z = velocity
-        at, (wx, wy, wz) = old.position, old.velocity
-        place = (at.x + 0.5 * (wx + x) * dt, at.y + 0.5 * (wy + y) * dt, at.z + 0.5 * (wz + z) * dt)
-        position = _new(Vec, place)
-        yaw, facing = old.yaw, demand.facing
-        led = self._still  # gusts turn no nose
-        if facing is None and led.x * led.x + led.y * led.y > MOVING * MOVING:
-            facing = yaw_of(led)
+        (px, py, pz), (ox, oy, oz), _, old_roll, old_pitch, yaw, _ = self._motion
+        sx, sy, _ = self._still
+        lx, ly, lz = self._still = led = self._follow(demand, dt)
+        ax, ay = (lx - sx) / dt, (ly - sy) / dt
+        x, y, z, mx, my, mz, velocity = lx, ly, lz, 0.0, 0.0, 0.0, led
+        if air is not CALM or self._deviation is not STILL:
+            (mx, my, mz), velocity, (ax, ay) = self._pushed(air, led, ax, ay, dt)
+            x, y, z = velocity
+        place = (px + 0.5 * (ox + x) * dt, py + 0.5 * (oy + y) * dt, pz + 0.5 * (oz + z) * dt)
+        turned, facing = 0.0, demand.facing
+        if facing is None and lx * lx + ly * ly > MOVING * MOVING:  # gusts turn no nose
+            facing = atan2(ly, lx)
         if facing is not None:
-            error = wrap(facing - old.yaw)
-            yaw = wrap(old.yaw + clamp(error, -a.turn_rate * dt, a.turn_rate * dt))
+            most = self._ability.turn_rate * dt
+            new = wrap(yaw + clamp(wrap(facing - yaw), -most, most))
+            yaw, turned = new, wrap(new - yaw)
         c, s = cos(yaw), sin(yaw)
         roll = atan((c * ay - s * ax) / STANDARD_GRAVITY)  # thrust leans into the acceleration
         pitch = -atan((c * ax + s * ay) / STANDARD_GRAVITY)
-        rates = _new(Vec, ((roll - old.roll) / dt, (pitch - old.pitch) / dt, wrap(yaw - old.yaw) / dt))
-        x, y, z = x - moving.x, y - moving.y, z - moving.z
-        moved = (position, velocity, sqrt(x * x + y * y + z * z), roll, pitch, yaw, rates)
+        rates = _new(Vec, ((roll - old_roll) / dt, (pitch - old_pitch) / dt, turned / dt))
+        x, y, z = x - mx, y - my, z - mz
+        moved = (_new(Vec, place), velocity, sqrt(x * x + y * y + z * z), roll, pitch, yaw, rates)
         self._motion = motion = _new(Motion, moved)
         return motion
+
+    def _pushed(
+        self, air: Air, led: Vec, ax: float, ay: float, dt: float
+    ) -> tuple[Vec, Vec, tuple[float, float]]:
+        """What moves about it [m/s], its velocity over ground in it, and the acceleration that it leans into
+        [m/s²], of what they would be in still air."""
+        moving, (gx, gy, gz) = air.wind, air.gust
+        moving = Vec(moving.x + gx, moving.y + gy, moving.z + gz)
+        if moving == ZERO and self._deviation == STILL:
+            return moving, led, (ax, ay)
+        thrust = Vec(ax + DRAG * led.x, ay + DRAG * led.y, 0.0)
+        self._deviation = deviated(self._deviation, self._loop, moving, thrust, dt)
+        lean = self._deviation.lean
+        return moving, add(led, self._deviation.velocity), (thrust.x + lean.x, thrust.y + lean.y)
 
     def _follow(self, demand: Demand, dt: float) -> Vec:
         """The velocity over ground [m/s; NED] a step on, as it would be in still air."""
@@ -117,12 +123,13 @@ class KinematicMulticopter:
         if speed > a.speed_max:
             k = a.speed_max / speed
             x, y, z = wanted = _new(Vec, (x * k, y * k, z * k))
-        x, y, z = x - still.x, y - still.y, z - still.z
+        sx, sy, sz = still
+        x, y, z = x - sx, y - sy, z - sz
         size = sqrt(x * x + y * y + z * z)
         most = a.acceleration * dt
         if size <= most:
             return wanted
-        return _new(Vec, (still.x + x * most / size, still.y + y * most / size, still.z + z * most / size))
+        return _new(Vec, (sx + x * most / size, sy + y * most / size, sz + z * most / size))
 
     @property
     def wind_estimate(self) -> Vec:
