@@ -53,6 +53,7 @@ BLANK: dict[type, Value] = {
     RcChannels: RcChannels(()),
 }
 NOTHING: dict[type, tuple[float, int, Any]] = {kind: (NEVER, 0, value) for kind, value in BLANK.items()}
+_STAMPED = (GlobalPosition, Attitude)  # with the instant that they are of, on the autopilot's clock
 _WEIGHED = {EkfStatus, GpsFix, Battery, SysStatus}  # of which the last few are judged together
 
 
@@ -89,27 +90,28 @@ class Observer:
         value = packet.value
         if value is None:
             return None
+        kind, sequence = type(value), packet.sequence
         if isinstance(value, Heartbeat) and value.kind is Kind.UNKNOWN and value.autopilot == 8:
             return None  # MAV_AUTOPILOT_INVALID: the sender is no autopilot
-        kept = self._latest.get(type(value))
-        late = kept is not None and now - kept[0] < OLD and (packet.sequence - kept[1]) % 256 > 128
+        kept = self._latest.get(kind)
+        late = kept is not None and now - kept[0] < OLD and (sequence - kept[1]) % 256 > 128
         if late and kept is not None and kept[1] != NO_NUMBER:
-            if isinstance(value, (GlobalPosition, Attitude)):
+            if isinstance(value, _STAMPED):
                 self._clock.passed_over(now, value.time_boot_s)
             return None
-        if isinstance(value, Home):
-            self.home = value
-        if isinstance(value, (GlobalPosition, Attitude)) and not self._timely(now, value):
-            return None
-        if isinstance(value, GlobalPosition):
-            doubt = self._places.judge(value)
+        if isinstance(value, _STAMPED):
+            if not self._timely(now, value):
+                return None
+            doubt = self._places.judge(value) if isinstance(value, GlobalPosition) else ""
             if doubt:
                 self.odd[doubt] += 1
                 self._age(now, doubt)
                 return None
-        if type(value) in _WEIGHED:
+        elif kind in _WEIGHED:
             self._weigh(now, value)
-        self._latest[type(value)] = (now, packet.sequence, value)
+        elif isinstance(value, Home):
+            self.home = value
+        self._latest[kind] = (now, sequence, value)
         return value
 
     @property

@@ -15,7 +15,9 @@ from onboard.core.game.advance import EvaderStrategy, PursuerStrategy
 from onboard.core.game.rules import NO_TARGET, Target
 from onboard.core.game.targets import NONE, at, chosen
 from onboard.core.game.views import (
+    NOTHING_HELD,
     EvaderView,
+    Held,
     PursuerView,
     Sighting,
     Team,
@@ -31,7 +33,7 @@ from onboard.core.geometry.apollonius import apollonius_sphere
 from onboard.core.geometry.assessment import half_angle
 from onboard.core.geometry.cones import blocked_cones
 from onboard.core.math.states import Mate, Vehicle
-from onboard.core.math.vectors import ZERO, Vec, add, along, clamp, scale, sub
+from onboard.core.math.vectors import ZERO, Vec, add, along, clamp, scale
 from onboard.core.strategy.choosing import held_after
 from onboard.core.strategy.keep_out import KEEPS_OUT, evader_keeps_out, pursuer_keeps_out
 from onboard.core.strategy.knowledge import Decision, Level, Module, level_of
@@ -136,7 +138,7 @@ class Viewpoint:
             return self._silent(own, ("a place in the roster",))
         planar = setup.rules.planar
         wind = level(own.wind, planar)
-        seen = Vehicle(level(own.position, planar), sub(level(own.velocity, planar), wind), me.speed)
+        seen = Vehicle(level(own.position, planar), _through_air(own.velocity, wind, planar), me.speed)
         known: list[tuple[Player, Prediction]] = []
         lacks: list[str] = []
         after = self._opponents(now, own, mates, setup, memory)
@@ -160,10 +162,11 @@ class Viewpoint:
         else:
             later = memory.predict(known[0][0].id, now + setup.control.lookahead)
             sighting = _sighting(others[0], later, wind, setup)
-            team = self._team(seen, mates, wind, setup)._replace(nose=level(own.nose, planar), part=self.part)
+            held = NOTHING_HELD
             if self._last is not None and now - self._last_at <= REMEMBERS:
                 rule, aim, time = self._last.rule, self._last.aim, self._last.time
-                team = team._replace(held=held_after(rule, aim, time, now - self._last_at, wind))
+                held = held_after(rule, aim, time, now - self._last_at, wind)
+            team = self._team(seen, mates, wind, setup, held, level(own.nose, planar))
             view = pursuer_view(seen, me.limits, sighting, team, setup.control, setup.rules)
         self._asked_at = now
         sigma = inf if lacks else worst.sigma
@@ -190,25 +193,26 @@ class Viewpoint:
             return at(goals, self._aim)
         return goals[0] if goals else NO_TARGET
 
-    def _team(self, seen: Vehicle, mates: tuple[Mate, ...], wind: Vec, setup: GameSetup) -> Team:
+    def _team(
+        self, seen: Vehicle, mates: tuple[Mate, ...], wind: Vec, setup: GameSetup, held: Held, nose: Vec
+    ) -> Team:
         """The own side in the moving air; who declares no speed counts as fast as this vehicle."""
         planar = setup.rules.planar
         members, places = [seen], [seen.position]
         hunt = self.hunt
         for mate in mates:
-            player = setup.player(mate.id)
-            if mate.id != self.id:
-                places.append(level(mate.position, planar))
-            if mate.id != self.id and (hunt is None or mate.id in hunt.together):
+            if mate.id == self.id:
+                continue
+            place = level(mate.position, planar)
+            places.append(place)
+            if hunt is None or mate.id in hunt.together:
+                player = setup.player(mate.id)
                 speed = player.speed if player is not None and player.speed > 0.0 else seen.speed
-                velocity = sub(level(mate.velocity, planar), wind)
-                members.append(Vehicle(level(mate.position, planar), velocity, speed))
+                members.append(Vehicle(place, _through_air(mate.velocity, wind, planar), speed))
         target = setup.target if hunt is None else hunt.target_of(hunt.quarry, setup)
-        target = target._replace(position=level(target.position, planar))
-        return Team(
-            nearest_mate(seen.position, tuple(places), 0), tuple(members), 0, told(target, setup.rules),
-            wind=wind,
-        )
+        known = told(Target(target.exists, level(target.position, planar)), setup.rules)
+        mate_near = nearest_mate(seen.position, tuple(places), 0)
+        return Team(mate_near, tuple(members), 0, known, held, self.part, nose, wind)
 
     def conclude(self, question: Question, decision: Decision, setup: GameSetup) -> PilotDecision:
         """The strategy's answer to a question, with everything a person needs to see why."""
@@ -287,11 +291,16 @@ class Pilot(Viewpoint):
         return self.conclude(question, decision, setup)
 
 
+def _through_air(velocity: Vec, wind: Vec, planar: bool) -> Vec:
+    """A velocity over ground [m/s] through air that moves with `wind` [m/s], as the game counts it."""
+    return Vec(velocity.x - wind.x, velocity.y - wind.y, (0.0 if planar else velocity.z) - wind.z)
+
+
 def _opponent(
     player: Player, p: Prediction, now: float, wind: Vec, planar: bool, memory: Memory
 ) -> Vehicle:
     """An opponent in the moving air, as fast as it is declared to be or was ever seen to fly."""
-    velocity = sub(level(p.velocity, planar), wind)
+    velocity = _through_air(p.velocity, wind, planar)
     speed = player.speed if player.speed > 0.0 else memory.top_speed(player.id, now, velocity)
     return Vehicle(level(p.position, planar), velocity, speed)
 

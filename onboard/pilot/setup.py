@@ -63,7 +63,10 @@ class GameSetup(NamedTuple):
 
     def player(self, id: int) -> Player | None:
         """The roster's entry of a vehicle."""
-        return next((player for player in self.roster if player.id == id), None)
+        for player in self.roster:
+            if player.id == id:
+                return player
+        return None
 
     def opponents(self, side: Side) -> tuple[Player, ...]:
         """Everybody on the other side."""

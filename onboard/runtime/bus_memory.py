@@ -307,28 +307,27 @@ class MemoryBus:
 
     def _hand(self, listeners: tuple[Listener, ...], parcel: Parcel) -> None:
         """Bring a parcel to own listeners, through the impairment: all of them hear it, or none."""
-        self._delivery.bring(parcel.delivery, parcel.sample.payload, partial(self._admit, listeners, parcel))
+        self._delivery.bring(parcel.delivery, parcel.sample.payload, partial(self._came, listeners, parcel))
 
-    def _admit(
-        self, listeners: tuple[Listener, ...], parcel: Parcel, payload: bytes, now: float | None = None
-    ) -> None:
-        """Let own listeners hear what came of a parcel, within the bounds; `now` [s] is the loop's time."""
-        sample = parcel.sample
-        if now is None:
-            now = asyncio.get_running_loop().time()
-        if payload is not sample.payload:
-            sample = Sample(sample.key, payload)
-        if self._limit.admits(sample.key, len(payload), now):
+    def _came(self, listeners: tuple[Listener, ...], parcel: Parcel, payload: bytes) -> None:
+        """Let own listeners hear what came of a parcel through the impairment."""
+        sample = Sample(parcel.sample.key, payload)
+        self._admit(listeners, parcel, sample, asyncio.get_running_loop().time())
+
+    def _admit(self, listeners: tuple[Listener, ...], parcel: Parcel, sample: Sample, now: float) -> None:
+        """Let own listeners hear a sample, within the bounds; `now` [s] is the loop's time."""
+        key, payload = sample
+        if self._limit.admits(key, len(payload), now):
             if self._later:
-                self._later.pop((sample.key, parcel.source[0]), None)
+                self._later.pop((key, parcel.source[0]), None)
             self._arrived(listeners, parcel, sample)
         elif parcel.delivery is Delivery.LATEST and len(payload) <= PAYLOAD_MAX:
             if not self._later:  # the newest of a flood counts, but not every one of them
                 asyncio.get_running_loop().call_later(LATER_S, self._take_later)
-            self._later[sample.key, parcel.source[0]] = partial(self._arrived, listeners, parcel, sample)
+            self._later[key, parcel.source[0]] = partial(self._arrived, listeners, parcel, sample)
 
     def _arrived(self, listeners: tuple[Listener, ...], parcel: Parcel, sample: Sample) -> None:
-        number, source = parcel.number, parcel.source
+        _, _, source, number = parcel
         for listener in listeners:
             if not self._online or not listener.open:
                 continue
@@ -363,11 +362,11 @@ class MemoryBus:
 
 def _arrive(hearers: list[tuple[MemoryBus, tuple[Listener, ...]]], parcel: Parcel) -> None:
     """A parcel arrives at connections without an impairment, one after the other."""
-    payload, now = parcel.sample.payload, asyncio.get_running_loop().time()
+    sample, now = parcel.sample, asyncio.get_running_loop().time()
     for number, (bus, listeners) in enumerate(hearers, 1):
-        bus._delivery.end()
+        bus._delivery.under_way -= 1
         try:
-            bus._admit(listeners, parcel, payload, now)
+            bus._admit(listeners, parcel, sample, now)
         except BaseException:  # one hearer's fault is not the others'
             if hearers[number:]:
                 asyncio.get_running_loop().call_soon(_arrive, hearers[number:], parcel)

@@ -91,7 +91,8 @@ class BusLimit:
         if size > PAYLOAD_MAX:
             self._limit.limited["payload"] += 1
             return False
-        kind, rate, bucket = self._known.get(key) or self._bound(key, now)
+        known = self._known.get(key)
+        kind, rate, bucket = self._bound(key, now) if known is None else known
         if bucket.admits(rate, now):
             return True
         self._limit.limited[kind] += 1

@@ -49,7 +49,7 @@ class Heard:
 
     def __init__(self, state: State, at: float) -> None:
         self.state = state
-        self.at = at  # monotonic [s]
+        self.mate = MateState(state.id, at, Vec(*state.position), Vec(*state.velocity))  # monotonic [s]
 
 
 class BusView:
@@ -166,10 +166,7 @@ class BusView:
         The strategy and the supervisor are both given this one result."""
         if now != self._mates_at:
             self._mates_at = now
-            self._mates = tuple(
-                carried(MateState(id, heard.at, Vec(*heard.state.position), Vec(*heard.state.velocity)), now)
-                for id, heard in self.mates.items()
-            )
+            self._mates = tuple([carried(heard.mate, now) for heard in self.mates.values()])
         return self._mates
 
     @property

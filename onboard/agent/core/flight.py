@@ -137,25 +137,24 @@ class Flight:
     def _ask(self, now: Instant, t: Telemetry) -> Think | None:
         own = own_state(now.s, t, hovers=self.vehicle.hovers is not False)
         self._number += 1
-        step = OpenStep(self._number, now, t, own.wind, None)
         foreseen = self.ahead.take(now.s)
         self.ahead.stepped(now)
         if foreseen is not None:
             self.decision = foreseen.decision
-            self._complete(step, foreseen.age, "")
+            self._complete(OpenStep(self._number, now, t, own.wind, None), foreseen.age, "")
             self._alive_at = foreseen.made
             return None
         try:
             asked = self.part.ask(now, own)
         except Exception as trouble:  # an error of thinking must not end the flight: the supervisor acts
-            self._complete(step, 0.0, named(trouble))
+            self._complete(OpenStep(self._number, now, t, own.wind, None), 0.0, named(trouble))
             return None
         if isinstance(asked, PilotDecision):
             self.decision = asked
-            self._complete(step, 0.0, "")
+            self._complete(OpenStep(self._number, now, t, own.wind, None), 0.0, "")
             return None
-        self.open = OpenStep(step.number, now, t, own.wind, asked)
-        return Think(step.number, self.part.side, self.part.strategy, asked.view)
+        self.open = OpenStep(self._number, now, t, own.wind, asked)
+        return Think(self._number, self.part.side, self.part.strategy, asked.view)
 
     def look_ahead(self, now: Instant) -> Think | None:
         """Ask the strategy for the next step, before its position has come."""
@@ -166,19 +165,15 @@ class Flight:
     def _complete(self, step: OpenStep, took_s: float, error: str) -> None:
         """Supervise what was decided, and command it. `took_s`: how long the strategy took [s]."""
         now, t = step.begun.s, step.telemetry
-        if error:
-            self.failures += 1
-            if not self._failing:
-                self._journal.error("strategy", error)
-        else:
+        self.failures += bool(error)
+        if error and not self._failing:
+            self._journal.error("strategy", error)
+        if not error:
             self._alive_at = now + took_s
         self._failing = bool(error)
         decision = self.decision
-        seen = self._input(now, t)._replace(
-            wind=step.wind,
-            strategy_age=max(took_s, now - self._alive_at),
-            track_sigma=decision.sigma if decision is not None else inf,
-        )
+        age, sigma = max(took_s, now - self._alive_at), inf if decision is None else decision.sigma
+        seen = self._input(now, t, step.wind, age, sigma)
         wanted = decision.velocity if decision is not None and decision.decides else ZERO
         self.wanted = reachable(wanted, seen, self._thresholds(), self._state)
         self._judge(self.wanted, seen)
@@ -214,8 +209,10 @@ class Flight:
         self.ending, self.open = True, None
         self._judge(ZERO, self._input(now, self.vehicle.look(now)))
 
-    def _input(self, now: float, t: Telemetry) -> SupervisorInput:
-        """What the supervisor looks at, but for what belongs to a decision."""
+    def _input(
+        self, now: float, t: Telemetry, wind: Vec = ZERO, age: float = 0.0, sigma: float = 0.0
+    ) -> SupervisorInput:
+        """What the supervisor looks at; wind, age and error of the track [m] belong to a decision."""
         return SupervisorInput(
             now=now,
             id=self.config.id,
@@ -232,6 +229,9 @@ class Flight:
             pilot=self.vehicle.stage is Stage.TAKEN and not self.hands.given(now),
             failsafe=self.vehicle.by_failsafe,
             order=max(self._orders.order, Action.HOLD) if self.ending else self._orders.order,
+            wind=wind,
+            strategy_age=age,
+            track_sigma=sigma,
         )
 
     @property

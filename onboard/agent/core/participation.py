@@ -70,4 +70,4 @@ class Participation:
 
 def is_out(phase: PhaseChange, id: int) -> bool:
     """Whether a vehicle is an evader whose game is over."""
-    return any(end.id == id for end in phase.out)
+    return bool(phase.out) and any(end.id == id for end in phase.out)  # asked often, nearly always of nobody

@@ -109,7 +109,7 @@ def supervise(wanted: Vec, seen: SupervisorInput, policy: Policy, state: Supervi
         return SupervisorOutput(
             after.action, after.cause, command, False, ZERO, ZERO, after, changed, seen.now, wind
         )
-    after = after._replace(demand=allowed.air, stamp=seen.now)
+    after = SupervisorState(*after[:-2], allowed.air, seen.now)
     ground = add(allowed.air, wind)
     command = Command.STREAM
     return SupervisorOutput(
@@ -199,14 +199,8 @@ def advance(state: SupervisorState, demand: HealthAction, now: float, settle: fl
         cause = state.cause  # one event for a clip of many reasons, not one a step
         named = state.named
     since = state.since if action == state.action and cause == state.cause else now
-    return state._replace(
-        action=action,
-        cause=cause,
-        since=since,
-        urged=urged,
-        named=named,
-        floor=floor,
-        floor_cause=floor_cause,
+    return SupervisorState(
+        action, cause, since, urged, named, floor, floor_cause, state.demand, state.stamp
     )
 
 
