@@ -291,6 +291,8 @@ class Agent:
             return
         self._arrived_ns = now_ns
         self.feed(LinkBytes(index, port.number(peer), data))
+        if self._arrived_ns == 0:  # a control step is done: until the next one nothing is more urgent
+            self.bus.look()
         self._arrived_ns = 0
 
     def _admits(self, index: int, data: bytes, autopilot: bool, now: float) -> bool:
@@ -336,6 +338,7 @@ class Agent:
     def _beat(self, effect: Beat) -> None:
         if self._arrived_ns:
             self.timing.answered(self.clock.monotonic_ns() - self._arrived_ns)
+            self._arrived_ns = 0
         if self._equipment.beat is not None:
             self._equipment.beat()
 

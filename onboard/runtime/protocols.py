@@ -80,6 +80,10 @@ class Bus(Protocol):
         LATEST key; with `every` it gets all of them, for who records."""
         ...
 
+    def look(self) -> None:
+        """The loop is awake anyway: take next what has come. It is taken in time without this, too."""
+        ...
+
     def serve(self, key: str, handler: Callable[[bytes], bytes]) -> Subscription:
         """Answer requests on `key`."""
         ...

@@ -198,6 +198,10 @@ class ZenohBus:
 
         return self._declare(declare, partial(self._streams.detach, stream))
 
+    def look(self) -> None:
+        """The loop is awake anyway: it takes next what has come."""
+        self._streams.soon()
+
     def serve(self, key: str, handler: Callable[[bytes], bytes]) -> Subscription:
         """Answer requests on `key`; the handler runs on the loop."""
 

@@ -73,6 +73,28 @@ def test_a_message_waits_for_the_next_look_and_no_longer() -> None:
     run_virtual(play())
 
 
+def test_a_loop_that_is_awake_looks_next_and_then_not_for_a_while() -> None:
+    async def play() -> None:
+        played = Played()
+        begun = played.loop.time()
+        for number in range(100):  # a control step every 20 ms, as a position comes
+            played.channel.append(put(STATE.key(GAME, 1 + number), b"x"))
+            played.streams.soon()
+            played.streams.soon()
+            assert len(played.heard) == number  # what the loop is at comes first
+            await asyncio.sleep(0.02)
+            assert [at - begun for at, _ in played.heard[number:]] == [pytest.approx(0.02 * number)]
+        assert played.streams.looks == 100  # no look between two steps
+        await asyncio.sleep(1.0)
+        assert played.streams.looks == pytest.approx(100 + 1.0 / LOOK_S, abs=2)
+        played.streams.detach(played.stream)
+        played.streams.soon()
+        await asyncio.sleep(0.1)
+        assert played.streams.looks <= 102 + 1.0 / LOOK_S
+
+    run_virtual(play())
+
+
 def test_the_newest_of_a_key_is_heard_and_the_rest_is_counted_but_who_records_hears_all() -> None:
     async def play(every: bool) -> Played:
         played = Played(every=every)
