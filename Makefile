@@ -48,7 +48,7 @@ demo: install
 	@$(BIN)/sim-bridge planar
 	@echo
 	@log=$$(mktemp); nice $(BIN)/sim-bridge planar --figures figures > "$$log" 2>&1 & drawing=$$!; \
-	  $(BIN)/sim-bridge fly demo && { wait $$drawing || { cat "$$log"; exit 1; }; }
+	  $(BIN)/sim-bridge fly first && { wait $$drawing || { cat "$$log"; exit 1; }; }
 	@echo
 	@echo "figures of the plane games are in figures/. What to try next:"
 	@echo "  $(BIN)/sim-bridge fly --fast one-on-one      the same in a few seconds, on virtual time"

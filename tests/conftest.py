@@ -24,6 +24,18 @@ settings.register_profile("long", deadline=None, print_blob=True)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "ci"))
 
 
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """What may take longer than usual begins first: no worker is left with it alone at the end, and kernels
+    that several tests need are compiled before another worker waits for them."""
+    usual_s = float(config.getini("timeout"))
+
+    def short(item: pytest.Item) -> bool:
+        own = item.get_closest_marker("timeout")
+        return own is None or float(own.args[0]) <= usual_s
+
+    items.sort(key=short)  # otherwise as they were
+
+
 @pytest.hookimpl(wrapper=True, tryfirst=True)
 def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, object, object]:
     """Give the test its time limit times the slowness of the machine, before the limit begins to run."""

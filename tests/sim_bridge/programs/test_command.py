@@ -125,7 +125,7 @@ def test_every_shipped_scenario_loads_and_can_be_told_of(path: Path) -> None:
 
 def test_the_scenarios_people_are_promised_are_shipped() -> None:
     names = {path.stem for path in SHIPPED}
-    assert {"demo", "one-on-one", "slower-evader", "heavy-loss", "five", "six", "row01"} <= names
+    assert {"first", "demo", "one-on-one", "slower-evader", "heavy-loss", "five", "six", "row01"} <= names
 
 
 def test_who_reads_encircled_reads_that_it_is_no_proof_of_capture(tmp_path: Path) -> None:
