@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from onboard.game.odds import engagement_of, lines
+from onboard.game.go_or_no_go import engagement_of, lines
 from onboard.game.scenario import load
 from onboard.runtime.resources import SCENARIOS, shipped_file
 from tests.support.paths import ROOT
