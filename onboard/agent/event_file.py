@@ -51,8 +51,8 @@ SCHEMA = 1
 SUFFIX = ".events"
 CHUNK = 64 * 1024  # bytes collected before they are handed to the disk
 FLUSH_S = 1.0  # and for how long at most
+TOGETHER = 64  # records that are encoded in one go
 _LENGTH = Struct("<I")
-_ROOM = bytes(_LENGTH.size)
 RECORD_MAX = 16 * 1024 * 1024
 
 
@@ -189,26 +189,33 @@ class EventFile:
         self._sink = sink
         self._limit = limit
         self._size = 0
-        self._buffer = bytearray()
+        self._records: list[Record] = []  # not encoded yet
+        self._pieces: list[bytes] = []  # of encoded ones, not handed to the disk yet
+        self._waiting = 0  # bytes of them
         self._flushed = 0.0
         self._encoder = msgspec.msgpack.Encoder()
         self._missing = 0  # chunks lost since the last one that was taken
 
     def begin(self, config: AgentConfig, facts: Facts) -> None:
         """Write the head."""
-        self._add(Head(SCHEMA, config, facts))
+        self._records.append(Head(SCHEMA, config, facts))
 
     def add(self, now: Instant, event: AnyEvent, effects: Sequence[AnyEffect]) -> None:
         """Record an event and its effects."""
         if self.full:
             return
-        self._add(Happened(now, event, recorded(effects) if effects else ()))
-        if len(self._buffer) >= CHUNK or now.s - self._flushed >= FLUSH_S:
+        records = self._records
+        records.append(Happened(now, event, recorded(effects) if effects else ()))
+        if len(records) < TOGETHER and now.s - self._flushed < FLUSH_S:
+            return
+        self._encode()
+        if self.full or self._waiting >= CHUNK or now.s - self._flushed >= FLUSH_S:
             self._flushed = now.s
             self._flush()
 
     def close(self) -> None:
         """Write what is left and close."""
+        self._encode()
         self._flush()
         self._sink.close()
 
@@ -216,29 +223,33 @@ class EventFile:
         """For a health report."""
         return {"events_unrecorded": self.lost, "events_file_full": int(self.full)}
 
-    def _add(self, record: Record) -> None:
-        buffer = self._buffer
-        begin = len(buffer)
-        buffer += _ROOM
-        self._encoder.encode_into(record, buffer, begin + 4)
-        size = len(buffer) - begin
-        if self._size + size > self._limit and not self.full:
-            del buffer[begin:]
-            self.full = True
-            self._add(Full(self._limit))
-            self._flush()
-            return
-        self._size += size
-        _LENGTH.pack_into(buffer, begin, size - 4)
+    def _encode(self) -> None:
+        """Encode what happened since the last time; beyond the limit nothing but that it is reached."""
+        encode, pieces = self._encoder.encode, self._pieces
+        records, self._records = self._records, []
+        for record in records:
+            data = encode(record)
+            size = _LENGTH.size + len(data)
+            if self._size + size > self._limit:
+                self.full = True
+                data = encode(Full(self._limit))
+                size = _LENGTH.size + len(data)
+            self._size += size
+            self._waiting += size
+            pieces.append(_LENGTH.pack(size - _LENGTH.size))
+            pieces.append(data)
+            if self.full:
+                break
 
     def _flush(self) -> None:
-        if not self._buffer:
+        if not self._pieces:
             return
-        chunk = bytes(self._buffer)
-        self._buffer.clear()
+        chunk = b"".join(self._pieces)
+        self._pieces.clear()
+        self._waiting = 0
         if self._missing:
             mark = self._encoder.encode(Lost(self._missing))
-            chunk = len(mark).to_bytes(4, "little") + mark + chunk
+            chunk = _LENGTH.pack(len(mark)) + mark + chunk
         if self._sink.put(chunk):
             self._missing = 0
         else:

@@ -113,11 +113,12 @@ class Sample:
 
     __slots__ = ("at", "down", "east", "north", "velocity", "way_east", "way_north")
 
-    def __init__(self, at: float, place: GlobalPosition, origin: GlobalPosition) -> None:
+    def __init__(self, at: float, place: GlobalPosition, origin: GlobalPosition, narrow: float) -> None:
+        """`narrow`: the cosine of the origin's latitude."""
         self.at = at  # on the autopilot's clock [s]
         self.north = (place.latitude_deg - origin.latitude_deg) * METRES
         away = (place.longitude_deg - origin.longitude_deg + 180.0) % 360.0 - 180.0
-        self.east = away * METRES * cos(radians(origin.latitude_deg))
+        self.east = away * METRES * narrow
         self.down = origin.altitude_m - place.altitude_m
         self.velocity = place.velocity
         self.way_north = self.way_east = 0.0  # covered by the velocities since the first sample [m]
@@ -128,6 +129,7 @@ class Track:
 
     def __init__(self) -> None:
         self._origin: GlobalPosition | None = None
+        self._narrow = 1.0
         self._samples: deque[Sample] = deque()
         self.since = NEVER  # when the run of samples that fit began [s, the autopilot's clock]
 
@@ -137,9 +139,9 @@ class Track:
 
     def restart(self, at: float, place: GlobalPosition) -> None:
         """Begin with one sample, compared with nothing."""
-        self._origin = place
+        self._origin, self._narrow = place, cos(radians(place.latitude_deg))
         self._samples.clear()
-        self._samples.append(Sample(at, place, place))
+        self._samples.append(Sample(at, place, place, self._narrow))
         self.since = at
 
     def fault(self, at: float, place: GlobalPosition) -> str:
@@ -148,7 +150,7 @@ class Track:
         if not samples or self._origin is None or not 0.0 <= at - samples[-1].at <= GAP:
             self.restart(at, place)
             return ""
-        new, last = Sample(at, place, self._origin), samples[-1]
+        new, last = Sample(at, place, self._origin, self._narrow), samples[-1]
         dt = at - last.at
         v, u = new.velocity, last.velocity
         way_north, way_east = 0.5 * (v.x + u.x) * dt, 0.5 * (v.y + u.y) * dt

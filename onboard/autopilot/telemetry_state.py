@@ -53,6 +53,7 @@ BLANK: dict[type, Value] = {
     RcChannels: RcChannels(()),
 }
 NOTHING: dict[type, tuple[float, int, Any]] = {kind: (NEVER, 0, value) for kind, value in BLANK.items()}
+_new = tuple.__new__
 _STAMPED = (GlobalPosition, Attitude)  # with the instant that they are of, on the autopilot's clock
 _WEIGHED = {EkfStatus, GpsFix, Battery, SysStatus}  # of which the last few are judged together
 
@@ -181,48 +182,19 @@ class Observer:
         sticks_at, _, sticks = heard(RcChannels) or NOTHING[RcChannels]
         where = (place.latitude_deg, place.longitude_deg, place.altitude_m)
         placed = self.frame is not None and place_at != NEVER
-        return Telemetry(
-            kind=heart.kind,
-            mode=heart.mode,
-            armed=heart.armed,
-            heartbeat_at=heart_at,
-            status=heart.status,
-            time_boot_s=self._clock.boot_s,
-            latitude_deg=place.latitude_deg,
-            longitude_deg=place.longitude_deg,
-            altitude_m=place.altitude_m,
-            above_home_m=place.above_home_m,
-            position=self.frame.ned_from_geodetic(*where) if self.frame is not None and placed else ZERO,
-            placed=placed,
-            velocity=place.velocity,
-            position_at=place_at,
-            roll=tilt.roll,
-            pitch=tilt.pitch,
-            yaw=tilt.yaw,
-            attitude_at=tilt_at,
-            airspeed=air.airspeed,
-            airspeed_at=air_at,
-            wind=wind.velocity,
-            wind_at=wind_at,
-            battery=self._batteries.share,
-            voltage=self._batteries.voltage,
-            battery_at=max(pack_at, status_at),
-            pre_arm_ok=status.pre_arm_ok,
-            unhealthy=status.unhealthy,
-            status_at=status_at,
-            gps_fix=0 if gps_at == NEVER else round(self._fix.value),
-            satellites=gps.satellites,
-            accuracy_m=gps.accuracy_m,
-            gps_at=gps_at,
-            ekf_ok=ekf_at != NEVER and self._estimator.ok,
-            ekf_at=ekf_at,
-            channels=sticks.pulses,
-            channels_at=sticks_at,
-            landed_state=landed.landed_state,
-            landed_at=landed_at,
-            reboots=self._reboots,
-            link_quality=self._quality,
-        )
+        position = self.frame.ned_from_geodetic(*where) if self.frame is not None and placed else ZERO
+        packs, fix = self._batteries, 0 if gps_at == NEVER else round(self._fix.value)
+        estimated = ekf_at != NEVER and self._estimator.ok
+        telemetry: Telemetry = _new(Telemetry, (  # its fields in their order: five times as fast as by name
+            heart.kind, heart.mode, heart.armed, heart_at, heart.status, self._clock.boot_s,
+            *where, place.above_home_m, position, placed, place.velocity, place_at,
+            tilt.roll, tilt.pitch, tilt.yaw, tilt_at, air.airspeed, air_at, wind.velocity, wind_at,
+            packs.share, packs.voltage, max(pack_at, status_at),
+            status.pre_arm_ok, status.unhealthy, status_at,
+            fix, gps.satellites, gps.accuracy_m, gps_at, estimated, ekf_at,
+            sticks.pulses, sticks_at, landed.landed_state, landed_at, self._reboots, self._quality,
+        ))  # fmt: skip
+        return telemetry
 
     def _count(self, now: float, sequence: int) -> None:
         """Keep the running share of frames that arrived, by the gaps in their numbers."""

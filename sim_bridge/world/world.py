@@ -63,18 +63,18 @@ class SimVehicle:
         self._wake()
         return self._autopilot
 
-    def move(self, now_ns: int, air: Air) -> None:
-        """One physics step."""
+    def move(self, now_ns: int, motion: Motion, air: Air) -> None:
+        """One physics step of a vehicle that is in `motion`."""
         airframe, self.air = self.airframe, air
         if now_ns < self._rests_ns and self._demand is not None:
             self._rested += 1
-            self._seen, self._at_ns = airframe.motion, now_ns
+            self._seen, self._at_ns = motion, now_ns
             airframe.step(self._demand, air, STEP_S)
             return
         if self._rested:
             self._wake()
         autopilot = self._autopilot
-        self._demand = demand = autopilot.step(now_ns, airframe.motion, air)
+        self._demand = demand = autopilot.step(now_ns, motion, air)
         if not autopilot.landed:  # else it stands where it is
             airframe.step(demand, air, STEP_S)
         if not self._shown:
@@ -199,7 +199,8 @@ class World:
             now_ns = self.elapsed_ns
             now_s = now_ns / NS_PER_S
             for vehicle in self.vehicles.values():
-                vehicle.move(now_ns, self._wind(vehicle.id, vehicle.airframe.motion, now_s))
+                motion = vehicle.airframe.motion
+                vehicle.move(now_ns, motion, self._wind(vehicle.id, motion, now_s))
 
     def _listen(self, vehicle: SimVehicle, link: Link, number: int) -> None:
         def arrived(data: bytes, peer: Hashable) -> None:

@@ -116,7 +116,7 @@ class GamePlayer:
             at = now.s - (now.wall_ns - track.stamp_ns) / NS_PER_S
             self._seen[track.id] = MateState(track.id, at, sample.position, sample.velocity)
         # What the next step asks for is reckoned now.
-        if (hunt is None or hunt.quarry == track.id) and self.state(now.wall_ns).on:
+        if (hunt is None or hunt.quarry == track.id) and self._on(now.wall_ns):
             self._memory.prepare(track.id)
 
     # ------------------------------------------------------------------ the part
@@ -158,15 +158,18 @@ class GamePlayer:
         """Where the game stands for this vehicle."""
         phase, part = self._bus.phase, self._participation
         late = part.waits_for_resume(phase)
-        engaged = self.flying is not None
         return PartState(
-            engaged=engaged,
+            engaged=self.flying is not None,
             near=part.about_to(phase) and not late,
-            on=engaged and part.running(phase, wall_ns),
+            on=self._on(wall_ns),
             late=late,
             over=part.over(phase),
             resumed=part.resumed,
         )
+
+    def _on(self, wall_ns: int) -> bool:
+        """Whether the vehicle is flown by decisions."""
+        return self.flying is not None and self._participation.running(self._bus.phase, wall_ns)
 
     def let_in(self) -> None:
         """A person lets this process act, also in a game that it has not seen begin."""

@@ -149,6 +149,16 @@ class Heard(NamedTuple):
     message: Message
 
 
+def told(place: Place, payload: bytes, drops: Counter[str]) -> Any | None:
+    """The message of a payload at a place; None where it is bad, and one more in `drops`: see `heard`."""
+    topic, _, id = place
+    message = topic.codec.decode(payload, drops)
+    if message is not None and topic.names_vehicle and message.id != id:
+        drops["wrong_id"] += 1
+        return None
+    return message
+
+
 class Table:
     """Topics by their keys. Iterates over its rows in the order given."""
 
@@ -190,14 +200,10 @@ class Table:
 
     def told(self, place: Place, payload: bytes, drops: Counter[str]) -> Heard | None:
         """As `heard`, of a key that was found already."""
-        topic, _, id = place
-        message = topic.codec.decode(payload, drops)
+        message = told(place, payload, drops)
         if message is None:
             return None
-        if topic.names_vehicle and message.id != id:
-            drops["wrong_id"] += 1
-            return None
-        heard: Heard = tuple.__new__(Heard, (topic, id, message))  # twice as fast as `Heard(…)`
+        heard: Heard = tuple.__new__(Heard, (place.topic, place.id, message))  # twice as fast as `Heard(…)`
         return heard
 
     def _parse(self, key: str) -> Place | None:
@@ -298,11 +304,16 @@ class Dispatcher:
 
     def __call__(self, sample: tuple[str, bytes]) -> None:
         """Take in one (key, payload); what is bad is counted in `drops`, what nobody takes is left."""
-        heard = self._table.heard(*sample, self._drops)
-        if heard is not None:
-            take = self._takers.get(heard.topic)
+        key, payload = sample
+        place = self._table.find(key)
+        if place is None:
+            self._drops["foreign"] += 1
+            return
+        message = told(place, payload, self._drops)
+        if message is not None:
+            take = self._takers.get(place.topic)
             if take is not None:
-                take(heard.message)
+                take(message)
 
 
 def echo_key(game: str) -> str:

@@ -25,6 +25,7 @@ __all__ = [
     "DialectSender",
     "Layout",
     "MavMessage",
+    "Said",
     "checksum",
     "dialect",
     "dialect_packet",
@@ -142,6 +143,13 @@ def layout_of(number: int) -> Layout | None:
     return found
 
 
+class Said(NamedTuple):
+    """A message as its values in the order of the wire: what streams is told so, without a message object."""
+
+    number: int
+    values: tuple[float, ...]
+
+
 class DialectPacket(NamedTuple):
     """A frame as a simulated autopilot reads it, with every field that any message has."""
 
@@ -192,8 +200,12 @@ class DialectSender:
         self._signing = signing
         self._link_id = link_id
 
-    def pack(self, message: MavMessage, wall_ns: int = 0) -> bytes:
+    def pack(self, message: MavMessage | Said, wall_ns: int = 0) -> bytes:
         """Return the frame of a message; `wall_ns` [ns since the epoch] counts for signing alone."""
+        if isinstance(message, Said):
+            layout = layout_of(message.number)
+            assert layout is not None, message
+            return self.frame(layout, layout.unpacker.pack(*message.values), wall_ns)
         layout = layout_of(message.get_msgId())
         assert layout is not None, message
         return self.frame(layout, layout.payload(message), wall_ns)

@@ -13,7 +13,7 @@ from typing import ClassVar
 from onboard.core.math.vectors import Vec
 from onboard.game.scenario import Firmware
 from onboard.wire.geodesy import Frame, Geodetic
-from onboard.wire.mavlink.dialect import DialectSender, MavMessage, dialect
+from onboard.wire.mavlink.dialect import DialectSender, MavMessage, Said, dialect
 from sim_bridge.vehicle.autopilot.health import Fault, Health, pack_voltage
 from sim_bridge.vehicle.autopilot.parameters import Parameters
 from sim_bridge.vehicle.autopilot.resting import AWAKE
@@ -105,7 +105,7 @@ class AutopilotState(ABC):
 
     # ------------------------------------------------------------------ what it sends
 
-    def emit(self, message: MavMessage | None) -> None:
+    def emit(self, message: MavMessage | Said | None) -> None:
         """Queue one message; None: there is nothing to say."""
         if message is None:
             return

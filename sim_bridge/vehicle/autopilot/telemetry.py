@@ -6,7 +6,7 @@ from collections.abc import Callable
 from math import atan2, cos, degrees, nan, sin, sqrt
 
 from onboard.core.math.vectors import Vec, clamp
-from onboard.wire.mavlink.dialect import MavMessage, dialect
+from onboard.wire.mavlink.dialect import MavMessage, Said, dialect
 from sim_bridge.vehicle.autopilot import health
 from sim_bridge.vehicle.autopilot.px4_streams import UNREAD
 from sim_bridge.vehicle.autopilot.state import AutopilotState
@@ -15,6 +15,7 @@ from sim_bridge.vehicle.autopilot.transmitter import CHANNELS
 PX4: int = dialect.MAV_AUTOPILOT_PX4
 MAVLINK_VERSION = 3
 UNKNOWN_U16 = 65535
+NO_ACCURACY = (0, 0, 0, 0, 0, 0)  # of GPS_RAW_INT's extension
 
 
 def _i16(value: float) -> int:
@@ -52,33 +53,22 @@ def heartbeat(ap: AutopilotState, now_ns: int) -> MavMessage:
     return message
 
 
-def attitude(ap: AutopilotState, now_ns: int) -> MavMessage:
+def attitude(ap: AutopilotState, now_ns: int) -> Said:
     """ATTITUDE: roll, pitch and yaw [rad] with their rates [rad/s]."""
-    m = ap.motion
-    message: MavMessage = dialect.MAVLink_attitude_message(
-        ap.boot_ms(now_ns), m.roll, m.pitch, m.yaw, m.rates.x, m.rates.y, m.rates.z
-    )
-    return message
+    _, _, _, roll, pitch, yaw, rates = ap.motion
+    return Said(dialect.MAVLINK_MSG_ID_ATTITUDE, (ap.boot_ms(now_ns), roll, pitch, yaw, *rates))
 
 
-def global_position(ap: AutopilotState, now_ns: int) -> MavMessage | None:
+def global_position(ap: AutopilotState, now_ns: int) -> Said | None:
     """GLOBAL_POSITION_INT: geodetic position, height above home, ground velocity; None: no position."""
     if not ap.positioned(now_ns):
         return None
-    place, v = ap.place, ap.motion.velocity
+    (latitude, longitude, altitude), (x, y, z) = ap.place, ap.motion.velocity
     heading = round(degrees(ap.motion.yaw) * 100.0) % 36000
-    message: MavMessage = dialect.MAVLink_global_position_int_message(
-        ap.boot_ms(now_ns),
-        _e7(place.latitude_deg),
-        _e7(place.longitude_deg),
-        _i32(place.altitude_m * 1e3),
-        _i32((place.altitude_m - ap.home.altitude_m) * 1e3),
-        _i16(v.x * 1e2),
-        _i16(v.y * 1e2),
-        _i16(v.z * 1e2),
-        heading,
-    )
-    return message
+    above = _i32((altitude - ap.home.altitude_m) * 1e3)
+    where = (_i32(latitude * 1e7), _i32(longitude * 1e7), _i32(altitude * 1e3), above)
+    told = (ap.boot_ms(now_ns), *where, _i16(x * 1e2), _i16(y * 1e2), _i16(z * 1e2), heading)
+    return Said(dialect.MAVLINK_MSG_ID_GLOBAL_POSITION_INT, told)
 
 
 def local_position(ap: AutopilotState, now_ns: int) -> MavMessage | None:
@@ -92,15 +82,13 @@ def local_position(ap: AutopilotState, now_ns: int) -> MavMessage | None:
     return message
 
 
-def vfr_hud(ap: AutopilotState, now_ns: int) -> MavMessage:
+def vfr_hud(ap: AutopilotState, now_ns: int) -> Said:
     """VFR_HUD: airspeed, ground speed, heading, altitude and climb rate."""
     m = ap.motion
     ground = sqrt(m.velocity.x * m.velocity.x + m.velocity.y * m.velocity.y)
     throttle = 0 if ap.landed else 50
-    message: MavMessage = dialect.MAVLink_vfr_hud_message(
-        m.airspeed, ground, round(degrees(m.yaw)) % 360, throttle, ap.place.altitude_m, -m.velocity.z
-    )
-    return message
+    told = (m.airspeed, ground, ap.place.altitude_m, -m.velocity.z, round(degrees(m.yaw)) % 360, throttle)
+    return Said(dialect.MAVLINK_MSG_ID_VFR_HUD, told)
 
 
 def sys_status(ap: AutopilotState, now_ns: int) -> MavMessage:
@@ -161,25 +149,18 @@ def rc_channels(ap: AutopilotState, now_ns: int) -> MavMessage | None:
     return message
 
 
-def gps_raw(ap: AutopilotState, now_ns: int) -> MavMessage:
+def gps_raw(ap: AutopilotState, now_ns: int) -> Said:
     """GPS_RAW_INT: fix, position, speed and course as the receiver has them."""
     place, v = ap.place, ap.motion.velocity
     fixed = ap.gps_fixed(now_ns)
-    fix = dialect.GPS_FIX_TYPE_3D_FIX if fixed else dialect.GPS_FIX_TYPE_NO_FIX
+    number, at_us = dialect.MAVLINK_MSG_ID_GPS_RAW_INT, ap.boot_ms(now_ns) * 1000
+    if not fixed:
+        unknown = (UNKNOWN_U16,) * 4  # of place and height, speed and course
+        return Said(number, (at_us, 0, 0, 0, *unknown, dialect.GPS_FIX_TYPE_NO_FIX, 0, *NO_ACCURACY))
+    where = (_e7(place.latitude_deg), _e7(place.longitude_deg), _i32(place.altitude_m * 1e3))
     course = round(degrees(atan2(v.y, v.x)) * 100.0) % 36000
-    message: MavMessage = dialect.MAVLink_gps_raw_int_message(
-        (ap.boot_ms(now_ns)) * 1000,
-        fix,
-        _e7(place.latitude_deg) if fixed else 0,
-        _e7(place.longitude_deg) if fixed else 0,
-        _i32(place.altitude_m * 1e3) if fixed else 0,
-        121 if fixed else UNKNOWN_U16,
-        200 if fixed else UNKNOWN_U16,
-        _u16(sqrt(v.x * v.x + v.y * v.y) * 1e2) if fixed else UNKNOWN_U16,
-        course if fixed else UNKNOWN_U16,
-        10 if fixed else 0,
-    )
-    return message
+    moves = (121, 200, _u16(sqrt(v.x * v.x + v.y * v.y) * 1e2), course)
+    return Said(number, (at_us, *where, *moves, dialect.GPS_FIX_TYPE_3D_FIX, 10, *NO_ACCURACY))
 
 
 def extended_state(ap: AutopilotState, now_ns: int) -> MavMessage:
@@ -189,14 +170,12 @@ def extended_state(ap: AutopilotState, now_ns: int) -> MavMessage:
     return message
 
 
-def ekf_status(ap: AutopilotState, now_ns: int) -> MavMessage:
+def ekf_status(ap: AutopilotState, now_ns: int) -> Said:
     """EKF_STATUS_REPORT: ArduPilot's estimator, its flags and innovation ratios."""
     positioned = ap.positioned(now_ns)
     ratio = 0.05 if positioned else 1.5
-    message: MavMessage = dialect.MAVLink_ekf_status_report_message(
-        ap.health.ekf_flags(positioned), ratio, ratio, 0.03, 0.02, 0.0, 0.0
-    )
-    return message
+    flags = ap.health.ekf_flags(positioned)
+    return Said(dialect.MAVLINK_MSG_ID_EKF_STATUS_REPORT, (ratio, ratio, 0.03, 0.02, 0.0, flags, 0.0))
 
 
 def estimator_status(ap: AutopilotState, now_ns: int) -> MavMessage:
@@ -318,7 +297,7 @@ def autopilot_version(ap: AutopilotState, now_ns: int) -> MavMessage:
     return message
 
 
-Builder = Callable[[AutopilotState, int], MavMessage | None]
+Builder = Callable[[AutopilotState, int], MavMessage | Said | None]
 
 COMMON: dict[int, Builder] = {
     dialect.MAVLINK_MSG_ID_HEARTBEAT: heartbeat,
@@ -372,6 +351,6 @@ def can_build(ap: AutopilotState, number: int) -> bool:
     return number in _builders(ap)
 
 
-def build(ap: AutopilotState, number: int, now_ns: int) -> MavMessage | None:
+def build(ap: AutopilotState, number: int, now_ns: int) -> MavMessage | Said | None:
     """The message of that number as it is now; None where it cannot be told (no position, no home)."""
     return _builders(ap)[number](ap, now_ns)
