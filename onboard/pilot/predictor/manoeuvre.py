@@ -44,6 +44,7 @@ class ManoeuvreFilter:
         self.shares = np.array([0.5, 0.5])  # probability of each model
         self._x = np.zeros((2, STATES))
         self._p = np.zeros((2, STATES, STATES))
+        self._noise_of = (0.0, self._p)  # time carried over last, and the noise of that
 
     def clear(self) -> None:
         """Forget everything."""
@@ -104,13 +105,16 @@ class ManoeuvreFilter:
         spread = self._p[None] + apart[..., :, None] * apart[..., None, :]
         covariance = (weights[:, :, None, None] * spread).sum(axis=1)
         self.shares = after
-        moves = np.array([_straight(dt), turning(mixed[TURNING].tolist(), dt)])
+        straight, state = _straight(dt), mixed[TURNING].tolist()
+        moves = np.array([straight, turning(state, dt)])
         mixed[STRAIGHT, 4] = 0.0
         self._p = moves @ covariance @ moves.transpose(0, 2, 1) + self._noise(dt)
-        self._x = np.array([_straight(dt) @ mixed[STRAIGHT], turned(mixed[TURNING].tolist(), dt)])
+        self._x = np.array([straight @ mixed[STRAIGHT], turned(state, dt)])
 
     def _noise(self, dt: float) -> Array:
-        """Process noise (2, 5, 5) over `dt` [s]."""
+        """Process noise (2, 5, 5) over `dt` [s]; samples mostly come evenly."""
+        if dt == self._noise_of[0]:
+            return self._noise_of[1]
         out = np.zeros((2, STATES, STATES))
         for model, q in enumerate(self.settings.density):
             for i in (0, 1):
@@ -119,6 +123,7 @@ class ManoeuvreFilter:
                 out[model, i + 2, i + 2] = q * dt
         out[TURNING, 4, 4] = self.settings.turn_density * dt
         out[STRAIGHT, 4, 4] = self.settings.turn_unknown**2 * 0.1
+        self._noise_of = (dt, out)
         return out
 
     def _correct(self, i: int, wanted: float, r: float) -> Array:

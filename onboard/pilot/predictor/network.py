@@ -11,6 +11,7 @@ neurons share the first layer only, so the second layer's part is one small bloc
 from __future__ import annotations
 
 from collections.abc import Generator
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -47,7 +48,7 @@ class Batch(NamedTuple):
 def batch(inputs: Array, targets: Array, mask: Array) -> Batch:
     """A batch of inputs (k, n), targets (k, o) and mask (k, o)."""
     x = np.hstack([np.ones((len(inputs), 1)), inputs])
-    a, b = np.triu_indices(x.shape[1])
+    a, b = _pairs(x.shape[1])
     return Batch(x, np.where(mask > 0.0, targets, 0.0), mask, x[:, a] * x[:, b], _square(x.shape[1]))
 
 
@@ -87,7 +88,7 @@ def normal(act: SParabola, weights: Weights, data: Batch, epsilon: float) -> Nor
     w = second[1:]  # (m, o)
 
     # First layer with itself: Σ_k x_i x_i' · g1_j g1_j' · Σ_o g2² w_jo w_j'o, symmetric in j and j'.
-    a, b = np.triu_indices(m)
+    a, b = _pairs(m)
     coupling = (square @ (w[a] * w[b]).T) * (g1[:, a] * g1[:, b])  # (k, m(m+1)/2)
     halves = data.products.T @ coupling  # (n(n+1)/2, m(m+1)/2)
     full = halves[data.pair][:, :, _square(m)]  # (n, n, m, m)
@@ -177,11 +178,21 @@ def train(
     return best
 
 
-def _square(size: int) -> Indices:
-    """(size, size): the place of each pair among np.triu_indices(size)."""
-    out = np.zeros((size, size), dtype=np.intp)
+@cache
+def _pairs(size: int) -> tuple[Indices, Indices]:
+    """Rows and columns of an upper triangle, read only: the sizes are those of a few models."""
     a, b = np.triu_indices(size)
+    a.flags.writeable = b.flags.writeable = False
+    return a, b
+
+
+@cache
+def _square(size: int) -> Indices:
+    """(size, size), read only: the place of each pair among `_pairs`."""
+    out = np.zeros((size, size), dtype=np.intp)
+    a, b = _pairs(size)
     out[a, b] = out[b, a] = np.arange(len(a))
+    out.flags.writeable = False
     return out
 
 
