@@ -18,6 +18,7 @@ from onboard.wire.bus.messages import Phase
 from onboard.wire.bus.topics import TRACK
 from sim_bridge.campaign.spatial_draw import DECIDES, drawn_scenario, spatial
 from sim_bridge.campaign.spatial_fixed import eye_of
+from sim_bridge.vehicle.motion import Air
 from tests.support.virtual_time import virtual
 from tests.support.whole_games import WholeGame, autopilot, game_of
 
@@ -41,7 +42,8 @@ class Watch:
         self.truth: dict[int, Vec] = {}
         self.game, self.id, world = game, id, game.bridge.world
         pilot, link, frame = autopilot(game, id), world.vehicles[id].links[0], autopilot(game, id).setup.frame
-        receive, send, move = pilot.receive, link.send, world._move
+        vehicle = world.vehicles[id]
+        receive, send, move = pilot.receive, link.send, vehicle.move
 
         def received(now_ns: int, data: bytes, peer: Hashable) -> None:
             if number(data) == ATTITUDE_TARGET:
@@ -57,12 +59,11 @@ class Watch:
                 self.told.append((self.step, frame.ned_from_geodetic(lat / 1e7, lon / 1e7, alt / 1e3)))
             send(data)
 
-        def moved(vehicle: Any, now_ns: int, now_s: float) -> None:
-            if vehicle.id == id:
-                self.truth[self.step - 1] = vehicle.airframe.motion.position  # before this step
-            move(vehicle, now_ns, now_s)
+        def moved(now_ns: int, air: Air) -> None:
+            self.truth[self.step - 1] = vehicle.airframe.motion.position  # before this step
+            move(now_ns, air)
 
-        pilot.receive, link.send, world._move = received, sent, moved  # type: ignore[method-assign]
+        pilot.receive, link.send, vehicle.move = received, sent, moved  # type: ignore[method-assign,assignment]
 
     @property
     def step(self) -> int:
