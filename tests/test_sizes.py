@@ -9,7 +9,7 @@ from tests.support.paths import ROOT
 
 LINES_OF_A_FILE = 400
 LINES_OF_A_FUNCTION = 60
-LONG = {("onboard/core/geometry/edges.py", "_by_pairs")}  # the kernel written out for speed
+LONG = {("onboard/core/geometry/edges.py", "by_pairs")}  # the kernel written out for speed
 
 
 def sources() -> list[Path]:

@@ -91,7 +91,7 @@ KERNELS = (
 # Everything is inlined, or else the many small functions would pass whole games by value; but
 # these are called from many places and would swell the code.
 OUT_OF_LINE = frozenset(
-    {"free_ray_limited", "nearest_allowed", "allow", "restart", "listen", "foreseen", "hunted"}
+    {"free_ray_limited", "by_pairs", "nearest_allowed", "allow", "restart", "listen", "foreseen", "hunted"}
     | {"two_legs", "chase"}
     | {"assigned", "engaged", "way_out_at", "least_gap"}
     | {"one_of_many", "way_round", "free_ray_beside", "first_entered", "blocked", "entry", "way_out_of"}

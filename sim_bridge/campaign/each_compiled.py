@@ -1,12 +1,14 @@
 """The compiled forms of `onboard.core.math.each`: calls one after another of few items, of many a loop.
 
 Written out for many items a strategy would stand in the kernel once for every pursuer, and take minutes to
-compile.
+compile. Short functions are written out however many items there are: a loop fills an array and fetches the
+tuple from it, which costs more than what they do.
 """
 
 from __future__ import annotations
 
 from functools import cache
+from types import FunctionType
 from typing import Any
 
 from numba.core import cgutils, types
@@ -22,6 +24,7 @@ build: Any = cgutils
 library: Any = templates
 
 WRITTEN_OUT = 6  # items up to which the calls are written out: what they have in common is then reckoned once
+SHORT = 640  # bytes of bytecode, of all functions that are called in turn, up to which they are in any case
 
 
 def _call_of(context: Any, function: Any, tuples: tuple[Any, ...], shared: Any) -> Any:
@@ -40,7 +43,7 @@ def _linked(context: Any, function: Any, call: Any) -> Any:
 
 def _results(context: Any, builder: Any, function: Any, call: Any, values: list[Any], count: int) -> Any:
     """The code that makes all results, a tuple of them; `values` are the tuples and what is shared."""
-    if count > WRITTEN_OUT:
+    if count > WRITTEN_OUT and not _is_short(function):
         return builder.load(_filled(context, builder, function, call, values, count))
     compiled = _linked(context, function, call)
     found = []
@@ -49,6 +52,19 @@ def _results(context: Any, builder: Any, function: Any, call: Any, values: list[
         index = [context.get_constant(types.intp, k)] if len(items) == 1 else []
         found.append(compiled(builder, (*items, *index, values[-1])))
     return context.make_tuple(builder, kinds.UniTuple(call.return_type, count), found)
+
+
+def _is_short(function: Any) -> bool:
+    """Whether a function, as numba knows it, is short with all that it calls."""
+    found: set[FunctionType] = set()
+    asked = [getattr(function, "typing_key", None)]
+    while asked:
+        one = asked.pop()
+        if isinstance(one, FunctionType) and one not in found:
+            found.add(one)
+            asked += [one.__globals__.get(name) for name in one.__code__.co_names]
+            asked += [cell.cell_contents for cell in one.__closure__ or ()]
+    return 0 < sum(len(one.__code__.co_code) for one in found) <= SHORT
 
 
 def _filled(context: Any, builder: Any, function: Any, call: Any, values: list[Any], count: int) -> Any:
@@ -103,9 +119,20 @@ def _table(context, function, items, shared):  # type: ignore[no-untyped-def]
     return signature(kinds.CPointer(call.return_type), function, items, shared), code
 
 
-def _few_or_many(context, few, many, items, shared):  # type: ignore[no-untyped-def]
+def _room(context, value, items):  # type: ignore[no-untyped-def]
+    """`room`: a pointer to the first place."""
+
+    def code(context, builder, _signature, _values):  # type: ignore[no-untyped-def]
+        return build.alloca_once(builder, context.get_data_type(value), size=max(1, items.count**2))
+
+    return signature(kinds.CPointer(value), value, items), code
+
+
+def _few_or_many(context, few, few_compiled, many, items, shared):  # type: ignore[no-untyped-def]
     """`few_or_many`: a call of one of them."""
-    return _one_of(context, (few, many), int(len(items) >= each_module.MANY), items, shared)
+    count = len(items)
+    which = 2 if count >= each_module.MANY else min(count, 1)
+    return _one_of(context, (few, few_compiled, many), which, items, shared)
 
 
 def _some_or_none(context, some, none, items, shared):  # type: ignore[no-untyped-def]
@@ -113,13 +140,13 @@ def _some_or_none(context, some, none, items, shared):  # type: ignore[no-untype
     return _one_of(context, (some, none), int(_empty(items)), items, shared)
 
 
-def _one_of(context: Any, functions: tuple[Any, Any], which: int, items: Any, shared: Any) -> Any:
-    """A call of one of two functions, which is known when it is compiled."""
+def _one_of(context: Any, functions: tuple[Any, ...], which: int, items: Any, shared: Any) -> Any:
+    """A call of one of some functions, which is known when it is compiled."""
     function = functions[which]
     call = function.get_call_type(context, (items, shared), {})
 
     def code(context, builder, _signature, values):  # type: ignore[no-untyped-def]
-        return _linked(context, function, call)(builder, tuple(values[2:]))
+        return _linked(context, function, call)(builder, tuple(values[-2:]))
 
     return signature(call.return_type, *functions, items, shared), code
 
@@ -144,6 +171,7 @@ def compile_each() -> None:
         (each_module.each_pair, _each_pair),
         (each_module.table, _table),
         (each_module.few_or_many, _few_or_many),
+        (each_module.room, _room),
         (each_module.some_or_none, _some_or_none),
     )
     for function, made in forms:

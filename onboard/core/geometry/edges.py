@@ -1,55 +1,129 @@
 """The free ray in space nearest to a preferred direction: the search over the edges of blocked cones.
 
 The nearest free ray is the preferred one itself, the nearest point on one edge, or a crossing of two edges.
-Kernel style.
+Mostly few cones decide which: the search takes one cone after another into account, each time the one in
+which the nearest point left lies deepest, until that point lies in none. What is nearest outside some of the
+cones and lies outside the others, too, is nearest outside all. Kernel style.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import MutableSequence, Sequence
 from math import sqrt
 from typing import NamedTuple
 
-from onboard.core.geometry.cones import EDGE, Cone, Ray, is_free, perpendicular
-from onboard.core.geometry.rims import Crossing, Rim, blend, crossing, nearer_crossing, on_edge, point, rim_of
-from onboard.core.math.each import each, few_or_many, table
-from onboard.core.math.vectors import TINY, Vec, along, cross, dot, unit
+from onboard.core.geometry.cones import Cone, Ray, is_free, perpendicular
+from onboard.core.geometry.rims import NOBODY, Rim, Spot, blend, crossing, on_edge, rim_of
+from onboard.core.math.each import each, few_or_many, room, table
+from onboard.core.math.vectors import TINY, Vec, dot, unit
 
-TRIES = 12  # of pairs of cones that may decide
-
-
-class Edge(NamedTuple):
-    """A cone's edge beside a preferred direction: what every candidate needs of it."""
-
-    x: float  # axis
-    y: float
-    z: float
-    cos: float  # of the half-angle
-    sin: float
-    limit: float  # cosine to the axis up to which a ray is free
-    level: float  # cosine of the angle from the axis to the preferred direction
+ALIKE = 1e-9  # two rays whose closeness differs by less may both be the nearest
+FLAT = 1e-15  # (n s)² m⁴ of an edge, below which one may lie on it m away: closeness falls by n s m² / 2
+UNDECIDED = -2.5  # closeness below which a search says that it has not decided
+TOUCH = 1e-4  # least square of the sine between the axes of two cones whose crossing is certain
 
 
-def edge_of(cone: Cone, _index: int, preferred: Vec) -> Edge:
-    """The edge of a cone (for `each`)."""
-    (x, y, z), c, s = cone
-    return Edge(x, y, z, c, s, c + EDGE * s, x * preferred.x + y * preferred.y + z * preferred.z)
+class Found(NamedTuple):
+    """What a search has found so far."""
+
+    rims: MutableSequence[Rim]  # of the cones taken into account, in the order in which they were
+    numbers: MutableSequence[int]  # which cones those are
+    spots: MutableSequence[Spot]  # points on their edges that lie outside all of them
 
 
-def _clear(x: float, y: float, z: float, edges: tuple[Edge, ...]) -> bool:
-    for ax, ay, az, _c, _s, limit, _level in edges:  # noqa: SIM110
-        if x * ax + y * ay + z * az > limit:
-            return False
-    return True
+def free_ray(preferred: Vec, cones: tuple[Cone, ...]) -> Ray:
+    """The free direction in space nearest to `preferred` (unit), exact; `exists` False if all is blocked.
+
+    Of few cones all pairs are tried, which costs less than the search where it is interpreted. Compiled the
+    search costs less, and pairs are tried where several rays may be as near: so both give the same bits.
+    """
+    if is_free(preferred, cones):
+        return Ray(True, preferred, 1.0)
+    for cone in cones:
+        if cone.cos < -1.0:
+            return Ray(False, preferred, -2.0)
+    return few_or_many(by_pairs, one_by_one, of_many, cones, preferred)
 
 
-def _deepest(u: Vec, edges: Sequence[Rim], count: int) -> int:
-    """The cone in which a ray lies deepest, −1 if it is free."""
-    x, y, z = u
+def one_by_one(cones: tuple[Cone, ...], preferred: Vec) -> Ray:
+    """What `by_pairs` finds, by the search."""
+    found = _searched(cones, preferred, True)
+    return by_pairs(cones, preferred) if found.closeness < UNDECIDED else found
+
+
+def of_many(cones: tuple[Cone, ...], preferred: Vec) -> Ray:
+    """The search where all pairs would be too many; of rays that are as near it takes any."""
+    return _searched(cones, preferred, False)
+
+
+def _searched(cones: tuple[Cone, ...], preferred: Vec, only: bool) -> Ray:
+    """The nearest free ray by one cone after another; with `only`, a closeness of −3 if it may not be alone.
+
+    The preferred one lies in a cone.
+    """
+    edges = table(rim_of, cones, preferred)
+    total = len(cones)
+    first = _deepest(preferred.x, preferred.y, preferred.z, edges, total)
+    best = on_edge(edges[first], first, preferred)
+    number = _deepest(best.x, best.y, best.z, edges, total)
+    if number == first:  # all but a point is blocked, and rounding the point
+        return Ray(False, preferred, -3.0 if only else -2.0)
+    found = Found(room(edges[first], cones), room(first, cones), room(best, cones))
+    found.rims[0] = edges[first]
+    found.numbers[0] = first
+    found.spots[0] = best
+    count = 1
+    kept = 1
+    while number >= 0:
+        edge = edges[number]
+        kept = _left(found, kept, edge)
+        found.rims[count] = edge
+        found.numbers[count] = number
+        count += 1
+        kept = _added(found, count, kept, preferred)
+        if kept == 0:
+            return Ray(False, preferred, -2.0)
+        best = _nearest(found.spots, kept)
+        number = _deepest(best.x, best.y, best.z, edges, total)
+    if only and not _alone(best, found.spots, kept, edges, total):
+        return Ray(False, preferred, -3.0)
+    u = Vec(best.x, best.y, best.z)
+    return Ray(True, u if best.two == NOBODY else unit(u, preferred), best.closeness)
+
+
+def _alone(best: Spot, spots: Sequence[Spot], kept: int, edges: Sequence[Rim], count: int) -> bool:
+    """Whether it is certain that no other ray is as near as this one, but for rounding.
+
+    None of the other points is; near this one there is no other edge; and its own edges lead away.
+    """
+    near = 0
+    for k in range(kept):
+        if spots[k].closeness >= best.closeness - ALIKE:
+            near += 1
+    if near > 1:
+        return False
+    margin = 2.0  # to the other cones, in cosines
+    for k in range(count):
+        if k != best.one and k != best.two:
+            ax, ay, az, _c, _s, limit, _level = edges[k]
+            margin = min(margin, limit - (best.x * ax + best.y * ay + best.z * az))
+    one = edges[best.one]
+    wide = margin * margin * margin * margin
+    if (1.0 - one.level * one.level) * one.sin * one.sin * wide < FLAT:
+        return False
+    if best.two == NOBODY:
+        return True
+    two = edges[best.two]
+    c = one.x * two.x + one.y * two.y + one.z * two.z
+    return 1.0 - c * c > TOUCH and (1.0 - two.level * two.level) * two.sin * two.sin * wide >= FLAT
+
+
+def _deepest(x: float, y: float, z: float, edges: Sequence[Rim], count: int) -> int:
+    """The cone in which a point lies deepest, −1 if in none."""
     found = -1
     most = 0.0
     for k in range(count):
-        ax, ay, az, _c, _s, limit, _level, _n, _near = edges[k]
+        ax, ay, az, _c, _s, limit, _level = edges[k]
         depth = x * ax + y * ay + z * az - limit
         if depth > most:
             most = depth
@@ -57,46 +131,74 @@ def _deepest(u: Vec, edges: Sequence[Rim], count: int) -> int:
     return found
 
 
-def _first(x: float, y: float, z: float, edges: Sequence[Rim], count: int) -> int:
-    """The first cone in which a ray lies, −1 if it is free."""
+def _left(found: Found, kept: int, edge: Rim) -> int:
+    """Keep those points that lie outside one more cone; how many are left."""
+    ax, ay, az, _c, _s, limit, _level = edge
+    spots = found.spots
+    left = 0
+    for k in range(kept):
+        x, y, z, _closeness, _one, _two = spots[k]
+        if x * ax + y * ay + z * az <= limit:
+            spots[left] = spots[k]
+            left += 1
+    return left
+
+
+def _added(found: Found, count: int, kept: int, preferred: Vec) -> int:
+    """Take down the points of the last edge that lie outside all cones so far; how many there are then."""
+    rims, numbers, spots = found
+    last = count - 1
+    number = numbers[last]
+    near = on_edge(rims[last], number, preferred)
+    if _outside_all(near.x, near.y, near.z, rims, count):
+        spots[kept] = near
+        kept += 1
+    for other in range(last):
+        # The same bits whichever of the two was taken into account first.
+        high, low = (other, last) if numbers[other] > number else (last, other)
+        exists, (x, y, z), (dx, dy, dz), level, rise = crossing(rims[high], rims[low], preferred)
+        if exists and _outside_all(x + dx, y + dy, z + dz, rims, count):
+            spots[kept] = Spot(x + dx, y + dy, z + dz, level + rise, number, numbers[other])
+            kept += 1
+        if exists and _outside_all(x - dx, y - dy, z - dz, rims, count):
+            spots[kept] = Spot(x - dx, y - dy, z - dz, level - rise, number, numbers[other])
+            kept += 1
+    return kept
+
+
+def _outside_all(x: float, y: float, z: float, rims: Sequence[Rim], count: int) -> bool:
+    """Whether a point lies in none of so many cones."""
     for k in range(count):
-        ax, ay, az, _c, _s, limit, _level, _n, _near = edges[k]
+        ax, ay, az, _c, _s, limit, _level = rims[k]
         if x * ax + y * ay + z * az > limit:
-            return k
-    return -1
+            return False
+    return True
 
 
-def free_ray(preferred: Vec, cones: tuple[Cone, ...]) -> Ray:
-    """The free direction in space nearest to `preferred` (unit), exact; `exists` False if all is blocked.
-
-    Of few cones all pairs are tried. Of many mostly one or two decide, and that nothing is nearer is certain;
-    else edges are gone round.
-    """
-    if is_free(preferred, cones):
-        return Ray(True, preferred, 1.0)
-    for cone in cones:
-        if cone.cos < -1.0:
-            return Ray(False, preferred, -2.0)
-    return few_or_many(_by_pairs, _by_edges, cones, preferred)
+def _nearest(spots: Sequence[Spot], kept: int) -> Spot:
+    """The point nearest to the preferred direction, of equal ones the first."""
+    best = spots[0]
+    for k in range(1, kept):
+        if spots[k].closeness > best.closeness:
+            best = spots[k]
+    return best
 
 
-def _by_edges(cones: tuple[Cone, ...], preferred: Vec) -> Ray:
-    edges = table(rim_of, cones, preferred)
-    count = len(cones)
-    ray = _decided_by_two(preferred, edges, count)
-    if ray.exists:
-        return ray
-    return _round_edges(preferred, edges, count)
+def _clear(x: float, y: float, z: float, edges: tuple[Rim, ...]) -> bool:
+    for ax, ay, az, _c, _s, limit, _level in edges:  # noqa: SIM110
+        if x * ax + y * ay + z * az > limit:
+            return False
+    return True
 
 
-def _by_pairs(cones: tuple[Cone, ...], preferred: Vec) -> Ray:
+def by_pairs(cones: tuple[Cone, ...], preferred: Vec) -> Ray:
     """The nearest free ray among the nearest points and the crossings of all edges.
 
     Candidates nearer than the best so far are tested against all cones, the others never. Written out in
     floats: with few pursuers the interpreted onboard agent spends its time here.
     """
     px, py, pz = preferred
-    edges = each(edge_of, cones, preferred)
+    edges = each(rim_of, cones, preferred)
     best = -2.0
     ray = preferred
     for i in range(len(edges)):
@@ -166,137 +268,3 @@ def _by_pairs(cones: tuple[Cone, ...], preferred: Vec) -> Ray:
                 best = level - rise
                 ray = unit(Vec(lx - x, ly - y, lz - z), preferred)
     return Ray(best >= -1.5, ray, best)
-
-
-def _decided_by_two(preferred: Vec, edges: Sequence[Rim], count: int) -> Ray:
-    """The nearest free ray where one or two cones decide it for certain; else none."""
-    nothing = Ray(False, preferred, -2.0)
-    i = _deepest(preferred, edges, count)
-    j = -1
-    if i < 0 or edges[i].cos < -1.0:
-        return nothing
-    ray = on_edge(edges[i], preferred)
-    for _ in range(TRIES):
-        k = _deepest(ray.direction, edges, count)
-        if k < 0:
-            return ray
-        edge = edges[k]
-        found = nothing
-        if edge.cos < -1.0:
-            return nothing
-        one = i
-        if edge.level > edge.cos:
-            alone = on_edge(edge, preferred)
-            u = alone.direction
-            if _outside(u, edges[i]) and (j < 0 or _outside(u, edges[j])):
-                found = alone
-                one = -1
-        if not found.exists:
-            found = nearer_crossing(edges[max(i, k)], edges[min(i, k)], preferred)
-            if found.exists and j >= 0 and not _outside(found.direction, edges[j]):
-                found = nothing
-        if not found.exists and j >= 0:
-            found = nearer_crossing(edges[max(j, k)], edges[min(j, k)], preferred)
-            one = j
-            if found.exists and not _outside(found.direction, edges[i]):
-                found = nothing
-        if not found.exists or found.closeness >= ray.closeness:
-            return nothing
-        ray = found
-        i = k
-        j = one
-    return nothing
-
-
-def _outside(u: Vec, edge: Rim) -> bool:
-    return u.x * edge.x + u.y * edge.y + u.z * edge.z <= edge.limit
-
-
-def _round_edges(preferred: Vec, edges: Sequence[Rim], count: int) -> Ray:
-    """The nearest free ray of all edges, going round each both ways from one blocked arc's end to the next.
-
-    The nearest edge comes first. Of n cones that takes some n² steps where all pairs of edges take n³.
-    """
-    best = Ray(False, preferred, -2.0)
-    order = _nearest_four(2.0, -1, edges, count)
-    while order.first >= 0 and edges[order.first].near > best.closeness:  # no point of an edge is nearer
-        i = order.first
-        near = on_edge(edges[i], preferred)
-        u = near.direction
-        first = _first(u.x, u.y, u.z, edges, count)
-        if first < 0:
-            return near
-        blocked = crossing(edges[i], edges[first], preferred)
-        for side in (1.0, -1.0):
-            walk = Walk(i, near.direction, side, best.closeness)
-            found = _end_of_blocked(preferred, edges, count, walk, blocked)
-            if found.exists:
-                best = found
-        if order.second >= 0:
-            order = Order(order.second, order.third, order.fourth, -1)
-        else:
-            order = _nearest_four(edges[i].near, i, edges, count)
-    return best
-
-
-class Order(NamedTuple):
-    """Edges one after another, the nearest first; −1 where there are no more."""
-
-    first: int
-    second: int
-    third: int
-    fourth: int
-
-
-def _nearest_four(near: float, index: int, edges: Sequence[Rim], count: int) -> Order:
-    """The edges that come after edge `index`, `near` to the preferred direction."""
-    a, b, c, d = -1, -1, -1, -1
-    far_a, far_b, far_c, far_d = -2.5, -2.5, -2.5, -2.5
-    for k in range(count):
-        other = edges[k].near
-        if other > far_d and (other < near or (other == near and k > index)):
-            if other > far_b:
-                c, far_c, d, far_d = b, far_b, c, far_c
-                if other > far_a:
-                    a, far_a, b, far_b = k, other, a, far_a
-                else:
-                    b, far_b = k, other
-            elif other > far_c:
-                c, far_c, d, far_d = k, other, c, far_c
-            else:
-                d, far_d = k, other
-    return Order(a, b, c, d)
-
-
-class Walk(NamedTuple):
-    """A way round an edge from its nearest point."""
-
-    edge: int
-    start: Vec  # unit
-    side: float  # 1 anticlockwise about the axis, −1 clockwise
-    floor: float  # closeness that a free point must exceed
-
-
-def _end_of_blocked(preferred: Vec, edges: Sequence[Rim], count: int, walk: Walk, blocked: Crossing) -> Ray:
-    """The first free point of an edge at most half the way round; `blocked` is the arc that it begins in."""
-    edge = edges[walk.edge]
-    axis = Vec(edge.x, edge.y, edge.z)
-    ahead = along(walk.start, axis, -edge.cos)
-    left = cross(axis, ahead)
-    c = 1.0
-    s = 0.0
-    while True:
-        closeness = blocked.level + walk.side * blocked.rise
-        if not blocked.exists or closeness <= walk.floor:
-            return Ray(False, preferred, -2.0)
-        u = along(blocked.along, blocked.across, walk.side)
-        forward = dot(u, ahead)
-        turned = walk.side * dot(u, left)
-        if turned < 0.0 or c * turned - s * forward <= 0.0:
-            return Ray(False, preferred, -2.0)  # past the far side
-        c = forward
-        s = turned
-        k = _first(u.x, u.y, u.z, edges, count)
-        if k < 0:
-            return point(blocked, walk.side, preferred)
-        blocked = crossing(edge, edges[k], preferred)
