@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from onboard.core.game.rules import NO_TARGET, Rules, Target, goal_disc
 from onboard.core.geometry.apollonius import in_time
+from onboard.core.math.each import each_pair
 from onboard.core.math.vectors import TINY, Vec, sub
 
 
@@ -58,6 +59,11 @@ def closest(a0: Vec, a1: Vec, b0: Vec, b1: Vec) -> Closest:
     if aa > TINY * TINY and bb < 0.0:
         when = 1.0 if -bb >= aa else -bb / aa
     return Closest(cc, bb, aa, when, max(0.0, cc + when * (2.0 * bb + when * aa)))
+
+
+def smallest_square(b0: Vec, b1: Vec, a: tuple[Vec, Vec]) -> float:
+    """The square of the smallest distance of b (b0 → b1) and a [m²] (for `each_pair`)."""
+    return closest(b0, b1, a[0], a[1]).square
 
 
 def passage(a0: Vec, a1: Vec, b0: Vec, b1: Vec, radius: float) -> Passage:
@@ -117,12 +123,12 @@ def judge(score: Score, step: Step, rules: Rules, target: Target) -> Score:
         return score
     start, dt, e0, e1, before, after, _speed, _speeds = step
     least = inf
+    for square in each_pair(smallest_square, before, after, (e0, e1)):
+        least = min(least, square)
     captor = -1
     capture = 2.0
-    for index in range(len(before)):
-        square = closest(before[index], after[index], e0, e1).square
-        least = min(least, square)
-        if square <= NEARLY * rules.R * rules.R:
+    if least <= NEARLY * rules.R * rules.R:
+        for index in range(len(before)):
             seen = passage(before[index], after[index], e0, e1, rules.R)
             if seen.enters and seen.entry < capture:
                 capture = seen.entry
