@@ -12,12 +12,13 @@ import zenoh
 from onboard.config.printable import words_of
 from onboard.config.strict import ConfigError
 from onboard.runtime.membership import Membership, membership_of
+from onboard.runtime.rate_limit import PAYLOAD_MAX
 from onboard.runtime.secret_files import read_secret
 
 DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
 IP_ENDPOINT = re.compile(r"(?:tcp|tls|udp|quic|ws)/(?P<host>.*):(?P<port>\d+)(?:[?#].*)?\Z")
 PORT_MAX = 65535
-MESSAGE_MAX = 1 << 20  # bytes put together from fragments: what is larger is dropped before it is whole
+MESSAGE_MAX = 2 * PAYLOAD_MAX  # bytes put together from fragments: more is dropped before it is whole
 LEASE_MS = 2000  # a silent partner is given up after this
 ALWAYS: dict[str, object] = {
     "timestamping/enabled": True,

@@ -19,7 +19,7 @@ from onboard.runtime.rate_limit import LATER_S, PAYLOAD_MAX, BusLimit
 from onboard.wire.bus.topics import TOPICS, Delivery
 
 LOOK_S = 0.03  # a message waits so long at most for a loop that is not late
-CHANNEL_MAX = 8192  # messages that wait in a channel; beyond them the oldest are lost, and that is counted
+CHANNEL_MAX = 8192  # messages that wait in a channel, a flood's among them; beyond, the oldest are lost
 
 
 class Stream:
