@@ -82,7 +82,8 @@ class BusView:
         self._waiting: OrderedDict[Who, Waiting] = OrderedDict()
         self._said: dict[str, float] = {}
         self._followed: list[int] = []
-        self._own_track = topics.TRACK.key(self._game, self._id)
+        # Keys of tracks that say nothing new: the own one, and those of mates, who tell of themselves.
+        self._unheeded = frozenset((topics.TRACK.key(self._game, self._id),))
         self._now = Instant(NEVER, 0)  # of the message that is being taken
         self._track: Track | None = None  # that it brought
         self._hear = (
@@ -125,7 +126,7 @@ class BusView:
 
     def take(self, key: str, payload: bytes, now: Instant) -> Track | None:
         """Take a message that arrived; a good measurement of another vehicle is given back."""
-        if key == self._own_track:
+        if key in self._unheeded:
             return None
         self._now, self._track = now, None
         self._hear((key, payload))
@@ -147,6 +148,8 @@ class BusView:
                 self._followed.append(id)
                 for key in self._keys_of(id):
                     self._out.put(Subscribe(key))
+        known = (self._id, *self._followed)
+        self._unheeded = frozenset(topics.TRACK.key(self._game, id) for id in known)
 
     def brief_alone(self, alone: bool) -> None:
         """Take the brief that is for this one of several evaders `alone`, or the one for the only evader."""
@@ -229,8 +232,7 @@ class BusView:
         self.briefed = True
 
     def _take_track(self, track: Track) -> None:
-        if track.id not in self._followed:  # team mates tell of themselves
-            self._track = track
+        self._track = track
 
     def _take_mate(self, state: State) -> None:
         if state.id in self._followed:

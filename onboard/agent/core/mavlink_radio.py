@@ -117,12 +117,11 @@ class Radio:
             packets.append(packet)
             if packet.component == AUTOPILOT and packet.system == self._system:
                 self._good_at = now.s
-        self._count_refused(now.s)
+        if self._signing is not None:
+            self._count_refused(now.s)
         return Received(tuple(packets), took_over, second)
 
     def _count_refused(self, now: float) -> None:
-        if self._signing is None:
-            return
         refused = sum(self.causes[cause] for cause in SIGNATURES)
         if refused > self._refused:
             self._refused, self._refused_at = refused, now

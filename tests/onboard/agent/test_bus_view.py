@@ -8,8 +8,8 @@ from onboard.agent.config import AgentConfig
 from onboard.agent.core.bus_view import BusView
 from onboard.agent.core.events import Instant, Outbox, Subscribe, Unsubscribe
 from onboard.agent.core.journal import Journal
-from onboard.wire.bus.messages import Role, State
-from onboard.wire.bus.topics import STATE
+from onboard.wire.bus.messages import Role, State, Track
+from onboard.wire.bus.topics import STATE, TRACK
 
 EPOCH_NS = 1_700_000_000_000_000_000
 
@@ -60,3 +60,18 @@ def test_who_is_no_longer_a_mate_is_neither_heard_nor_kept() -> None:
     assert out.take() == [Unsubscribe(STATE.key("g", 3)), Subscribe(STATE.key("g", 4))]
     view.take(STATE.key("g", 3), state(3, EPOCH_NS), Instant(101.0, EPOCH_NS))  # was on its way
     assert view.mates_at(101.0) == ()
+
+
+def test_tracks_of_itself_and_of_mates_say_nothing_those_of_others_do() -> None:
+    view, _ = opened()
+    now = Instant(100.0, EPOCH_NS)
+
+    def told(id: int) -> bool:
+        track = Track(id, EPOCH_NS, (1.0, 2.0, -3.0), (0.0, 4.0, 0.0), (1.0,) * 6, "radar")
+        return view.take(TRACK.key("g", id), TRACK.encode(track), now) == track
+
+    assert {id: told(id) for id in (1, 2, 3, 4)} == {1: True, 2: False, 3: False, 4: True}
+    view.follow((2, 4))
+    assert {id: told(id) for id in (1, 2, 3, 4)} == {1: True, 2: False, 3: True, 4: False}
+    assert view.take(TRACK.key("g", 1), b"\x00", now) is None
+    assert view.drops.total() == 1
