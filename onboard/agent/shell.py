@@ -300,8 +300,9 @@ class Agent:
         if not autopilot:
             return self._link_limit.admits((index, "others"), "link", FROM_OTHERS, now)
         number = first_number(data)
-        sender, rate = (number, FROM_AUTOPILOT) if number in FLIGHT else ("beside", BESIDE)
-        return self._link_limit.admits((index, sender), "autopilot", rate, now)
+        if number in FLIGHT:
+            return self._link_limit.admits((index, number), "autopilot", FROM_AUTOPILOT, now)
+        return self._link_limit.admits((index, "beside"), "autopilot", BESIDE, now)
 
     def _subscribe(self, effect: Subscribe) -> None:
         self._subscriptions[effect.key] = self.bus.subscribe(effect.key, self._heard)

@@ -43,7 +43,6 @@ class OneSender:
     def judge(self, now: float, peer: int, packet: Packet) -> Sender:
         """Judge a frame of the autopilot's own component that came from `peer`."""
         value = packet.value
-        stamped = isinstance(value, (GlobalPosition, Attitude))
         clock = value.time_boot_s - now if isinstance(value, (GlobalPosition, Attitude)) else None
         silence = now - self._at
         if peer == self.peer or self.peer is None or silence > GONE_S:
@@ -61,7 +60,7 @@ class OneSender:
         heard = self._others.setdefault(peer, now)
         while len(self._others) > MOST:
             self._others.popitem(last=False)
-        if self._at > heard and not (stamped and silence > MOVED_S):
+        if self._at > heard and (clock is None or silence <= MOVED_S):
             return self._other_autopilot(peer)  # both speak in turn
         return Sender.OTHER
 

@@ -65,7 +65,9 @@ class RateLimit:
 
     def admits(self, sender: Hashable, kind: str, rate: Rate, now: float) -> bool:
         """Whether one more of a kind from a sender at `now` [s; steady] is within its bound."""
-        bucket = self._buckets.get((sender, kind)) or self.bucket(sender, kind, rate, now)
+        bucket = self._buckets.get((sender, kind))
+        if bucket is None:
+            bucket = self.bucket(sender, kind, rate, now)
         if bucket.admits(rate, now):
             return True
         self.limited[kind] += 1
