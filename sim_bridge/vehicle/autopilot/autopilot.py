@@ -51,6 +51,7 @@ class Autopilot(AutopilotState):
         self._any_station_ns = -1  # last heartbeat of any ground station; −1 = never
         self._heartbeat_ns = now_ns  # when the next one is due
         self._rest_values = 0  # `changes` of the parameters then
+        self._steady_ns = AWAKE  # until when `guide` says what `_steady` is
         self._steady: Demand | None = None  # what it demands until then, where motion does not change it
         self.enter(now_ns, self.mode)
 
@@ -69,9 +70,15 @@ class Autopilot(AutopilotState):
         self.air = air
         self.wind_filter.step(now_ns, self.motion, air, self.landed)
         self.health.drain(dt, self.armed and not self.landed)
-        if now_ns < self._rest_ns and self.parameters.changes == self._rest_values:
-            return self._steady or self._steered(now_ns, dt)
-        self._rest_ns, self._place = AWAKE, None
+        if now_ns < self._quiet_ns and self.parameters.changes == self._rest_values:
+            if now_ns < self._rest_ns:
+                return self._steady or self._steered(now_ns, dt)
+            steady = self._steady if now_ns < self._steady_ns else None
+            if steady is not None:  # streams alone are due
+                self._send_due(now_ns)
+                self._rest(now_ns, steady)
+                return steady
+        self._rest_ns, self._quiet_ns, self._place = AWAKE, AWAKE, None
         if not self.home_known and self.positioned(now_ns):
             self.home_known = True
             self.emit(telemetry.home_position(self, now_ns))
@@ -81,13 +88,19 @@ class Autopilot(AutopilotState):
         self.watch(now_ns)
         demand = self.guide(now_ns, dt)
         self._send_due(now_ns)
-        quiet = not self._late and self._company.alone and self.parameters.listed and self.home_known
-        if quiet and self.armed and not self.landed:  # until when this need not be done again
-            due_ns = min(self._heartbeat_ns, self.streams.first)
-            self._rest_ns = min(due_ns, self.watched_until(now_ns)) if due_ns > now_ns else AWAKE
+        alone = not self._late and self._company.alone and self.parameters.listed and self.home_known
+        if alone and self.armed and not self.landed:  # until when this need not be done again
+            self._quiet_ns = self.watched_until(now_ns)
             self._rest_values = self.parameters.changes
-            self._steady = demand if self.steady_until(now_ns) >= self._rest_ns else None
+            self._steady_ns = self.steady_until(now_ns)
+            self._rest(now_ns, demand)
         return demand
+
+    def _rest(self, now_ns: int, demand: Demand) -> None:
+        """Rest until something is due or may be found, with `demand` where that holds so long."""
+        due_ns = min(self._heartbeat_ns, self.streams.first)
+        self._rest_ns = min(due_ns, self._quiet_ns) if due_ns > now_ns else AWAKE
+        self._steady = demand if self._steady_ns >= self._rest_ns else None
 
     def rests_until(self) -> int:
         """The instant [ns] before which `step` would demand the same again and do nothing else, as long as
@@ -105,8 +118,12 @@ class Autopilot(AutopilotState):
 
     def _steered(self, now_ns: int, dt: float) -> Demand:
         """What `guide` says now, kept where it will say the same until the end of the rest."""
+        before = self.mode, self.armed, self.landed
         demand = self.guide(now_ns, dt)
-        self._steady = demand if self.steady_until(now_ns) >= self._rest_ns else None
+        if before != (self.mode, self.armed, self.landed):  # `watch` may find something in it
+            self._quiet_ns = self._rest_ns
+        self._steady_ns = self.steady_until(now_ns)
+        self._steady = demand if self._steady_ns >= self._rest_ns else None
         return demand
 
     # ------------------------------------------------------------------ faults
@@ -217,15 +234,6 @@ class Autopilot(AutopilotState):
         self.armed = False
         self._heartbeat(now_ns)
 
-    def touch_down(self) -> None:
-        """The vehicle has reached the ground."""
-        self.landed = True
-
-    def lift_off(self) -> None:
-        """The vehicle leaves the ground."""
-        self.landed = False
-        self._cold = False
-
     # ------------------------------------------------------------------ inside
 
     def _change(self, now_ns: int, mode: int) -> None:
@@ -265,7 +273,7 @@ class Autopilot(AutopilotState):
             return
         self._steady = None
         if message.get_msgId() not in SETPOINTS:  # which change what it demands, and nothing that is watched
-            self._rest_ns = AWAKE
+            self.wake()
         most = self.setup.options.answer_delay_s[1]
         if most > 0.0 and message.get_msgId() in DELAYED:
             self._wait(now_ns, packet)

@@ -63,6 +63,7 @@ class AutopilotState(ABC):
         self._out: list[bytes] = []
         self._place: tuple[Vec, Geodetic] | None = None
         self._rest_ns = AWAKE  # until when nothing is due, if nobody tells it anything
+        self._quiet_ns = AWAKE  # until when nothing is found by watching, likewise
         self._boot(now_ns)
 
     def _boot(self, now_ns: int) -> None:
@@ -147,7 +148,7 @@ class AutopilotState(ABC):
 
     def wake(self) -> None:
         """Look at everything in the next step: something was done to the vehicle."""
-        self._rest_ns = AWAKE
+        self._rest_ns = self._quiet_ns = AWAKE
 
     def fail(self, fault: Fault, failed: bool = True) -> None:
         """Make something fail, or recover."""
@@ -171,6 +172,15 @@ class AutopilotState(ABC):
         """Move the pilot's throttle stick, 0…1; None: the transmitter is no longer heard."""
         self.wake()
         self.transmitter.put(throttle, now_ns)
+
+    def touch_down(self) -> None:
+        """The vehicle has reached the ground."""
+        self.landed = True
+
+    def lift_off(self) -> None:
+        """The vehicle leaves the ground."""
+        self.landed = False
+        self._cold = False
 
     # ------------------------------------------------------------------ what it knows
 
