@@ -166,7 +166,7 @@ class TrackFilter:
         for number in (t, *position, *variance, *(velocity or ())):
             if not -BOUND < number < BOUND:
                 return Fate.NOT_FINITE
-        if min(variance[:3]) < 0.0:
+        if variance[0] < 0.0 or variance[1] < 0.0 or variance[2] < 0.0:
             return Fate.NOT_FINITE
         place = Vec(*map(float, position))
         speed = ZERO if velocity is None else Vec(*map(float, velocity))
@@ -200,6 +200,8 @@ class TrackFilter:
 
     def _floored(self, variance: Variance, with_velocity: bool) -> Variance:
         low = self.settings.sigma_min * self.settings.sigma_min
+        if with_velocity and min(variance) >= low:
+            return variance
         n, e, d, vn, ve, vd = variance
         if not with_velocity or min(vn, ve, vd) < 0.0:
             return (max(n, low), max(e, low), max(d, low), -1.0, -1.0, -1.0)
@@ -207,6 +209,8 @@ class TrackFilter:
 
     def _index_before(self, t: float) -> int:
         """Index of the newest step at or before `t`, −1 where there is none."""
+        if self._steps and t >= self._steps[-1].sample.t:  # nearly always
+            return len(self._steps) - 1
         return bisect_right(self._steps, t, key=_instant) - 1
 
     def _plausible(self, step: _Step, sample: _Sample) -> bool:
@@ -215,7 +219,8 @@ class TrackFilter:
         if dt > self.settings.gap_max:
             return False
         here = _carried(sample.t, step.axes, dt, step.density)
-        noise = sqrt(sum(sample.variance[:3]))
+        north, east, down, *_ = sample.variance
+        noise = sqrt(north + east + down)
         reach = self.settings.speed_max * dt + 6.0 * (noise + min(here.sigma, self.settings.speed_max)) + 10.0
         return distance(here.position, sample.position) <= reach
 

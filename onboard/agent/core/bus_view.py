@@ -34,6 +34,7 @@ from onboard.wire.bus.messages import (
 )
 from onboard.wire.bus.team_messages import TeamPlan
 
+_new = tuple.__new__  # twice as fast as a call of the class
 SAY_AGAIN_S = 30.0  # a trouble that goes on is said again after this
 
 
@@ -49,7 +50,8 @@ class Heard:
 
     def __init__(self, state: State, at: float) -> None:
         self.state = state
-        self.mate = MateState(state.id, at, Vec(*state.position), Vec(*state.velocity))  # monotonic [s]
+        place, velocity = _new(Vec, state.position), _new(Vec, state.velocity)
+        self.mate = MateState(state.id, at, place, velocity)  # `at`: monotonic [s]
 
 
 class BusView:

@@ -36,6 +36,7 @@ from onboard.pilot.team_seat import Field
 from onboard.wire.bus.messages import Phase, PhaseChange, Role, Setup, Track
 from onboard.wire.geodesy import Frame
 
+_new = tuple.__new__  # twice as fast as a call of the class
 OVERDUE_S = 1.0  # the word that the game runs comes within this after t₀
 SOON_S = 1.0  # before t₀, from which on the first predictions are made ready
 TRAINING_SLICES = 2  # of about 1 ms, after each control step
@@ -105,7 +106,7 @@ class GamePlayer:
     def measured(self, track: Track, now: Instant) -> None:
         """A measurement came: the predictor takes it now, so that no setpoint waits for that."""
         sample = TrackSample(
-            track.id, self._seconds(track.stamp_ns), Vec(*track.position), Vec(*track.velocity),
+            track.id, self._seconds(track.stamp_ns), _new(Vec, track.position), _new(Vec, track.velocity),
             track.covariance,
         )  # fmt: skip
         self._tracks.heard(track)
