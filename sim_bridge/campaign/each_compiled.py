@@ -11,6 +11,7 @@ from functools import cache
 from types import FunctionType
 from typing import Any
 
+from llvmlite import ir
 from numba.core import cgutils, types
 from numba.core.errors import TypingError
 from numba.core.typing import templates
@@ -128,6 +129,13 @@ def _room(context, value, items):  # type: ignore[no-untyped-def]
     return signature(kinds.CPointer(value), value, items), code
 
 
+def _each_at_once(context, function, at_once, items, shared):  # type: ignore[no-untyped-def]
+    """`each_at_once`: a call of the second function."""
+    if _empty(items):
+        return signature(kinds.Tuple(()), function, at_once, items, shared), _nothing
+    return _one_of(context, (function, at_once), 1, items, shared)
+
+
 def _few_or_many(context, few, few_compiled, many, items, shared):  # type: ignore[no-untyped-def]
     """`few_or_many`: a call of one of them."""
     count = len(items)
@@ -151,6 +159,43 @@ def _one_of(context: Any, functions: tuple[Any, ...], which: int, items: Any, sh
     return signature(call.return_type, *functions, items, shared), code
 
 
+def _roots(context, values):  # type: ignore[no-untyped-def]
+    """`roots`: of a vector."""
+
+    def code(context, builder, _signature, given):  # type: ignore[no-untyped-def]
+        vector = _vector(builder, given[0], values.count)
+        kind = ir.FunctionType(vector.type, [vector.type])
+        root = build.get_or_insert_function(builder.module, kind, f"llvm.sqrt.v{values.count}f64")
+        return _tuple_of(context, builder, values, builder.call(root, [vector]))
+
+    return signature(values, values), code
+
+
+def _inverses(context, values):  # type: ignore[no-untyped-def]
+    """`inverses`: of a vector."""
+
+    def code(context, builder, _signature, given):  # type: ignore[no-untyped-def]
+        vector = _vector(builder, given[0], values.count)
+        one = ir.Constant(vector.type, [1.0] * values.count)
+        return _tuple_of(context, builder, values, builder.fdiv(one, vector))
+
+    return signature(values, values), code
+
+
+def _vector(builder: Any, given: Any, count: int) -> Any:
+    """A tuple of floats as a vector."""
+    found = ir.Constant(ir.VectorType(ir.DoubleType(), count), ir.Undefined)
+    for k in range(count):
+        found = builder.insert_element(found, builder.extract_value(given, k), ir.IntType(32)(k))
+    return found
+
+
+def _tuple_of(context: Any, builder: Any, kind: Any, vector: Any) -> Any:
+    """A vector as a tuple of floats."""
+    parts = [builder.extract_element(vector, ir.IntType(32)(k)) for k in range(kind.count)]
+    return context.make_tuple(builder, kind, parts)
+
+
 def _empty(items: Any) -> bool:
     return len(items) == 0
 
@@ -170,9 +215,12 @@ def compile_each() -> None:
         (each_module.each, _each),
         (each_module.each_pair, _each_pair),
         (each_module.table, _table),
+        (each_module.each_at_once, _each_at_once),
         (each_module.few_or_many, _few_or_many),
         (each_module.room, _room),
         (each_module.some_or_none, _some_or_none),
+        (each_module.roots, _roots),
+        (each_module.inverses, _inverses),
     )
     for function, made in forms:
         template = library.make_intrinsic_template(function, made, function.__name__)

@@ -10,7 +10,7 @@ from __future__ import annotations
 from math import cos, pi, sin, sqrt
 from typing import NamedTuple
 
-from onboard.core.math.each import each
+from onboard.core.math.each import each, each_at_once, inverses, roots
 from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import DOWN, NORTH, TINY, Vec
 
@@ -70,7 +70,50 @@ def blocked_cone(pursuer: Vehicle, _index: int, seen: Seen) -> Cone:
 
 def blocked_cones(evader: Vehicle, pursuers: tuple[Vehicle, ...], rho: float) -> tuple[Cone, ...]:
     """The cones of all pursuers, seen from the evader; `rho` is ρ of (4) [m]."""
-    return each(blocked_cone, pursuers, Seen(evader.position, evader.speed, rho))
+    seen = Seen(evader.position, evader.speed, rho)
+    return each_at_once(blocked_cone, cones_at_once, pursuers, seen)
+
+
+class Distances(NamedTuple):
+    """What all cones need the roots and the quotients of."""
+
+    seen: Seen
+    far: tuple[float, ...]  # d of all pursuers [m]
+    inverse: tuple[float, ...]  # 1 / d
+    rest: tuple[float, ...]  # √(d² − ρ²), 0 within ρ
+
+
+def cones_at_once(pursuers: tuple[Vehicle, ...], seen: Seen) -> tuple[Cone, ...]:
+    """What `blocked_cone` gives of all pursuers, to the last bit, with all roots at once."""
+    squares = each(_square_to, pursuers, seen)
+    far = roots(squares)
+    rest = roots(each(_beyond, squares, seen.rho))
+    return each(_cone_at, pursuers, Distances(seen, far, inverses(far), rest))
+
+
+def _square_to(pursuer: Vehicle, _index: int, seen: Seen) -> float:
+    x = pursuer.position.x - seen.position.x
+    y = pursuer.position.y - seen.position.y
+    z = pursuer.position.z - seen.position.z
+    return x * x + y * y + z * z
+
+
+def _beyond(square: float, _index: int, rho: float) -> float:
+    return max(0.0, square - rho * rho)
+
+
+def _cone_at(pursuer: Vehicle, index: int, at: Distances) -> Cone:
+    e, evader_speed, rho = at.seen
+    p, speed = pursuer.position, pursuer.speed
+    d, k = at.far[index], at.inverse[index]
+    if speed >= evader_speed or d <= TINY:
+        return EVERYTHING
+    sa = speed / evader_speed
+    ca = sqrt(1.0 - sa * sa)
+    sb = rho * k if rho < d else 1.0
+    cb = at.rest[index] * k
+    axis = Vec((p.x - e.x) * k, (p.y - e.y) * k, (p.z - e.z) * k)
+    return Cone(axis, ca * cb - sa * sb, sa * cb + ca * sb)
 
 
 def is_free(u: Vec, cones: tuple[Cone, ...]) -> bool:

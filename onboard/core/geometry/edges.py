@@ -39,9 +39,6 @@ def free_ray(preferred: Vec, cones: tuple[Cone, ...]) -> Ray:
     """
     if is_free(preferred, cones):
         return Ray(True, preferred, 1.0)
-    for cone in cones:
-        if cone.cos < -1.0:
-            return Ray(False, preferred, -2.0)
     return few_or_many(by_pairs, one_by_one, of_many, cones, preferred)
 
 
@@ -63,19 +60,31 @@ def _searched(cones: tuple[Cone, ...], preferred: Vec, only: bool) -> Ray:
     """
     edges = table(rim_of, cones, preferred)
     total = len(cones)
-    first = _deepest(preferred.x, preferred.y, preferred.z, edges, total)
+    first = 0
+    most = edges[0].level - edges[0].limit
+    for k in range(1, total):
+        depth = edges[k].level - edges[k].limit
+        if depth > most:
+            most = depth
+            first = k
+    if edges[first].cos < -1.0:
+        return Ray(False, preferred, -2.0)
     best = on_edge(edges[first], first, preferred)
     number = _deepest(best.x, best.y, best.z, edges, total)
     if number == first:  # all but a point is blocked, and rounding the point
         return Ray(False, preferred, -3.0 if only else -2.0)
     found = Found(room(edges[first], cones), room(first, cones), room(best, cones))
-    found.rims[0] = edges[first]
-    found.numbers[0] = first
-    found.spots[0] = best
+    kept = 0
+    if number >= 0:
+        found.rims[0] = edges[first]
+        found.numbers[0] = first
+        found.spots[0] = best
+        kept = 1
     count = 1
-    kept = 1
     while number >= 0:
         edge = edges[number]
+        if edge.cos < -1.0:
+            return Ray(False, preferred, -2.0)
         kept = _left(found, kept, edge)
         found.rims[count] = edge
         found.numbers[count] = number
@@ -197,6 +206,9 @@ def by_pairs(cones: tuple[Cone, ...], preferred: Vec) -> Ray:
     Candidates nearer than the best so far are tested against all cones, the others never. Written out in
     floats: with few pursuers the interpreted onboard agent spends its time here.
     """
+    for cone in cones:
+        if cone.cos < -1.0:
+            return Ray(False, preferred, -2.0)
     px, py, pz = preferred
     edges = each(rim_of, cones, preferred)
     best = -2.0

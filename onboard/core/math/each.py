@@ -8,6 +8,7 @@ tuples written out in full (see sim_bridge/campaign/compiled.py), because compil
 from __future__ import annotations
 
 from collections.abc import Callable, MutableSequence, Sequence
+from math import inf, sqrt
 from typing import TypeVar
 
 A = TypeVar("A")
@@ -34,6 +35,19 @@ def table(function: Callable[[A, int, S], B], items: tuple[A, ...], shared: S) -
     """What `each` gives, to be looked up by a running index and not handed on; of at least one item.
 
     Compiled it is an array on the stack, which knows no length and ends with the function that made it.
+    """
+    return tuple([function(item, index, shared) for index, item in enumerate(items)])
+
+
+def each_at_once(
+    function: Callable[[A, int, S], B],
+    _at_once: Callable[[tuple[A, ...], S], tuple[B, ...]],
+    items: tuple[A, ...],
+    shared: S,
+) -> tuple[B, ...]:
+    """`each(function, items, shared)`; compiled `at_once(items, shared)`, which must give the same.
+
+    Worth it where all items' roots and quotients can be had at once (`roots`, `inverses`).
     """
     return tuple([function(item, index, shared) for index, item in enumerate(items)])
 
@@ -69,3 +83,13 @@ def some_or_none(
 ) -> B:
     """`some(items, shared)` of at least one item, else `none(items, shared)`; compiled, one alone."""
     return some(items, shared) if items else none(items, shared)
+
+
+def roots(values: tuple[float, ...]) -> tuple[float, ...]:
+    """The square roots of all values; compiled by vector instructions."""
+    return tuple([sqrt(value) for value in values])
+
+
+def inverses(values: tuple[float, ...]) -> tuple[float, ...]:
+    """1 / value of all values; compiled by vector instructions. 1 / 0 is inf."""
+    return tuple([1.0 / value if value else inf for value in values])
