@@ -111,7 +111,7 @@ class ClockWatch:
 class Sample:
     """One place with its velocity, as north, east and down [m] of the first sample of its run."""
 
-    __slots__ = ("at", "down", "east", "north", "velocity", "way_east", "way_north")
+    __slots__ = ("at", "down", "east", "north", "off", "velocity", "way_east", "way_north")
 
     def __init__(self, at: float, place: GlobalPosition, origin: GlobalPosition, narrow: float) -> None:
         """`narrow`: the cosine of the origin's latitude."""
@@ -122,6 +122,7 @@ class Sample:
         self.down = origin.altitude_m - place.altitude_m
         self.velocity = place.velocity
         self.way_north = self.way_east = 0.0  # covered by the velocities since the first sample [m]
+        self.off = 0.0  # by which places missed where velocities led, summed since then [m]
 
 
 class Track:
@@ -157,8 +158,10 @@ class Track:
         north = new.north - last.north - way_north
         east = new.east - last.east - way_east
         down = new.down - last.down - 0.5 * (v.z + u.z) * dt
-        if hypot(north, east, down) > JUMP + JUMP_RATE * dt * dt:
+        missed = hypot(north, east, down)
+        if missed > JUMP + JUMP_RATE * dt * dt:
             return "position_jump"
+        new.off = last.off + missed
         new.way_north, new.way_east = last.way_north + way_north, last.way_east + way_east
         samples.append(new)
         while len(samples) > 2 and at - samples[1].at >= WINDOW:
@@ -166,8 +169,12 @@ class Track:
         return "position_frozen" if self._frozen() else ""
 
     def _frozen(self) -> bool:
-        """Whether the place has stood still in any window that ends now while velocity has covered a way."""
+        """Whether the place has stood still in any window that ends now while velocity has covered a way.
+
+        A place moves at least as far as velocities lead less what places miss of that."""
         last = self._samples[-1]
+        if last.off - self._samples[0].off < (1.0 - STILL) * MOVED:
+            return False
         at, north, east = last.at, last.north, last.east
         way_north, way_east = last.way_north, last.way_east
         for sample in self._samples:
