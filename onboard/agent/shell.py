@@ -98,7 +98,8 @@ class _Port:
         """The number of a peer: the same as long as it is not forgotten."""
         number = self.numbers.get(peer)
         if number is not None:
-            self.numbers.move_to_end(peer)
+            if len(self.numbers) > 1:
+                self.numbers.move_to_end(peer)
             return number
         if len(self.numbers) >= PEERS_MAX:
             _, old = self.numbers.popitem(last=False)

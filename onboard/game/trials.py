@@ -71,7 +71,7 @@ class Trial:
             self._score = opening(here[self.id], tuple(here[id] for id in pursuers if id in here))
         elif wall_ns > self._before_ns:
             start, dt = (self._before_ns - t0_ns) / NS_PER_S, (wall_ns - self._before_ns) / NS_PER_S
-            ids = tuple(id for id in pursuers if id in self._before and id in here)
+            ids = tuple([id for id in pursuers if id in self._before and id in here])
             nearest = self._judge(start, dt, here, ids, rules)
         self._before, self._before_ns = here, wall_ns
         return nearest
@@ -84,9 +84,9 @@ class Trial:
         self, start: float, dt: float, here: dict[int, Vec], ids: tuple[int, ...], rules: Rules
     ) -> dict[int, float]:
         assert self._score is not None
-        before, after = tuple(self._before[id] for id in ids), tuple(here[id] for id in ids)
+        before, after = tuple([self._before[id] for id in ids]), tuple([here[id] for id in ids])
         e0, e1 = self._before[self.id], here[self.id]
-        speeds = tuple(self._speeds[id] for id in ids)
+        speeds = tuple([self._speeds[id] for id in ids])
         step = Step(start, dt, e0, e1, before, after, self._speeds[self.id], speeds)
         self._score = score = judge_any(self._score, step, rules, self._goals)
         if score.verdict != GameResult.RUNNING:
@@ -129,8 +129,8 @@ class Trials:
 
     def observe(self, wall_ns: int, now_ns: int, t0_ns: int, positions: Mapping[int, Vec]) -> list[Trial]:
         """Judge everybody on places [m; NED] of `wall_ns`; those whose game that ended."""
-        known = [id for id in (*self.all, *self._pursuers) if id in positions]
-        here = {id: self._judged(positions[id]) for id in known}
+        judged = self._judged
+        here = {id: judged(positions[id]) for id in (*self.all, *self._pursuers) if id in positions}
         looked_at = [trial for trial in self.playing if trial.id in here]
         for trial in looked_at:
             trial.seen_ns = now_ns
