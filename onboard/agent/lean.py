@@ -57,7 +57,7 @@ def _one_heap() -> None:
 
 def _without(missing: str, instead: ModuleType | None, *modules: str) -> None:
     """Import modules as they are where another is missing (None) or has another in its place; nothing where
-    that one is there already, or they are not installed.
+    that one is there already, and no further than they can be imported.
 
     Who needs it imports it later all the same, as who asks why a bus with keys does not open."""
     if missing in sys.modules or any(name in sys.modules for name in modules):
@@ -66,9 +66,8 @@ def _without(missing: str, instead: ModuleType | None, *modules: str) -> None:
     try:
         for name in modules:
             import_module(name)
-    except ModuleNotFoundError as error:
-        if error.name not in modules:  # uvloop is an extra
-            raise
+    except ImportError:
+        pass  # uvloop is an extra, and may not fit this interpreter: who needs it tries again, and tells
     finally:
         del sys.modules[missing]
 

@@ -195,3 +195,19 @@ def test_named_tuples_tell_the_same_types_afterwards() -> None:
     assert told[2:] == ["0", "True"]
     if sys.version_info < (3, 14):
         assert int(told[1]) > 300  # words of types that typing had compiled
+
+
+def test_a_loop_that_cannot_be_imported_is_done_without(tmp_path: Path) -> None:
+    (tmp_path / "uvloop.py").write_text("raise ImportError('built for another interpreter')", encoding="utf-8")
+    code = """
+from onboard.agent.lean import lean
+lean()
+import sys
+from onboard.runtime.fast_loop import loop_factory
+print(loop_factory(), "ssl" in sys.modules)
+"""
+    told = subprocess.run(
+        [sys.executable, "-c", code], check=True, timeout=patience(40.0), cwd=ROOT, text=True,
+        stdout=subprocess.PIPE, env={**os.environ, "PYTHONPATH": os.pathsep.join((str(tmp_path), str(ROOT)))},
+    ).stdout  # fmt: skip
+    assert told.split() == ["None", "False"]
