@@ -39,8 +39,13 @@ class BareLoader(SourceFileLoader):
         if fullname in WORDS:
             return compile("", self.path, "exec")
         code = super().get_code(fullname)
-        top = fullname.partition(".")[0]
-        return bare(code) if code is not None and (top in OURS or top in sys.stdlib_module_names) else code
+        return bare(code) if code is not None and is_ours(fullname) else code
+
+
+def is_ours(module: str) -> bool:
+    """Whether a module is of a package that an agent itself brings, or of Python's library."""
+    top = module.partition(".")[0]
+    return top in OURS or top in sys.stdlib_module_names
 
 
 def import_bare() -> None:

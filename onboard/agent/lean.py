@@ -6,6 +6,8 @@ freed early is used again by what comes.
 
 from __future__ import annotations
 
+import contextlib
+import gc
 import sys
 from importlib import import_module
 from types import ModuleType
@@ -36,11 +38,26 @@ def lean() -> None:
 
 
 def settle() -> None:
-    """Once everything is imported: fields of named tuples keep the words of their types, as the source has
-    them, not what typing has compiled of each word; who asks for the types gets the same."""
+    """Once everything is imported: our classes and modules lose their docstrings as well, and fields of named
+    tuples keep the words of their types, as the source has them, not what typing has compiled of each word:
+    who asks for the types gets the same."""
+    from onboard.agent.bare_import import is_ours
+
+    for kind in filter(_is_class, gc.get_objects()):
+        with contextlib.suppress(AttributeError, TypeError):  # of the interpreter itself
+            if is_ours(kind.__module__):
+                kind.__doc__ = None
+    for name, module in list(sys.modules.items()):
+        if is_ours(name):
+            module.__doc__ = None
     for kind in tuple.__subclasses__():
         said = vars(kind).get("__annotations__", {})
         said.update({name: one.__forward_arg__ for name, one in said.items() if isinstance(one, ForwardRef)})
+
+
+def _is_class(one: object) -> bool:
+    """Unlike `isinstance`, it asks no object for its own opinion."""
+    return issubclass(type(one), type)
 
 
 def _one_heap() -> None:
