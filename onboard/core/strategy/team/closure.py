@@ -146,7 +146,7 @@ def way_out_at(cones: tuple[Cone, ...], pitch: float) -> WayOut:
             return WayOut(True, -pi, 0.0, pitch, i, i)
         if half <= 0.0:
             continue
-        start = yaw_of(cones[i].axis) - half
+        start = wrap(yaw_of(cones[i].axis) - half)  # in order from south on, whichever arcs reach over it
         k = count
         while k > 0 and starts[k - 1] > start:
             starts[k] = starts[k - 1]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import acos, cos, inf, pi, sin
 
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from onboard.core.game.rules import NO_TARGET, Rules, Target
@@ -119,6 +119,7 @@ def test_who_comes_nearer_to_a_target_covers_it_no_less(
 
 @given(places, st.lists(st.tuples(places, st.floats(1.0, 4.9)), min_size=1, max_size=6), places)
 @settings(max_examples=60)
+@example(Vec(6.0, 1.0, 0.0), [(ZERO, 2.0), (Vec(0.0, 1.0, 0.0), 1.0)], ZERO)  # one cone in another, due south
 def test_every_strength_is_a_share_and_what_holds_of_whom_turns_with_the_world(
     e: Vec, who: list[tuple[Vec, float]], goal: Vec
 ) -> None:

@@ -9,9 +9,10 @@ import pytest
 from numpy.typing import NDArray
 
 from onboard.core.game.rules import Rules, Target
+from onboard.core.geometry.cones import Cone
 from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import ZERO, Vec
-from onboard.core.strategy.team.closure import least_number, sight_cone, way_out
+from onboard.core.strategy.team.closure import least_number, sight_cone, way_out, way_out_at
 from onboard.core.strategy.team.plan_types import Heights, Margin, Member, Situation
 
 SPEED = 50.0
@@ -92,6 +93,34 @@ def test_closed_and_open_bands_as_flights_find_them(pursuers: int, pitch_deg: fl
         if not way.closed:
             assert degrees(way.gap) == pytest.approx(found, abs=4.0)
     assert seen == ({False} if pursuers == 3 else {True, False})
+
+
+def test_the_widest_way_out_is_the_same_whichever_way_the_ring_is_turned() -> None:
+    """Random cones of random widths, some within others, turned about: over north, over south, anywhere."""
+    rng = np.random.default_rng(1)
+    for _ in range(400):
+        middles = rng.uniform(-pi, pi, rng.integers(1, 7))
+        halves = rng.uniform(0.02, 1.2, len(middles))
+        for turn in (0.0, pi - middles[0], float(rng.uniform(-pi, pi))):
+            yaws = middles + turn
+            cones = tuple(
+                Cone(Vec(cos(yaw), sin(yaw), 0.0), cos(half), sin(half))
+                for yaw, half in zip(yaws, halves, strict=True)
+            )
+            fine = np.radians(np.arange(0.0, 360.0, 0.1))
+            off = np.abs((fine[:, None] - yaws + pi) % (2.0 * pi) - pi)
+            free = (off > halves).all(axis=1)
+            found = way_out_at(cones, 0.0)
+            longest = run = 0
+            for one in np.r_[free, free]:
+                run = run + 1 if one else 0
+                longest = max(longest, run)
+            if free.any():
+                assert degrees(found.gap) == pytest.approx(0.1 * min(longest, len(fine)), abs=0.25)
+                away = np.abs((found.bearing - yaws + pi) % (2.0 * pi) - pi)
+                assert (away > halves).all()  # its middle is free
+            else:
+                assert found.gap <= radians(0.25)
 
 
 def test_the_gap_of_neighbours_is_the_formula_of_the_band() -> None:
