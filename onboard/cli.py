@@ -66,6 +66,11 @@ def _common() -> Parser:
     return common
 
 
+def _lean() -> None:
+    if early.program():  # who calls this module's functions keeps its own process whole
+        lean()
+
+
 def _typed(kind: str, name: str) -> Callable[[str], Any]:
     """Reads a value by a type of the agent's configuration, which is imported only where the option is typed.
 
@@ -73,7 +78,7 @@ def _typed(kind: str, name: str) -> Callable[[str], Any]:
     """
 
     def read(text: str) -> Any:
-        lean()  # before the first import of what it leaves out
+        _lean()  # before the first import of what it leaves out
         from onboard.agent import config
         from onboard.config.option_value import parsed
 
@@ -141,7 +146,7 @@ def run(arguments: list[str] | None = None) -> int:
 
         print(version())
         return 0
-    lean()
+    _lean()
     file = Path(given["config"]) if "config" in given else None
     options: dict[str, Any] = {name: given[name] for name in OPTIONS if name in given}
     from onboard.agent import config

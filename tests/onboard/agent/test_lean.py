@@ -217,3 +217,19 @@ print(loop_factory(), "ssl" in sys.modules)
         stdout=subprocess.PIPE, env={**os.environ, "PYTHONPATH": os.pathsep.join((str(tmp_path), str(ROOT)))},
     ).stdout  # fmt: skip
     assert told.split() == ["None", "False"]
+
+
+def test_who_calls_the_command_line_keeps_its_own_process_whole() -> None:
+    """Afterwards pymavlink still has all its messages, and modules their words."""
+    code = (
+        "import sys; from onboard.cli import parser, run\n"
+        "parser().parse_args(['--id', '3', '--role', 'pursuer'])\n"
+        "try: run(['--id', '0'])\n"
+        "except Exception as error: print(error)\n"
+        "from pymavlink.dialects.v20 import ardupilotmega as dialect\n"
+        "import onboard.agent.config as config\n"
+        "assert dialect.MAVLink(None, 1, 1).heartbeat_encode.__doc__ and config.load.__doc__\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0, done.stderr
+    assert "id" in done.stdout
