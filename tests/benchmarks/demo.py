@@ -44,8 +44,8 @@ def report(times: int) -> None:
     shown = [demo() for _ in range(times)]
     lines = [
         "From `make demo` to its last line, everything installed: Table 1 in the plane, then the scenario",
-        "`first` flown in real time by seven processes with networks that learn, its figures and its report, the",
-        f"figures of the plane games beside it. Promised: {PROMISED_S:g} s on two quiet cores.",
+        "`first` flown in real time by seven processes with networks that learn, its figures and its report,",
+        f"the figures of the plane games beside it. Promised: {PROMISED_S:g} s on two quiet cores.",
         "",
         "| wall [s] | CPU [s] | load before | how the game ended |",
         "|---|---|---|---|",
