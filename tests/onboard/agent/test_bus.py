@@ -243,12 +243,12 @@ async def test_garbage_on_the_bus_is_counted_by_cause_and_changes_nothing() -> N
         await under_way(game, 1.0)
         agent = game.agents[PURSUER]
         position = (0.0, 0.0, 0.0)
-        foreign = Track(EVADER, game.clock.wall_ns(), position, position, (1.0,) * 6)  # type: ignore[arg-type]
+        foreign = Track(MATE, game.clock.wall_ns(), position, position, (1.0,) * 6)  # type: ignore[arg-type]
         nan = Track(EVADER, 0, (float("nan"), 0.0, 0.0), position, (1.0,) * 6)  # type: ignore[arg-type]
         bus = game.bus
         bus.publish(TRACK.key(game.game, EVADER), b"\xff\x00\x01", TRACK.delivery)
         bus.publish(TRACK.key(game.game, EVADER), topics.TRACK.encode(nan), TRACK.delivery)
-        bus.publish(TRACK.key(game.game, MATE), topics.TRACK.encode(foreign), TRACK.delivery)
+        bus.publish(TRACK.key(game.game, EVADER), topics.TRACK.encode(foreign), TRACK.delivery)
         bus.publish(SETUP.key(game.game), b"\x92\x63\x90", SETUP.delivery)
         await game.forward(1.0)
         assert agent.core.bus.drops["undecodable"] == 1
