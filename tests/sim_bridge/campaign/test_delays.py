@@ -18,7 +18,7 @@ from onboard.wire.bus.messages import Phase
 from onboard.wire.bus.topics import TRACK
 from sim_bridge.campaign.spatial_draw import DECIDES, drawn_scenario, spatial
 from sim_bridge.campaign.spatial_fixed import eye_of
-from sim_bridge.vehicle.motion import Air
+from sim_bridge.vehicle.motion import Air, Motion
 from tests.support.virtual_time import virtual
 from tests.support.whole_games import WholeGame, autopilot, game_of
 
@@ -59,9 +59,9 @@ class Watch:
                 self.told.append((self.step, frame.ned_from_geodetic(lat / 1e7, lon / 1e7, alt / 1e3)))
             send(data)
 
-        def moved(now_ns: int, air: Air) -> None:
+        def moved(now_ns: int, motion: Motion, air: Air) -> None:
             self.truth[self.step - 1] = vehicle.airframe.motion.position  # before this step
-            move(now_ns, air)
+            move(now_ns, motion, air)
 
         pilot.receive, link.send, vehicle.move = received, sent, moved  # type: ignore[method-assign,assignment]
 
