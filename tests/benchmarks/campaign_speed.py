@@ -36,9 +36,9 @@ What it says, and what not:
   past a mate, as 82b7eea did not), aircraft 20 %, gusts 16 %, views and strategies 15 %, scalar sines and
   arctangents 11 %, Python around the kernel 8 %, sensor and filters 7 %, free rays 2 %. References to arrays
   are no longer counted. Decisions are still one vehicle at a time, and of eight lanes six are used.
-- Games of simple motion with five pursuers spend most of a step on square roots and divisions of cones,
-  meeting points and the referee; of so few cones the search for the free ray is that of before. From eight
-  cones on it is another (benchmarks/results/free-rays.md). Lanes over games: lanes-over-games.md.
+- Games of simple motion with five pursuers spend most of a step on square roots and divisions: those of cones
+  are had at once by vector instructions, those of meeting points and the referee one by one, behind branches.
+  In space free rays are searched one cone after another (free-rays.md). Lanes over games: lanes-over-games.md.
 - Aircraft fly at 100 Hz; 40 Hz would be another grid of gusts than that of a flight, and is not offered.
 """.strip().splitlines()
 
