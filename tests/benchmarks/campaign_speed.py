@@ -38,7 +38,7 @@ What it says, and what not:
   are no longer counted. Decisions are still one vehicle at a time, and of eight lanes six are used.
 - Games of simple motion with five pursuers spend most of a step on square roots and divisions: those of cones
   are had at once by vector instructions, those of meeting points and the referee one by one, behind branches.
-  In space free rays are searched one cone after another (free-rays.md). Lanes over games: lanes-over-games.md.
+  In space free rays are searched one cone after another (free-rays.md). Lanes over games: lanes-over-games.md
 - Aircraft fly at 100 Hz; 40 Hz would be another grid of gusts than that of a flight, and is not offered.
 """.strip().splitlines()
 
