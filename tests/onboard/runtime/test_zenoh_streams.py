@@ -6,6 +6,7 @@ import asyncio
 from collections import Counter, defaultdict, deque
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import psutil  # type: ignore[import-untyped]
 import pytest
 import zenoh
 from hypothesis import given
@@ -17,7 +18,7 @@ from onboard.runtime.loop import run_virtual
 from onboard.runtime.protocols import Sample
 from onboard.runtime.rate_limit import LATER_S, BusLimit
 from onboard.runtime.zenoh_streams import LOOK_S, Stream, Streams
-from onboard.wire.bus.topics import COMMAND, EVENTS, STATE, Delivery
+from onboard.wire.bus.topics import COMMAND, EVENTS, STATE, TRACK, Delivery
 from tests.support.bus_stages import Heard, free_port
 from tests.support.real_time import until
 
@@ -49,7 +50,9 @@ class Played:
         self.streams = Streams(self.loop, self.counts, BusLimit())
         self.channel = deque[Put]()
         self.heard = list[tuple[float, Sample]]()
-        self.stream = Stream(lambda sample: self.heard.append((self.loop.time(), sample)), every)
+        self.stream = Stream(
+            lambda sample: self.heard.append((self.loop.time(), sample)), "**", every=every, kept=True
+        )
         self.streams.attach(self.stream, lambda: self.channel.popleft() if self.channel else None)
 
     @property
@@ -168,7 +171,7 @@ def test_who_fails_or_ends_while_hearing_takes_nothing_from_others() -> None:
             if sample.payload == b"4":
                 played.streams.detach(other)
 
-        other = Stream(bad, False)
+        other = Stream(bad, "**")
         played.streams.attach(other, lambda: full.popleft() if full else None)
         played.channel.append(put(STATE.key(GAME, 1), b"mine"))
         await asyncio.sleep(2.0 * LOOK_S)
@@ -237,9 +240,37 @@ async def test_an_order_is_heard_at_once_whenever_the_loop_looks_next(monkeypatc
 
 
 @pytest.mark.real
+async def test_what_an_agent_hears_in_a_long_flight_takes_no_memory() -> None:
+    """Places of a channel stay in memory once they were used, and messages use one after another."""
+    endpoint = f"tcp/127.0.0.1:{free_port()}"
+    agent, others = await open_zenoh(endpoint, listen=True), await open_zenoh(endpoint)
+    keys = [TRACK.key(GAME, 1), *(STATE.key(GAME, id) for id in range(2, 7))]
+    heard = [Heard(agent, TRACK.key(GAME)), *(Heard(agent, key) for key in keys[1:])]
+    resident = psutil.Process().memory_info
+
+    async def fly(messages: int) -> None:
+        for number in range(messages):
+            for key in keys:
+                others.publish(key, b"%200d" % number, Delivery.LATEST)
+            if number % 20 == 0:
+                for one in heard:
+                    one.samples.clear()
+                await asyncio.sleep(0.001)
+
+    try:
+        await until(lambda: others.publish(keys[0], b"probe", Delivery.LATEST) or heard[0].samples)
+        await fly(1000)
+        before = resident().rss
+        await fly(7000)
+        assert resident().rss - before < 4e6  # 7000 places of six channels are 10 MB
+    finally:
+        await others.close()
+        await agent.close()
+
+
+@pytest.mark.real
 async def test_a_channel_that_ran_over_is_counted_and_keeps_the_newest(monkeypatch: Any) -> None:
-    monkeypatch.setattr("onboard.runtime.zenoh_session.CHANNEL_MAX", 64)
-    monkeypatch.setattr(zenoh_streams, "CHANNEL_MAX", 64)
+    monkeypatch.setattr(zenoh_streams, "MANY_MAX", 64)
     endpoint = f"tcp/127.0.0.1:{free_port()}"
     station, vehicle = await open_zenoh(endpoint, listen=True), await open_zenoh(endpoint)
     key, heard = EVENTS.key(GAME, 2), list[bytes]()
