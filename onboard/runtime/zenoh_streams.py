@@ -19,8 +19,8 @@ from onboard.runtime.rate_limit import LATER_S, PAYLOAD_MAX, BusLimit
 from onboard.wire.bus.topics import TOPICS, Delivery
 
 LOOK_S = 0.03  # a message waits so long at most for a loop that is not late
-# Messages that wait in a channel; beyond them the oldest are lost, and that is counted. In time a stream fills
-# each of these places with 250 bytes, waiting or not.
+# Messages that wait in a channel; beyond them the oldest are lost, and that is counted. In time a stream
+# fills each of these places with 250 bytes, waiting or not.
 EVERY_MAX = 8192  # where each message counts: a station hears a thousand vehicles
 MANY_MAX = 1024  # of many keys, or kept for who comes late
 ONE_MAX = 128  # of one key whose latest value counts
