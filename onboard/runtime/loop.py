@@ -225,11 +225,14 @@ for _name in (
     setattr(VirtualLoop, _name, VirtualLoop._refuse)
 
 
+_FROZEN = gc.get_freeze_count()  # by Python 3.12 itself, which begins with some
+
+
 @contextmanager
 def seldom_collected() -> Iterator[None]:
     """Search seldom for garbage in cycles, and not at all among what was there before; then as it was."""
     before = gc.get_threshold()
-    nested = gc.get_freeze_count() > 0  # what somebody else froze stays frozen
+    nested = gc.get_freeze_count() > _FROZEN  # what somebody else froze stays frozen
     if not nested:
         gc.freeze()
     gc.set_threshold(COLLECT_AFTER, *before[1:])
