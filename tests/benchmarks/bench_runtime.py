@@ -15,7 +15,8 @@ from onboard.runtime.links import open_udp
 from onboard.runtime.loop import run_virtual, virtual_clock
 from onboard.runtime.protocols import Sample
 from onboard.runtime.tasks import Pace, periodic
-from onboard.wire.bus.topics import STATE
+from onboard.runtime.zenoh_streams import LOOK_S
+from onboard.wire.bus.topics import COMMAND, STATE
 from tests.benchmarks import yardstick
 from tests.support.bus_stages import free_port
 from tests.support.real_time import until
@@ -79,7 +80,7 @@ def test_a_state_to_six_sessions_in_memory() -> None:
 
 @pytest.mark.real
 async def test_round_trips_over_zenoh_beside_bare_udp() -> None:
-    """200 bytes there and back at 50 Hz, through a listening station, as vehicles talk."""
+    """200 bytes there and back at 50 Hz, through a listening station: orders, and states as vehicles tell."""
 
     async def trips(send: Callable[[], None], arrived: asyncio.Event) -> list[float]:
         times = []
@@ -107,18 +108,27 @@ async def test_round_trips_over_zenoh_beside_bare_udp() -> None:
     endpoint = f"tcp/127.0.0.1:{free_port()}"
     station = await open_zenoh(endpoint, listen=True)
     one, two = await open_zenoh(endpoint), await open_zenoh(endpoint)
-    there, here = STATE.key("g", 1), STATE.key("g", 2)
+    order, there, here = COMMAND.key("g", 2), STATE.key("g", 1), STATE.key("g", 2)
+    two.serve(order, lambda question: question)
     two.subscribe(there, lambda sample: two.publish(here, sample.payload, STATE.delivery))
     one.subscribe(here, lambda sample: back.set())
-    back.clear()
+    orders = []
     try:
         await until(lambda: one.publish(there, PAYLOAD, STATE.delivery) or back.is_set())
-        await asyncio.sleep(0.2)
-        zenoh = await trips(lambda: one.publish(there, PAYLOAD, STATE.delivery), back)
+        while not await one.request(order, PAYLOAD, 1.0):
+            pass
+        for _ in range(150):
+            begun = perf_counter()
+            assert await one.request(order, PAYLOAD, 10.0) == [PAYLOAD]
+            orders.append(perf_counter() - begun)
+            await asyncio.sleep(0.02)
+        states = await trips(lambda: one.publish(there, PAYLOAD, STATE.delivery), back)
     finally:
         for bus in (one, two, station):
             await bus.close()
-    for name, times in (("asyncio UDP", udp), ("Zenoh through a station", zenoh)):
+    named = ("asyncio UDP", udp), ("an order over Zenoh", orders), ("states over Zenoh", states)
+    for name, times in named:
         print(f"{name}: median {median(times) * 1e6:.0f} µs, p99 {quantiles(times, n=100)[98] * 1e6:.0f} µs")
-    yardstick.ratio("round trip over Zenoh, by UDP's", median(zenoh) / median(udp))
-    assert median(zenoh) < 20 * median(udp)
+    yardstick.ratio("an order and its reply over Zenoh, by UDP's round trip", median(orders) / median(udp))
+    assert median(orders) < 20 * median(udp)
+    assert median(states) < 2.0 * LOOK_S + 20 * median(udp)  # each waits for a look at its hearer's
