@@ -21,13 +21,10 @@ from opcode import opmap
 from types import CodeType
 
 OURS = frozenset({"onboard", "numpy", "pymavlink", "msgspec", "zenoh", "uvloop", "serial", "fastcrc"})
-WORDS = frozenset(
-    {"numpy._core._add_newdocs", "numpy._core._add_newdocs_scalars"}
-)  # docstrings of compiled code
-_FUNCTION, _HAS_DOCSTRING = (
-    0x1,
-    0x4000000,
-)  # flags of code: inspect.CO_OPTIMIZED, CO_HAS_DOCSTRING (Python 3.14)
+# Modules that hold nothing but the docstrings of compiled code.
+WORDS = frozenset({"numpy._core._add_newdocs", "numpy._core._add_newdocs_scalars"})
+_FUNCTION = 0x1  # of a code's flags: CO_OPTIMIZED
+_HAS_DOCSTRING = 0x4000000  # of Python 3.14: CO_HAS_DOCSTRING
 _READ = tuple(bytes((opmap[name], 0)) for name in ("LOAD_CONST", "RETURN_CONST") if name in opmap)
 
 

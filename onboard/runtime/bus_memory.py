@@ -367,7 +367,7 @@ def _arrive(hearers: list[tuple[MemoryBus, tuple[Listener, ...]]], parcel: Parce
     """A parcel arrives at connections without an impairment, one after the other."""
     sample, now = parcel.sample, asyncio.get_running_loop().time()
     for number, (bus, listeners) in enumerate(hearers, 1):
-        bus._delivery.under_way -= 1
+        bus._delivery.end()
         try:
             bus._admit(listeners, parcel, sample, now)
         except BaseException:  # one hearer's fault is not the others'

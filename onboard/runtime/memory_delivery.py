@@ -68,7 +68,7 @@ class MemoryDelivery:
     def __init__(self, channel: Channel | None, counts: Counter[str]) -> None:
         self._channel = channel
         self._counts = counts
-        self.under_way = 0  # payloads
+        self._under_way = 0
         self._reliable: deque[tuple[bytes, Arrived]] = deque(maxlen=CALLS_MAX)
         self._reliable_ns = 0  # arrival of the last reliable payload: the next comes no sooner
         self._pumping = False
@@ -79,15 +79,15 @@ class MemoryDelivery:
 
     def begin(self, delivery: Delivery) -> bool:
         """Take one more payload under way, without an impairment; False for one too many. `end` ends it."""
-        if delivery is Delivery.LATEST and self.under_way >= CALLS_MAX:
+        if delivery is Delivery.LATEST and self._under_way >= CALLS_MAX:
             self._counts["overflow"] += 1
             return False
-        self.under_way += 1
+        self._under_way += 1
         return True
 
     def end(self) -> None:
         """A payload that began has arrived."""
-        self.under_way -= 1
+        self._under_way -= 1
 
     def bring(self, delivery: Delivery, payload: bytes, arrived: Arrived) -> None:
         """Call `arrived` with what comes of a payload, in a later round of the loop."""
@@ -96,12 +96,12 @@ class MemoryDelivery:
         if self._channel is None:
             if self.begin(delivery):
                 loop.call_soon(self._land, payload, arrived)
-        elif latest and self.under_way >= CALLS_MAX:
+        elif latest and self._under_way >= CALLS_MAX:
             self._counts["overflow"] += 1
         elif latest:
             now_ns = round(loop.time() * NS_PER_S)
             for arrival_ns, shape in self._channel.fate(payload, now_ns):
-                self.under_way += 1
+                self._under_way += 1
                 loop.call_later((arrival_ns - now_ns) / NS_PER_S, self._land, shape, arrived)
         else:
             if len(self._reliable) == self._reliable.maxlen:
@@ -124,7 +124,7 @@ class MemoryDelivery:
                 return
             self._reliable.popleft()
             self._reliable_ns = max(self._reliable_ns, fate[0][0])
-            self.under_way += 1
+            self._under_way += 1
             loop.call_later((self._reliable_ns - now_ns) / NS_PER_S, self._land, payload, arrived)
 
     def _land(self, payload: bytes, arrived: Arrived) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections import Counter, defaultdict, deque
+from contextlib import asynccontextmanager
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import psutil  # type: ignore[import-untyped]
@@ -13,7 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from onboard.runtime import zenoh_streams
-from onboard.runtime.bus_zenoh import open_zenoh
+from onboard.runtime.bus_zenoh import ZenohBus, open_zenoh
 from onboard.runtime.loop import run_virtual
 from onboard.runtime.protocols import Sample
 from onboard.runtime.rate_limit import LATER_S, BusLimit
@@ -23,7 +24,7 @@ from tests.support.bus_stages import Heard, free_port
 from tests.support.real_time import until
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import AsyncIterator, Callable
 
 GAME = "range"
 
@@ -189,13 +190,23 @@ def test_who_fails_or_ends_while_hearing_takes_nothing_from_others() -> None:
 # ---------------------------------------------------------------------- over Zenoh
 
 
+@asynccontextmanager
+async def sessions() -> AsyncIterator[tuple[ZenohBus, ZenohBus]]:
+    """Who listens, and who connects to it; both are closed in the end."""
+    endpoint = f"tcp/127.0.0.1:{free_port()}"
+    listener, client = await open_zenoh(endpoint, listen=True), await open_zenoh(endpoint)
+    try:
+        yield listener, client
+    finally:
+        await client.close()
+        await listener.close()
+
+
 @pytest.mark.real
 async def test_two_thousand_states_over_zenoh_wake_a_station_seldom_and_all_arrive_in_order() -> None:
-    endpoint = f"tcp/127.0.0.1:{free_port()}"
-    station, fleet = await open_zenoh(endpoint, listen=True), await open_zenoh(endpoint)
-    keys = [STATE.key(GAME, id) for id in range(1, 51)]  # 40 of each: within the bounds of a key
-    told = defaultdict[str, list[bytes]](list)
-    try:
+    async with sessions() as (station, fleet):
+        keys = [STATE.key(GAME, id) for id in range(1, 51)]  # 40 of each: within the bounds of a key
+        told = defaultdict[str, list[bytes]](list)
         station.subscribe(STATE.key(GAME), lambda it: told[it.key].append(it.payload), every=True)
         await until(station.connected)
         await until(lambda: fleet.publish(keys[0], b"probe", Delivery.LATEST) or told)
@@ -211,74 +222,59 @@ async def test_two_thousand_states_over_zenoh_wake_a_station_seldom_and_all_arri
         took = asyncio.get_running_loop().time() - begun
         assert all(each == sorted(each) and len(set(each)) == 40 for each in told.values())
         assert station.counters()["woken"] - woken <= took / LOOK_S + 2
-    finally:
-        await fleet.close()
-        await station.close()
 
 
 @pytest.mark.real
 async def test_an_order_is_heard_at_once_whenever_the_loop_looks_next(monkeypatch: Any) -> None:
     monkeypatch.setattr(zenoh_streams, "LOOK_S", 1e3)
-    endpoint = f"tcp/127.0.0.1:{free_port()}"
-    agent, station = await open_zenoh(endpoint, listen=True), await open_zenoh(endpoint)
-    heard, order = Heard(agent, STATE.key(GAME, 2)), list[bytes]()
+    async with sessions() as (agent, station):
+        heard, order = Heard(agent, STATE.key(GAME, 2)), list[bytes]()
 
-    def obey(question: bytes) -> bytes:
-        order.append(question)
-        return b"done"
+        def obey(question: bytes) -> bytes:
+            order.append(question)
+            return b"done"
 
-    try:
         agent.serve(COMMAND.key(GAME, 1), obey)
         await until(station.connected)
         station.publish(STATE.key(GAME, 2), b"state", Delivery.LATEST)
         assert await station.request(COMMAND.key(GAME, 1), b"abort", 20.0) == [b"done"]
         assert order == [b"abort"]
         assert not heard.samples
-    finally:
-        await station.close()
-        await agent.close()
 
 
 @pytest.mark.real
 async def test_what_an_agent_hears_in_a_long_flight_takes_no_memory() -> None:
     """Places of a channel stay in memory once they were used, and messages use one after another."""
-    endpoint = f"tcp/127.0.0.1:{free_port()}"
-    agent, others = await open_zenoh(endpoint, listen=True), await open_zenoh(endpoint)
-    keys = [TRACK.key(GAME, 1), *(STATE.key(GAME, id) for id in range(2, 7))]
-    heard = [Heard(agent, TRACK.key(GAME)), *(Heard(agent, key) for key in keys[1:])]
-    resident = psutil.Process().memory_info
+    async with sessions() as (agent, others):
+        keys = [TRACK.key(GAME, 1), *(STATE.key(GAME, id) for id in range(2, 7))]
+        heard = [Heard(agent, TRACK.key(GAME)), *(Heard(agent, key) for key in keys[1:])]
+        resident = psutil.Process().memory_info
 
-    async def fly(messages: int) -> None:
-        for number in range(messages):
-            for key in keys:
-                others.publish(key, b"%200d" % number, Delivery.LATEST)
-            if number % 20 == 0:
-                for one in heard:
-                    one.samples.clear()
-                await asyncio.sleep(0.001)
+        async def fly(messages: int) -> None:
+            for number in range(messages):
+                for key in keys:
+                    others.publish(key, b"%200d" % number, Delivery.LATEST)
+                if number % 20 == 0:
+                    for one in heard:
+                        one.samples.clear()
+                    await asyncio.sleep(0.001)
 
-    try:
         await until(lambda: others.publish(keys[0], b"probe", Delivery.LATEST) or heard[0].samples)
         await fly(1000)
         before = resident().rss
         await fly(7000)
         assert resident().rss - before < 4e6  # 7000 places of six channels are 10 MB
-    finally:
-        await others.close()
-        await agent.close()
 
 
 @pytest.mark.real
 async def test_a_channel_that_ran_over_is_counted_and_keeps_the_newest(monkeypatch: Any) -> None:
     monkeypatch.setattr(zenoh_streams, "MANY_MAX", 64)
-    endpoint = f"tcp/127.0.0.1:{free_port()}"
-    station, vehicle = await open_zenoh(endpoint, listen=True), await open_zenoh(endpoint)
-    key, heard = EVENTS.key(GAME, 2), list[bytes]()
+    async with sessions() as (station, vehicle):
+        key, heard = EVENTS.key(GAME, 2), list[bytes]()
 
-    def said(number: int) -> Callable[[], object]:
-        return lambda: number.to_bytes(2, "big") in heard
+        def said(number: int) -> Callable[[], object]:
+            return lambda: number.to_bytes(2, "big") in heard
 
-    try:
         station.subscribe(EVENTS.key(GAME), lambda sample: heard.append(sample.payload))
         await until(lambda: vehicle.publish(key, bytes(2), Delivery.EVENT) or heard)
         monkeypatch.setattr(zenoh_streams, "LOOK_S", 1.5)
@@ -289,6 +285,3 @@ async def test_a_channel_that_ran_over_is_counted_and_keeps_the_newest(monkeypat
         late = [int.from_bytes(payload, "big") for payload in heard if payload != bytes(2)]
         assert late == list(range(136, 200))
         assert station.counters()["overflow"] == 1
-    finally:
-        await vehicle.close()
-        await station.close()
