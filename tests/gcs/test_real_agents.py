@@ -42,8 +42,8 @@ async def field(*ids: int):
     station = Station(bus, RealClock(), StationSetup("field"))
     watching = asyncio.create_task(station.run())
     processes = {i: await agent(i, endpoint) for i in ids}
-    try:
-        await until(lambda: len(present(station)) == len(ids), STARTED_S)
+    try:  # a liveliness token alone shows an agent, but does not tell one process from the next
+        await until(lambda: present(station) == introduced(station) == [*ids], STARTED_S)
         yield station, processes, endpoint
     finally:
         for process in processes.values():
@@ -58,6 +58,11 @@ async def field(*ids: int):
 def present(station: Station) -> list[int]:
     """Who is there."""
     return [v.id for v in station.picture().vehicles if v.presence is Presence.PRESENT]
+
+
+def introduced(station: Station) -> list[int]:
+    """Whose health has come: it names the process that speaks."""
+    return [v.id for v in station.picture().vehicles if v.health is not None]
 
 
 def alerts(station: Station) -> set[str]:
