@@ -51,6 +51,7 @@ from onboard.agent.thinker import Thinker
 from onboard.agent.timing import Timing
 from onboard.config.printable import printable
 from onboard.core.math.constants import NS_PER_S
+from onboard.core.math.each import new
 from onboard.game.route_file import Route
 from onboard.runtime.fast_loop import grain_s
 from onboard.runtime.protocols import Bus, Clock, Link, Sample, Subscription
@@ -263,7 +264,7 @@ class Agent:
         elapsed_ns, wall_ns = clock.monotonic_ns(), clock.wall_ns()
         if elapsed_ns != self._last_ns or wall_ns != last.wall_ns:  # much happens at one instant, if virtual
             self._last_ns = elapsed_ns
-            self._last = last = tuple.__new__(Instant, (elapsed_ns / NS_PER_S, wall_ns))  # twice as fast
+            self._last = last = new(Instant, (elapsed_ns / NS_PER_S, wall_ns))
         return last
 
     def _arm(self) -> None:

@@ -10,6 +10,7 @@ from onboard.autopilot.base import Note, Pilot, ReleaseMode, Setpoint, Stage, St
 from onboard.autopilot.mode_machine import ModeMachine, ModeStep
 from onboard.autopilot.pilot_hands import flown_by_hand, live
 from onboard.autopilot.release_modes import Release, chain, positioned
+from onboard.core.math.each import new
 from onboard.wire.mavlink import commands
 from onboard.wire.mavlink.commands import Outgoing, Target
 from onboard.wire.mavlink.ids import MessageId
@@ -129,7 +130,7 @@ class GuidedAdapter:
         """Take what is known now: where it is left to is chosen in its light, for a fix may just be lost."""
         self._telemetry = telemetry
         told, self._told = self._told, False
-        if self.stage is Stage.LEAVING and (told or not positioned(telemetry)):
+        if self._machine.stage is Stage.LEAVING and (told or not positioned(telemetry)):
             self._machine.choose_among(chain(self._machine.leaving_by, now, telemetry, self._release))
 
     def forget(self, now: float) -> None:
@@ -160,17 +161,19 @@ class GuidedAdapter:
         """Return mode commands that are due, and the setpoint's messages where setpoints count."""
         self._see(now, telemetry)
         asked = self._machine.step(now, telemetry, ready=self._encoder.ready(now))
-        messages = [*self._mode_messages(asked), *self._arming(asked)]
+        messages = self._mode_messages(asked) if asked.mode or asked.prove else []
+        if asked.arm_tries:
+            messages += self._arming(asked)
         notes = [*asked.notes, *self._notes]
         self._notes = []
         sound = self._sound(setpoint, notes)
         if sound is not None:
             messages += self._encoder.encode(now, telemetry, sound)
-        return Step(tuple(messages), tuple(notes))
+        return new(Step, (tuple(messages), tuple(notes)))
 
     def _sound(self, setpoint: Setpoint | None, notes: list[Note]) -> Setpoint | None:
         """The setpoint, if it may be sent now; a fault is told once, until another setpoint."""
-        if setpoint is None or not self._encoder.sends_in(self.stage):
+        if setpoint is None or not self._encoder.sends_in(self._machine.stage):
             return None
         fault = self._encoder.fault(setpoint)
         if fault and fault != self._fault:

@@ -19,6 +19,7 @@ from onboard.autopilot.mode_requests import LATE, ModeRequests
 from onboard.autopilot.mode_table import ModeAction, ModeEvent, transition
 from onboard.autopilot.pilot_hands import PilotHands, flown_by_hand
 from onboard.core.math.constants import NEVER
+from onboard.core.math.each import new
 from onboard.wire.mavlink.ids import COMPANION, CommandId
 from onboard.wire.mavlink.values import CommandAck
 from onboard.wire.retry import CommandRetry, RetryPolicy
@@ -179,7 +180,7 @@ class ModeMachine:
             self._complain(now, telemetry.mode)
         arm_tries = self._arm.tries if known and self._arm is not None and self._arm.due(now) else 0
         notes, self._notes = tuple(self._notes), []
-        return ModeStep(notes, mode, self._mode.tries, prove, arm_tries)
+        return new(ModeStep, (notes, mode, self._mode.tries, prove, arm_tries))
 
     @property
     def _wanted(self) -> str:

@@ -14,6 +14,7 @@ from onboard.autopilot.base import Telemetry
 from onboard.autopilot.batteries import Batteries, Gauged
 from onboard.autopilot.plausibility import FALL, LEAST, ClockWatch, EstimatorWatch, PlaceWatch, Recent, Stamp
 from onboard.core.math.constants import NEVER
+from onboard.core.math.each import new
 from onboard.core.math.vectors import ZERO, Vec
 from onboard.wire.geodesy import Frame
 from onboard.wire.mavlink.frames import Packet
@@ -53,7 +54,6 @@ BLANK: dict[type, Value] = {
     RcChannels: RcChannels(()),
 }
 NOTHING: dict[type, tuple[float, int, Any]] = {kind: (NEVER, 0, value) for kind, value in BLANK.items()}
-_new = tuple.__new__
 _STAMPED = (GlobalPosition, Attitude)  # with the instant that they are of, on the autopilot's clock
 _WEIGHED = {EkfStatus, GpsFix, Battery, SysStatus}  # of which the last few are judged together
 
@@ -185,7 +185,7 @@ class Observer:
         position = self.frame.ned_from_geodetic(*where) if self.frame is not None and placed else ZERO
         packs, fix = self._batteries, 0 if gps_at == NEVER else round(self._fix.value)
         estimated = ekf_at != NEVER and self._estimator.ok
-        telemetry: Telemetry = _new(Telemetry, (  # its fields in their order: five times as fast as by name
+        telemetry = new(Telemetry, (  # its fields in their order: five times as fast as by name
             heart.kind, heart.mode, heart.armed, heart_at, heart.status, self._clock.boot_s,
             *where, place.above_home_m, position, placed, place.velocity, place_at,
             tilt.roll, tilt.pitch, tilt.yaw, tilt_at, air.airspeed, air_at, wind.velocity, wind_at,

@@ -17,6 +17,7 @@ from math import atan2
 from onboard.autopilot.base import Note, Setpoint, Stage, Telemetry
 from onboard.autopilot.guided import LARGEST, Traits
 from onboard.core.math.constants import NEVER
+from onboard.core.math.each import new
 from onboard.core.math.vectors import Vec, add, norm
 from onboard.wire.mavlink.commands import Outgoing, Target, VelocityTarget
 from onboard.wire.mavlink.modes import Kind
@@ -93,7 +94,7 @@ class VelocityEncoder:
         yaw = setpoint.yaw
         if yaw is None and self._looks:
             yaw = yaw_along(wanted, telemetry.yaw)
-        return VelocityTarget(self._to, telemetry.time_boot_s, wanted, yaw)
+        return new(VelocityTarget, (self._to, telemetry.time_boot_s, wanted, yaw))
 
     def acknowledge(self, ack: CommandAck) -> list[Note]:
         """Targets are not acknowledged."""

@@ -15,6 +15,7 @@ from msgspec.structs import replace
 from onboard.core.game.referee import GameResult, Score, Step, closest, judge_any, opening
 from onboard.core.game.rules import Rules, Target
 from onboard.core.math.constants import NS_PER_S
+from onboard.core.math.each import new
 from onboard.core.math.vectors import Vec, along, sub
 from onboard.wire.bus.evader_messages import EvaderOutcome, OutcomeResult
 from onboard.wire.bus.messages import Outcome, Role, Setup
@@ -180,7 +181,7 @@ class Trials:
         """Plane games and field profiles are judged horizontally."""
         if not self._flat:
             return position
-        level: Vec = tuple.__new__(Vec, (position.x, position.y, 0.0))  # twice as fast as a call of the class
+        level = new(Vec, (position.x, position.y, 0.0))
         return level
 
 

@@ -32,11 +32,12 @@ from onboard.core.game.views import (
 from onboard.core.geometry.apollonius import apollonius_sphere
 from onboard.core.geometry.assessment import half_angle
 from onboard.core.geometry.cones import blocked_cones
+from onboard.core.math.each import new
 from onboard.core.math.states import Mate, Vehicle
 from onboard.core.math.vectors import ZERO, Vec, add, along, clamp, scale
 from onboard.core.strategy.choosing import held_after
 from onboard.core.strategy.keep_out import KEEPS_OUT, evader_keeps_out, pursuer_keeps_out
-from onboard.core.strategy.knowledge import Decision, Level, Module, level_of
+from onboard.core.strategy.knowledge import Decision, Level, Module, RuleId, level_of
 from onboard.core.strategy.registry import EVADERS, PURSUERS, evader_named, pursuer_named
 from onboard.core.strategy.team.plan_types import IDLE
 from onboard.pilot.hunt import Hunt, levelled
@@ -47,6 +48,10 @@ from onboard.pilot.setup import GameSetup, Own, Player, Side
 HEIGHT_GAIN = 0.5  # of keeping the height in a plane game [1/s]
 CLIMB_SHARE = 0.3  # and the share of the speed it may use
 REMEMBERS = 1.0  # [s] for which a decision is remembered
+_LEVELS = {level: level.name.lower() for level in Level}  # in words
+_MODULES = {module: module.name.lower() for module in Module}
+_RULES = {rule: rule.name.lower() for rule in RuleId}
+_PREDICTORS = {kind: kind.name.lower() for kind in PredictorKind}
 
 Quad = tuple[float, float, float, float]
 
@@ -138,7 +143,7 @@ class Viewpoint:
             return self._silent(own, ("a place in the roster",))
         planar = setup.rules.planar
         wind = level(own.wind, planar)
-        seen = Vehicle(level(own.position, planar), _through_air(own.velocity, wind, planar), me.speed)
+        seen = new(Vehicle, (level(own.position, planar), _through_air(own.velocity, wind, planar), me.speed))
         known: list[tuple[Player, Prediction]] = []
         lacks: list[str] = []
         after = self._opponents(now, own, mates, setup, memory)
@@ -170,7 +175,8 @@ class Viewpoint:
             view = pursuer_view(seen, me.limits, sighting, team, setup.control, setup.rules)
         self._asked_at = now
         sigma = inf if lacks else worst.sigma
-        return Question(view, own, me, seen, others, wind, sigma, worst.source.name.lower(), tuple(lacks))
+        predictor = _PREDICTORS[worst.source]
+        return new(Question, (view, own, me, seen, others, wind, sigma, predictor, tuple(lacks)))
 
     def _opponents(
         self, now: float, own: Own, mates: tuple[Mate, ...], setup: GameSetup, memory: Memory
@@ -208,11 +214,11 @@ class Viewpoint:
             if hunt is None or mate.id in hunt.together:
                 player = setup.player(mate.id)
                 speed = player.speed if player is not None and player.speed > 0.0 else seen.speed
-                members.append(Vehicle(place, _through_air(mate.velocity, wind, planar), speed))
+                members.append(new(Vehicle, (place, _through_air(mate.velocity, wind, planar), speed)))
         target = setup.target if hunt is None else hunt.target_of(hunt.quarry, setup)
-        known = told(Target(target.exists, level(target.position, planar)), setup.rules)
+        known = told(new(Target, (target.exists, level(target.position, planar))), setup.rules)
         mate_near = nearest_mate(seen.position, tuple(places), 0)
-        return Team(mate_near, tuple(members), 0, known, held, self.part, nose, wind)
+        return new(Team, (mate_near, tuple(members), 0, known, held, self.part, nose, wind))
 
     def conclude(self, question: Question, decision: Decision, setup: GameSetup) -> PilotDecision:
         """The strategy's answer to a question, with everything a person needs to see why."""
@@ -226,10 +232,10 @@ class Viewpoint:
         return PilotDecision(
             decides=True,
             velocity=_steered(decision, own, question.me, planar),
-            level=level_of(decision.rule).name.lower(),
-            module=self._modules.get(decision.rule, Module.INTELLIGENT).name.lower(),
+            level=_LEVELS[level_of(decision.rule)],
+            module=_MODULES[self._modules.get(decision.rule, Module.INTELLIGENT)],
             strategy=self.strategy,
-            rule=decision.rule.name.lower(),
+            rule=_RULES[decision.rule],
             aim=along(_at_height(decision.aim, own.position, planar), question.wind, decision.time),
             time=decision.time,
             miss=decision.miss,
@@ -248,10 +254,10 @@ class Viewpoint:
         return "; ".join(word for word in (self.why, hunted) if word)
 
     def _silent(self, own: Own, lacks: tuple[str, ...]) -> PilotDecision:
-        here = Vehicle(own.position, own.velocity, 0.0)
+        here = new(Vehicle, (own.position, own.velocity, 0.0))
         return PilotDecision(
-            False, ZERO, Level.TACTICAL.name.lower(), "", self.strategy, "none", own.position, 0.0, 0.0,
-            inf, PredictorKind.NOTHING.name.lower(), lacks, here, (), 0.0,
+            False, ZERO, _LEVELS[Level.TACTICAL], "", self.strategy, "none", own.position, 0.0, 0.0,
+            inf, _PREDICTORS[PredictorKind.NOTHING], lacks, here, (), 0.0,
         )
 
 
@@ -294,7 +300,7 @@ class Pilot(Viewpoint):
 def _through_air(velocity: Vec, wind: Vec, planar: bool) -> Vec:
     """A velocity over ground [m/s] through air that moves with `wind` [m/s], as the game counts it."""
     (x, y, z), (u, v, w) = velocity, wind
-    moved: Vec = tuple.__new__(Vec, (x - u, y - v, (0.0 if planar else z) - w))  # twice as fast as `Vec(…)`
+    moved = new(Vec, (x - u, y - v, (0.0 if planar else z) - w))
     return moved
 
 
@@ -304,15 +310,15 @@ def _opponent(
     """An opponent in the moving air, as fast as it is declared to be or was ever seen to fly."""
     velocity = _through_air(p.velocity, wind, planar)
     speed = player.speed if player.speed > 0.0 else memory.top_speed(player.id, now, velocity)
-    return Vehicle(level(p.position, planar), velocity, speed)
+    return new(Vehicle, (level(p.position, planar), velocity, speed))
 
 
 def _sighting(evader: Vehicle, later: Prediction | None, wind: Vec, setup: GameSetup) -> Sighting:
     """The evader with its place after the lookahead, in the air mass as it lies now."""
     if later is None:
-        return Sighting(evader, heading_at(evader), False, evader.position)
+        return new(Sighting, (evader, heading_at(evader), False, evader.position))
     place = along(level(later.position, setup.rules.planar), wind, -setup.control.lookahead)
-    return Sighting(evader, heading_at(evader), True, place)
+    return new(Sighting, (evader, heading_at(evader), True, place))
 
 
 def _steered(decision: Decision, own: Own, me: Player, planar: bool) -> Vec:
@@ -324,8 +330,8 @@ def _steered(decision: Decision, own: Own, me: Player, planar: bool) -> Vec:
         return level(velocity, True)
     most = CLIMB_SHARE * decision.speed
     down = clamp(-HEIGHT_GAIN * (me.height + own.position.z), -most, most)
-    return add(level(velocity, True), Vec(0.0, 0.0, down))
+    return add(level(velocity, True), new(Vec, (0.0, 0.0, down)))
 
 
 def _at_height(aim: Vec, own: Vec, planar: bool) -> Vec:
-    return Vec(aim.x, aim.y, own.z) if planar else aim
+    return new(Vec, (aim.x, aim.y, own.z)) if planar else aim

@@ -12,6 +12,7 @@ from __future__ import annotations
 from math import atan2, cos, degrees, radians, sin, sqrt
 from typing import NamedTuple
 
+from onboard.core.math.each import new
 from onboard.core.math.vectors import Vec
 
 A = 6378137.0  # semi-major axis of WGS-84 [m]
@@ -65,7 +66,7 @@ class Frame:
         z = (n * (1.0 - E2) + altitude_m) * s - self._z0
         out = self._cl * x + self._sl * y  # away from the Earth's axis, in the origin's meridian
         place = (self._cp * z - self._sp * out, self._cl * y - self._sl * x, self._h0 - altitude_m)
-        found: Vec = tuple.__new__(Vec, place)  # twice as fast as `Vec(…)`
+        found = new(Vec, place)
         return found
 
     def geodetic_from_ned(self, position: Vec) -> Geodetic:

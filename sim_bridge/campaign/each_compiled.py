@@ -14,6 +14,7 @@ from typing import Any
 from llvmlite import ir
 from numba.core import cgutils, types
 from numba.core.errors import TypingError
+from numba.core.imputils import impl_ret_borrowed
 from numba.core.typing import templates
 from numba.core.typing.templates import signature as typed_signature
 
@@ -23,6 +24,7 @@ signature: Any = typed_signature
 kinds: Any = types
 build: Any = cgutils
 library: Any = templates
+borrowed: Any = impl_ret_borrowed
 
 WRITTEN_OUT = 6  # items up to which the calls are written out: what they have in common is then reckoned once
 SHORT = 640  # bytes of bytecode, of all functions that are called in turn, up to which they are in any case
@@ -80,6 +82,21 @@ def _filled(context: Any, builder: Any, function: Any, call: Any, values: list[A
         result = compiled(builder, (*items, *index, values[-1]))
         builder.store(result, builder.gep(results, [zero, loop.index]))
     return results
+
+
+def _new(context, kind, fields):  # type: ignore[no-untyped-def]
+    """`new`: what a call of the class makes."""
+    parts = tuple(kinds.unliteral(one) for one in fields.types)
+    made = kinds.BaseTuple.from_types(parts, kind.instance_class)
+
+    def code(context, builder, _signature, values):  # type: ignore[no-untyped-def]
+        found = [
+            context.cast(builder, builder.extract_value(values[1], k), one, part)
+            for k, (one, part) in enumerate(zip(fields.types, parts, strict=True))
+        ]
+        return borrowed(context, builder, made, context.make_tuple(builder, made, found))
+
+    return signature(made, kind, fields), code
 
 
 def _each(context, function, items, shared):  # type: ignore[no-untyped-def]
@@ -212,6 +229,7 @@ def compile_each() -> None:
     end before it is used.
     """
     forms = (
+        (each_module.new, _new),
         (each_module.each, _each),
         (each_module.each_pair, _each_pair),
         (each_module.table, _table),
@@ -223,6 +241,6 @@ def compile_each() -> None:
         (each_module.inverses, _inverses),
     )
     for function, made in forms:
-        template = library.make_intrinsic_template(function, made, function.__name__)
+        template = library.make_intrinsic_template(function, made, made.__name__[1:])
         library.infer(template)
         library.infer_global(function, types.Function(template))

@@ -17,6 +17,7 @@ from onboard.agent.core.part import Part
 from onboard.agent.core.to_place import own_state
 from onboard.autopilot.base import Telemetry
 from onboard.core.math.constants import NS_PER_S
+from onboard.core.math.each import new
 from onboard.core.math.vectors import Vec
 from onboard.core.safety.policy import Policy
 from onboard.pilot.pilot import PilotDecision, Question
@@ -82,7 +83,7 @@ class Ahead:
             return None
         if isinstance(question, PilotDecision):
             return None
-        self._asked = _Asked(number, at.s, now, self._part.policy, question, None, 0.0)
+        self._asked = new(_Asked, (number, at.s, now, self._part.policy, question, None, 0.0))
         return Think(number, self._part.side, self._part.strategy, question.view)
 
     def answered(self, answer: Answered) -> bool:
@@ -107,4 +108,4 @@ class Ahead:
         age = now - asked.asked
         if abs(now - asked.at) > 0.5 * self._period or age > self._period:
             return None
-        return Foreseen(asked.decision, asked.asked + asked.took, max(age, asked.took))
+        return new(Foreseen, (asked.decision, asked.asked + asked.took, max(age, asked.took)))

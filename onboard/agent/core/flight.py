@@ -36,7 +36,6 @@ from onboard.core.safety.supervisor import (
 from onboard.core.safety.words import ACTIONS, CAUSES
 from onboard.pilot.pilot import PilotDecision
 from onboard.wire.bus import messages
-from onboard.wire.bus.messages import Severity
 from onboard.wire.mavlink.modes import Kind
 
 SILENT_S = 1.0  # a link silent for longer explains that the autopilot changed to hold by itself
@@ -213,6 +212,7 @@ class Flight:
         self, now: float, t: Telemetry, wind: Vec = ZERO, age: float = 0.0, sigma: float = 0.0
     ) -> SupervisorInput:
         """What the supervisor looks at; wind, age and error of the track [m] belong to a decision."""
+        taken = self.vehicle.stage is Stage.TAKEN
         return SupervisorInput(
             now=now,
             id=self.config.id,
@@ -226,8 +226,8 @@ class Flight:
             battery=t.battery,
             ekf_ok=t.ekf_ok or t.ekf_at == NEVER,
             gps_fix=t.gps_fix if t.gps_at != NEVER else 3,
-            pilot=self.vehicle.stage is Stage.TAKEN and not self.hands.given(now),
-            failsafe=self.vehicle.by_failsafe,
+            pilot=taken and not self.hands.given(now),
+            failsafe=taken and self.vehicle.by_failsafe,
             order=max(self._orders.order, Action.HOLD) if self.ending else self._orders.order,
             wind=wind,
             strategy_age=age,
@@ -272,15 +272,15 @@ class Flight:
         adapter = self.vehicle.adapter
         if adapter is None:
             return
-        unasked = self.unasked
-        ours = adapter.stage in (Stage.ACTIVE, Stage.ENTERING) and not unasked
+        stage, unasked = adapter.stage, self.unasked
+        ours = stage in (Stage.ACTIVE, Stage.ENTERING) and not unasked
         command = output.command
         known = not self.vehicle.unread  # of what its limits are; until then no setpoint leaves
         if command is Command.STREAM:
             if enters and known:
-                free = adapter.stage is not Stage.TAKEN and self.hands.may_control
-                if not ours and not unasked and (free or self.hands.given(now)):
-                    self.hands.took = True
+                hands, idle = self.hands, not ours and not unasked
+                if idle and ((stage is not Stage.TAKEN and hands.may_control) or hands.given(now)):
+                    hands.took = True
                     adapter.enter(now)
                 self.hands.entered()
             if streams and known and not unasked:
@@ -289,7 +289,7 @@ class Flight:
             adapter.end(now)
         elif command in RELEASES:
             # Without an order only what is ours is released, or what is on its way to a milder mode.
-            leaving = adapter.stage is Stage.LEAVING and command is not Command.RELEASE_TO_HOLD
+            leaving = stage is Stage.LEAVING and command is not Command.RELEASE_TO_HOLD
             if ours or leaving or self._orders.order is not Action.PASS or self.take_off.climbing:
                 ends = self.ending and self._orders.order is Action.PASS
                 departs = ends and command is Command.RELEASE_TO_HOLD
@@ -391,9 +391,9 @@ class Flight:
     def _say(self, output: SupervisorOutput, told: str) -> None:
         """Tell a verdict that is news, with the level and module whose decision it met."""
         action, decision = output.action, self.decision
-        severity = Severity.INFO
+        severity = messages.Severity.INFO
         if action > Action.CLIP and output.cause is not Cause.OVER:
-            severity = Severity.ERROR if action is Action.END else Severity.WARNING
+            severity = messages.Severity.ERROR if action is Action.END else messages.Severity.WARNING
         level, module = (decision.level, decision.module) if decision is not None else ("", "")
         word = ACTIONS[action]
         text = told or f"{word}: {CAUSES[output.cause]}"

@@ -19,6 +19,7 @@ from onboard.agent.core.vehicle_link import VehicleLink
 from onboard.autopilot.base import Stage
 from onboard.autopilot.flight_limits import FlightLimits
 from onboard.core.math.constants import NS_PER_S
+from onboard.core.math.each import new
 from onboard.core.math.states import Mate, MateState, carried
 from onboard.core.math.vectors import Vec
 from onboard.core.strategy.knowledge import Decision
@@ -36,7 +37,6 @@ from onboard.pilot.team_seat import Field
 from onboard.wire.bus.messages import Phase, PhaseChange, Role, Setup, Track
 from onboard.wire.geodesy import Frame
 
-_new = tuple.__new__  # twice as fast as a call of the class
 OVERDUE_S = 1.0  # the word that the game runs comes within this after t₀
 SOON_S = 1.0  # before t₀, from which on the first predictions are made ready
 TRAINING_SLICES = 2  # of about 1 ms, after each control step
@@ -78,6 +78,7 @@ class GamePlayer:
         self._seen: dict[int, MateState] = {}  # evaders as they were last measured
         self._loaded: dict[str, str] = {}  # strategies looked up → why they cannot be used, '' = they can
         self._asked_for: set[str] = set()
+        self._state: tuple[tuple[object, ...], PartState] = ((), PartState())  # of which facts
 
     # ------------------------------------------------------------------ what arrives
 
@@ -106,7 +107,7 @@ class GamePlayer:
     def measured(self, track: Track, now: Instant) -> None:
         """A measurement came: the predictor takes it now, so that no setpoint waits for that."""
         sample = TrackSample(
-            track.id, self._seconds(track.stamp_ns), _new(Vec, track.position), _new(Vec, track.velocity),
+            track.id, self._seconds(track.stamp_ns), new(Vec, track.position), new(Vec, track.velocity),
             track.covariance,
         )  # fmt: skip
         self._tracks.heard(track)
@@ -157,16 +158,20 @@ class GamePlayer:
 
     def state(self, wall_ns: int) -> PartState:
         """Where the game stands for this vehicle."""
-        phase, part = self._bus.phase, self._participation
-        late = part.waits_for_resume(phase)
-        return PartState(
-            engaged=self.flying is not None,
-            near=part.about_to(phase) and not late,
-            on=self._on(wall_ns),
-            late=late,
-            over=part.over(phase),
-            resumed=part.resumed,
-        )
+        phase, part, engaged = self._bus.phase, self._participation, self.flying is not None
+        begun = phase is not None and wall_ns >= phase.t0_ns
+        facts = (phase, engaged, begun, part.joined, part.resumed)
+        if facts != self._state[0]:
+            late = part.waits_for_resume(phase)
+            self._state = facts, PartState(
+                engaged=engaged,
+                near=part.about_to(phase) and not late,
+                on=self._on(wall_ns),
+                late=late,
+                over=part.over(phase),
+                resumed=part.resumed,
+            )
+        return self._state[1]
 
     def _on(self, wall_ns: int) -> bool:
         """Whether the vehicle is flown by decisions."""
@@ -238,6 +243,8 @@ class GamePlayer:
         """Evaders that are out, where their tracks have them at `now` [s, monotonic].
 
         They keep apart from nobody any more, so they count as team mates that have gone quiet."""
+        if not self._ended:
+            return ()
         out = [self._seen[id] for id in self._ended if id in self._seen]
         quiet = self.policy.mate_age + 1e-3
         return tuple(mate._replace(age=max(mate.age, quiet)) for mate in (carried(one, now) for one in out))
@@ -329,7 +336,8 @@ class GamePlayer:
         several = sum(member.role is Role.EVADER for member in setup.roster) > 1
         self._bus.brief_alone(several and self.side is Side.EVADER)
         game = limits.game_setup(self.config, setup, self._bus.targets, hovers, own)
-        opponents = [player.id for player in game.opponents(self.side)]
+        opponents = tuple(player.id for player in game.opponents(self.side))
+        self._bus.watch(opponents)
         self._memory = Memory(self.config.prediction, opponents)
         self._team = None
         if is_team(self.strategy):

@@ -33,9 +33,12 @@ class HoldAlert:
                 limits = of_plane(envelope.turn_radius, envelope.speed_min, envelope.speed_max)
             self._watch, self._mode = HoldWatch(now, limits), t.mode
         self._left = left
+        if self._watch is None:
+            return
         if not left or t.mode != self._mode:
             self._end()
-        if self._watch is None or not t.placed or now - t.position_at > FRESH_S:
+            return
+        if not t.placed or now - t.position_at > FRESH_S:
             return
         airspeed = None if t.airspeed_at == NEVER or envelope.hovers else t.airspeed
         if self._watch.look(now, t.position, t.velocity, airspeed):

@@ -17,6 +17,7 @@ from onboard.autopilot.link_redundancy import Redundant
 from onboard.autopilot.one_sender import OneSender
 from onboard.autopilot.one_sender import Sender as Sent
 from onboard.core.math.constants import NEVER
+from onboard.core.math.each import new
 from onboard.wire.bus.messages import LinkLock
 from onboard.wire.mavlink.commands import Outgoing, SetpointMessage
 from onboard.wire.mavlink.frames import SIGNATURES, Framer, Packet, Sender, marked_signed
@@ -119,7 +120,7 @@ class Radio:
                 self._good_at = now.s
         if self._signing is not None:
             self._count_refused(now.s)
-        return Received(tuple(packets), took_over, second)
+        return new(Received, (tuple(packets), took_over, second))
 
     def _count_refused(self, now: float) -> None:
         refused = sum(self.causes[cause] for cause in SIGNATURES)
@@ -148,10 +149,11 @@ class Radio:
                 indices = range(self._redundant.active, self._redundant.active + 1)
             for index in indices:
                 line = self._lines[index]
-                if line.peer is None and len(line.framers) > 1:
+                peer = line.peer
+                if peer is None and len(line.framers) > 1:
                     self.causes["no_peer"] += 1
                 else:
-                    self._out.put(Send(index, ANY_PEER if line.peer is None else line.peer, frame))
+                    self._out.put(Send(index, ANY_PEER if peer is None else peer, frame))
             self._out.put(Keep(now.wall_ns, frame))
 
     def _new_framer(self, line: _Line, peer: int) -> Framer:

@@ -12,6 +12,7 @@ from onboard.agent.core.child_courier import ChildCourier
 from onboard.agent.core.events import Outbox
 from onboard.agent.core.journal import Journal
 from onboard.agent.core.mavlink_radio import Radio
+from onboard.agent.core.rate import Rate
 from onboard.agent.core.telemetry_requests import Requests
 from onboard.autopilot.base import Adapter, Refusal, Setpoint, Stage, Telemetry
 from onboard.autopilot.choose import AdapterOptions, adapter_for
@@ -20,6 +21,7 @@ from onboard.autopilot.mode_requests import AnswerTimes
 from onboard.autopilot.stream_rates import REMEDIES, Shortfall
 from onboard.autopilot.telemetry_state import Observer
 from onboard.core.math.constants import NEVER, NS_PER_S
+from onboard.core.math.each import new
 from onboard.core.math.vectors import ZERO
 from onboard.core.safety.policy import Command
 from onboard.core.safety.supervisor import SupervisorOutput
@@ -48,7 +50,6 @@ DOUBT_S = 0.5  # a doubt that lasts for longer is told [s]
 SECOND_S = 10.0  # without a second autopilot, until one is news again [s]
 SHORT_S = 60.0  # between two words on one cause of slow telemetry [s]
 COMPONENTS_MAX = 8
-RATE_WINDOW_S = 2.0  # over which rates are measured
 _ANSWERED = {Heartbeat, CommandAck, ParamValue, Timesync, MessageInterval, Version, StatusText}
 _SEVERITIES = {"info": Severity.INFO, "warning": Severity.WARNING, "error": Severity.ERROR}
 
@@ -75,30 +76,8 @@ def _change(before: Stage, after: Stage, *, handed: bool) -> Control:
 def _let_through(verdict: SupervisorOutput, facing: float | None) -> Setpoint | None:
     """The setpoint of a verdict; None where it lets none pass."""
     if verdict.command is Command.STREAM:
-        return Setpoint(verdict.air, verdict.wind, facing)
+        return new(Setpoint, (verdict.air, verdict.wind, facing))
     return Setpoint(ZERO) if verdict.command is Command.HOVER else None
-
-
-class Rate:
-    """How often something happened lately [Hz]."""
-
-    def __init__(self) -> None:
-        self.value = 0.0
-        self._count = 0
-        self._since = NEVER
-
-    def tick(self) -> None:
-        """It happened."""
-        self._count += 1
-
-    def review(self, now: float) -> float:
-        """The rate over the last window."""
-        if self._since == NEVER:
-            self._since = now
-        elif now - self._since >= RATE_WINDOW_S:
-            self.value = self._count / (now - self._since)
-            self._count, self._since = 0, now
-        return self.value
 
 
 class VehicleLink:
@@ -127,6 +106,7 @@ class VehicleLink:
         self._asking: Requests | None = None
         self._limits_of: tuple[Kind, int] | None = None  # of which parameters the limits were read
         self._limits = FlightLimits()
+        self._unread: tuple[FlightLimits | None, tuple[str, ...]] = (None, ())  # of which limits, and what
         self._reboots = 0
         self.components: list[int] = []  # others that beat under the vehicle's own system id
         self._second_at = NEVER  # when a second autopilot was last heard [s]
@@ -171,10 +151,13 @@ class VehicleLink:
         """Parameters that must be read, or limits configured, before a setpoint may leave."""
         if self.adapter is None or self.config.dry_run:  # a dry run asks for none, and sends none
             return ()
-        e = self.config.envelope
-        said = {"speed_min": e.speed_min, "speed_max": e.speed_max, "climb_max": e.climb_max,
-                "sink_max": e.sink_max}  # fmt: skip
-        return unread(self.adapter.kind, self.limits, said)
+        limits = self.limits
+        if limits is not self._unread[0]:
+            e = self.config.envelope
+            said = {"speed_min": e.speed_min, "speed_max": e.speed_max, "climb_max": e.climb_max,
+                    "sink_max": e.sink_max}  # fmt: skip
+            self._unread = limits, unread(self.adapter.kind, limits, said)
+        return self._unread[1]
 
     @property
     def second_heard(self) -> bool:
@@ -292,15 +275,16 @@ class VehicleLink:
         setpoint = None if verdict is None else _let_through(verdict, self.facing)
         step = adapter.step(now, self.telemetry, setpoint)
         self._stepped_at = self.now = now
-        self.flown = self.flown or adapter.stage is Stage.ACTIVE
+        after = adapter.stage
+        self.flown = self.flown or after is Stage.ACTIVE
         for message in step.messages:
             self.radio.send(message)
-        if setpoint is not None and adapter.stage is Stage.ACTIVE:
+        if setpoint is not None and after is Stage.ACTIVE:
             self.setpoint_rate.tick()
             self.sent_at = now
         for note in step.notes:
             self._journal.say(_SEVERITIES.get(note.severity, Severity.INFO), note.kind, note.text)
-        return _change(before, adapter.stage, handed=adapter.handed)
+        return Control.SAME if after is before else _change(before, after, handed=adapter.handed)
 
     def chores(self, now: float) -> None:
         """Everything that is due beside setpoints: requests, and the adapter's own retries."""
@@ -329,10 +313,10 @@ class VehicleLink:
 
     def _tell_asked_off(self, names: tuple[str, ...]) -> None:
         """Say which streams were switched off, once for each."""
-        new = [name for name in names if name not in self._asked_off]
-        if new:
-            self._asked_off.update(new)
-            text = f"the link is narrow: off or slower, as nobody here reads them: {', '.join(new)}"
+        off = [name for name in names if name not in self._asked_off]
+        if off:
+            self._asked_off.update(off)
+            text = f"the link is narrow: off or slower, as nobody here reads them: {', '.join(off)}"
             self._journal.info("streams", text)
 
     def other_link(self) -> None:

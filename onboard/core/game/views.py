@@ -11,7 +11,7 @@ from typing import NamedTuple
 from onboard.core.game.rules import NO_TARGET, Control, Rules, Target
 from onboard.core.geometry.apollonius import intercept
 from onboard.core.geometry.cones import Cone, blocked_cones
-from onboard.core.math.each import each
+from onboard.core.math.each import each, new
 from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import NORTH, TINY, ZERO, Vec, along, norm, scale, unit
 from onboard.core.strategy.team.plan_types import IDLE, Assignment
@@ -99,7 +99,7 @@ class PursuerView(NamedTuple):
 def level(v: Vec, planar: bool) -> Vec:
     """A place [m] or velocity [m/s] as the game counts it: without its height in a plane game."""
     if planar:
-        return Vec(v.x, v.y, 0.0)
+        return new(Vec, (v.x, v.y, 0.0))
     return v
 
 
@@ -118,7 +118,7 @@ def target_in_air(target: Target, own: Vehicle, wind: Vec) -> Target:
         return target
     meeting = intercept(target.position, scale(wind, -1.0 / drift), drift, own.position, own.speed)
     if meeting.exists:
-        return Target(True, meeting.point)
+        return new(Target, (True, meeting.point))
     return target
 
 
@@ -137,7 +137,7 @@ def evader_view(
     """
     cones = blocked_cones(own, pursuers, rules.rho)
     aim = target_in_air(target, own, wind)
-    return EvaderView(own, limits, pursuers, cones, aim, rules, each(undeclared, pursuers, 0.0), wind)
+    return new(EvaderView, (own, limits, pursuers, cones, aim, rules, each(undeclared, pursuers, 0.0), wind))
 
 
 def undeclared(_pursuer: Vehicle, _index: int, _shared: float) -> float:
@@ -154,12 +154,12 @@ def with_limits(view: EvaderView, limits: tuple[VehicleLimits, ...]) -> EvaderVi
     """The same view, of pursuers whose limits are known."""
     rates = each(turn_rate_of, limits, 0.0)
     own, own_limits, pursuers, cones, target, rules, _rates, wind = view
-    return EvaderView(own, own_limits, pursuers, cones, target, rules, rates, wind)
+    return new(EvaderView, (own, own_limits, pursuers, cones, target, rules, rates, wind))
 
 
 def sighted(evader: Vehicle, heading: Vec, lookahead: float) -> Sighting:
     """The evader on a `heading` (unit), predicted to fly straight on for `lookahead` [s]."""
-    return Sighting(evader, heading, True, along(evader.position, heading, evader.speed * lookahead))
+    return new(Sighting, (evader, heading, True, along(evader.position, heading, evader.speed * lookahead)))
 
 
 def nearest_mate(own: Vec, mates: tuple[Vec, ...], but: int) -> Nearest:
@@ -178,19 +178,19 @@ def nearest_mate(own: Vec, mates: tuple[Vec, ...], but: int) -> Nearest:
                 smallest = square
                 position = place
                 exists = True
-    return Nearest(exists, position)
+    return new(Nearest, (exists, position))
 
 
 def told(target: Target, rules: Rules) -> Target:
     """The evader's target as the pursuers know it: not at all, unless the rules say so."""
-    return Target(target.exists and rules.target_known, target.position)
+    return new(Target, (target.exists and rules.target_known, target.position))
 
 
 def pursuer_view(
     own: Vehicle, limits: VehicleLimits, sighting: Sighting, team: Team, control: Control, rules: Rules
 ) -> PursuerView:
     """The situation as a pursuer sees it."""
-    return PursuerView(
+    return new(PursuerView, (
         own,
         limits,
         sighting.evader,
@@ -207,4 +207,4 @@ def pursuer_view(
         team.part,
         team.nose,
         team.wind,
-    )
+    ))

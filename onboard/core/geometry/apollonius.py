@@ -9,6 +9,7 @@ from __future__ import annotations
 from math import sqrt
 from typing import NamedTuple
 
+from onboard.core.math.each import new
 from onboard.core.math.vectors import TINY, Vec, distance
 
 
@@ -53,9 +54,9 @@ def apollonius_sphere(e: Vec, v_e: float, p: Vec, v_p: float) -> Sphere:
     b = v_p * v_p
     k = a - b
     if abs(k) <= 1e-9 * (a + b) or a + b <= 0.0:
-        return Sphere(False, e, 0.0)
-    centre = Vec((a * p.x - b * e.x) / k, (a * p.y - b * e.y) / k, (a * p.z - b * e.z) / k)
-    return Sphere(True, centre, v_p * v_e * distance(p, e) / abs(k))  # (11)
+        return new(Sphere, (False, e, 0.0))
+    centre = new(Vec, ((a * p.x - b * e.x) / k, (a * p.y - b * e.y) / k, (a * p.z - b * e.z) / k))
+    return new(Sphere, (True, centre, v_p * v_e * distance(p, e) / abs(k)))  # (11)
 
 
 def intercept(e: Vec, heading: Vec, v_e: float, p: Vec, v_p: float) -> Meeting:
@@ -73,24 +74,24 @@ def intercept(e: Vec, heading: Vec, v_e: float, p: Vec, v_p: float) -> Meeting:
     z -= ez
     dd = x * x + y * y + z * z
     if dd <= TINY * TINY:
-        return Meeting(True, 0.0, e, 0.0)
+        return new(Meeting, (True, 0.0, e, 0.0))
     a = v_e * v_e - v_p * v_p
     b = v_e * (x * hx + y * hy + z * hz)
     inside = b * b - a * dd
     if inside < 0.0:
-        return Meeting(False, 0.0, e, 0.0)
+        return new(Meeting, (False, 0.0, e, 0.0))
     root = sqrt(inside)
     if b >= 0.0:
         bottom = b + root
         if bottom <= TINY * sqrt(dd):
-            return Meeting(False, 0.0, e, 0.0)
+            return new(Meeting, (False, 0.0, e, 0.0))
         time = dd / bottom
     elif a < 0.0:
         time = (b - root) / a
     else:
-        return Meeting(False, 0.0, e, 0.0)
+        return new(Meeting, (False, 0.0, e, 0.0))
     k = v_e * time
-    return Meeting(True, time, Vec(ex + hx * k, ey + hy * k, ez + hz * k), 0.0)
+    return new(Meeting, (True, time, new(Vec, (ex + hx * k, ey + hy * k, ez + hz * k)), 0.0))
 
 
 def closest_approach(e: Vec, heading: Vec, v_e: float, p: Vec, v_p: float) -> Meeting:
@@ -112,19 +113,19 @@ def closest_approach(e: Vec, heading: Vec, v_e: float, p: Vec, v_p: float) -> Me
     z -= ez
     s = x * hx + y * hy + z * hz
     if s <= 0.0 or v_e <= TINY or v_p >= v_e:
-        return Meeting(False, 0.0, e, 0.0)
+        return new(Meeting, (False, 0.0, e, 0.0))
     gamma = v_p / v_e
     root = sqrt(max(0.0, 1.0 - gamma * gamma))
     if root <= TINY:
-        return Meeting(False, 0.0, e, 0.0)
+        return new(Meeting, (False, 0.0, e, 0.0))
     cx = hy * z - hz * y
     cy = hz * x - hx * z
     cz = hx * y - hy * x
     h = sqrt(cx * cx + cy * cy + cz * cz)
     time = (s + h * gamma / root) / v_e  # (19)
     k = v_e * time
-    aim = Vec(ex + hx * k, ey + hy * k, ez + hz * k)
-    return Meeting(True, time, aim, max(0.0, h * root - s * gamma))  # (20)
+    aim = new(Vec, (ex + hx * k, ey + hy * k, ez + hz * k))
+    return new(Meeting, (True, time, aim, max(0.0, h * root - s * gamma)))  # (20)
 
 
 def disc_margin(place: Vec, radius: float, p: Vec, v_p: float, e: Vec, v_e: float) -> float:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from math import cos, pi, sin, sqrt
 from typing import NamedTuple
 
-from onboard.core.math.each import each, each_at_once, inverses, roots
+from onboard.core.math.each import each, each_at_once, inverses, new, roots
 from onboard.core.math.states import Vehicle, VehicleLimits
 from onboard.core.math.vectors import DOWN, NORTH, TINY, Vec
 
@@ -65,12 +65,12 @@ def blocked_cone(pursuer: Vehicle, _index: int, seen: Seen) -> Cone:
     k = 1.0 / d
     sb = rho * k if rho < d else 1.0
     cb = sqrt(max(0.0, square - rho * rho)) * k
-    return Cone(Vec(x * k, y * k, z * k), ca * cb - sa * sb, sa * cb + ca * sb)
+    return new(Cone, (new(Vec, (x * k, y * k, z * k)), ca * cb - sa * sb, sa * cb + ca * sb))
 
 
 def blocked_cones(evader: Vehicle, pursuers: tuple[Vehicle, ...], rho: float) -> tuple[Cone, ...]:
     """The cones of all pursuers, seen from the evader; `rho` is ρ of (4) [m]."""
-    seen = Seen(evader.position, evader.speed, rho)
+    seen = new(Seen, (evader.position, evader.speed, rho))
     return each_at_once(blocked_cone, cones_at_once, pursuers, seen)
 
 
@@ -88,7 +88,7 @@ def cones_at_once(pursuers: tuple[Vehicle, ...], seen: Seen) -> tuple[Cone, ...]
     squares = each(_square_to, pursuers, seen)
     far = roots(squares)
     rest = roots(each(_beyond, squares, seen.rho))
-    return each(_cone_at, pursuers, Distances(seen, far, inverses(far), rest))
+    return each(_cone_at, pursuers, new(Distances, (seen, far, inverses(far), rest)))
 
 
 def _square_to(pursuer: Vehicle, _index: int, seen: Seen) -> float:
@@ -112,8 +112,8 @@ def _cone_at(pursuer: Vehicle, index: int, at: Distances) -> Cone:
     ca = sqrt(1.0 - sa * sa)
     sb = rho * k if rho < d else 1.0
     cb = at.rest[index] * k
-    axis = Vec((p.x - e.x) * k, (p.y - e.y) * k, (p.z - e.z) * k)
-    return Cone(axis, ca * cb - sa * sb, sa * cb + ca * sb)
+    axis = new(Vec, ((p.x - e.x) * k, (p.y - e.y) * k, (p.z - e.z) * k))
+    return new(Cone, (axis, ca * cb - sa * sb, sa * cb + ca * sb))
 
 
 def is_free(u: Vec, cones: tuple[Cone, ...]) -> bool:
@@ -127,7 +127,7 @@ def is_free(u: Vec, cones: tuple[Cone, ...]) -> bool:
 
 def pitch_cones(limits: VehicleLimits) -> tuple[Cone, Cone]:
     """What a pitch band [θ_min, θ_max] blocks: a cone around up and one around down."""
-    up = Vec(0.0, 0.0, -1.0)
+    up = new(Vec, (0.0, 0.0, -1.0))
     return (
         Cone(up, sin(limits.pitch_max), cos(limits.pitch_max)) if limits.pitch_max < pi / 2 else NOTHING,
         Cone(DOWN, -sin(limits.pitch_min), cos(limits.pitch_min)) if limits.pitch_min > -pi / 2 else NOTHING,
@@ -137,8 +137,8 @@ def pitch_cones(limits: VehicleLimits) -> tuple[Cone, Cone]:
 def yaw_cones(low: float, high: float) -> tuple[Cone, Cone]:
     """What a heading wedge [low, high] at most π wide [rad] blocks: two half-spaces."""
     return (
-        Cone(Vec(sin(low), -cos(low), 0.0), 0.0, 1.0),
-        Cone(Vec(-sin(high), cos(high), 0.0), 0.0, 1.0),
+        new(Cone, (new(Vec, (sin(low), -cos(low), 0.0)), 0.0, 1.0)),
+        new(Cone, (new(Vec, (-sin(high), cos(high), 0.0)), 0.0, 1.0)),
     )
 
 
@@ -148,4 +148,4 @@ def perpendicular(a: Vec) -> Vec:
     if flat <= TINY:
         return NORTH
     n = sqrt(flat)
-    return Vec(-a.y / n, a.x / n, 0.0)
+    return new(Vec, (-a.y / n, a.x / n, 0.0))

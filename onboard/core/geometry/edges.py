@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from onboard.core.geometry.cones import Cone, Ray, is_free, perpendicular
 from onboard.core.geometry.rims import NOBODY, Rim, Spot, blend, crossing, on_edge, rim_of
-from onboard.core.math.each import each, few_or_many, room, table
+from onboard.core.math.each import each, few_or_many, new, room, table
 from onboard.core.math.vectors import TINY, Vec, dot, unit
 
 ALIKE = 1e-9  # two rays whose closeness differs by less may both be the nearest
@@ -38,7 +38,7 @@ def free_ray(preferred: Vec, cones: tuple[Cone, ...]) -> Ray:
     search costs less, and pairs are tried where several rays may be as near: so both give the same bits.
     """
     if is_free(preferred, cones):
-        return Ray(True, preferred, 1.0)
+        return new(Ray, (True, preferred, 1.0))
     return few_or_many(by_pairs, one_by_one, of_many, cones, preferred)
 
 
@@ -68,12 +68,12 @@ def _searched(cones: tuple[Cone, ...], preferred: Vec, only: bool) -> Ray:
             most = depth
             first = k
     if edges[first].cos < -1.0:
-        return Ray(False, preferred, -2.0)
+        return new(Ray, (False, preferred, -2.0))
     best = on_edge(edges[first], first, preferred)
     number = _deepest(best.x, best.y, best.z, edges, total)
     if number == first:  # all but a point is blocked, and rounding the point
-        return Ray(False, preferred, -3.0 if only else -2.0)
-    found = Found(room(edges[first], cones), room(first, cones), room(best, cones))
+        return new(Ray, (False, preferred, -3.0 if only else -2.0))
+    found = new(Found, (room(edges[first], cones), room(first, cones), room(best, cones)))
     kept = 0
     if number >= 0:
         found.rims[0] = edges[first]
@@ -84,20 +84,20 @@ def _searched(cones: tuple[Cone, ...], preferred: Vec, only: bool) -> Ray:
     while number >= 0:
         edge = edges[number]
         if edge.cos < -1.0:
-            return Ray(False, preferred, -2.0)
+            return new(Ray, (False, preferred, -2.0))
         kept = _left(found, kept, edge)
         found.rims[count] = edge
         found.numbers[count] = number
         count += 1
         kept = _added(found, count, kept, preferred)
         if kept == 0:
-            return Ray(False, preferred, -2.0)
+            return new(Ray, (False, preferred, -2.0))
         best = _nearest(found.spots, kept)
         number = _deepest(best.x, best.y, best.z, edges, total)
     if only and not _alone(best, found.spots, kept, edges, total):
-        return Ray(False, preferred, -3.0)
-    u = Vec(best.x, best.y, best.z)
-    return Ray(True, u if best.two == NOBODY else unit(u, preferred), best.closeness)
+        return new(Ray, (False, preferred, -3.0))
+    u = new(Vec, (best.x, best.y, best.z))
+    return new(Ray, (True, u if best.two == NOBODY else unit(u, preferred), best.closeness))
 
 
 def _alone(best: Spot, spots: Sequence[Spot], kept: int, edges: Sequence[Rim], count: int) -> bool:
@@ -167,10 +167,10 @@ def _added(found: Found, count: int, kept: int, preferred: Vec) -> int:
         high, low = (other, last) if numbers[other] > number else (last, other)
         exists, (x, y, z), (dx, dy, dz), level, rise = crossing(rims[high], rims[low], preferred)
         if exists and _outside_all(x + dx, y + dy, z + dz, rims, count):
-            spots[kept] = Spot(x + dx, y + dy, z + dz, level + rise, number, numbers[other])
+            spots[kept] = new(Spot, (x + dx, y + dy, z + dz, level + rise, number, numbers[other]))
             kept += 1
         if exists and _outside_all(x - dx, y - dy, z - dz, rims, count):
-            spots[kept] = Spot(x - dx, y - dy, z - dz, level - rise, number, numbers[other])
+            spots[kept] = new(Spot, (x - dx, y - dy, z - dz, level - rise, number, numbers[other]))
             kept += 1
     return kept
 
@@ -208,7 +208,7 @@ def by_pairs(cones: tuple[Cone, ...], preferred: Vec) -> Ray:
     """
     for cone in cones:
         if cone.cos < -1.0:
-            return Ray(False, preferred, -2.0)
+            return new(Ray, (False, preferred, -2.0))
     px, py, pz = preferred
     edges = each(rim_of, cones, preferred)
     best = -2.0
@@ -228,13 +228,13 @@ def by_pairs(cones: tuple[Cone, ...], preferred: Vec) -> Ray:
         if n < 1e-3:
             # On the axis every point of the edge is as near: take any. Near it, rounding turns the
             # side out of the perpendicular: make it so again.
-            axis = Vec(ax, ay, az)
-            side = perpendicular(axis) if n <= TINY else Vec(x / n, y / n, z / n)
+            axis = new(Vec, (ax, ay, az))
+            side = perpendicular(axis) if n <= TINY else new(Vec, (x / n, y / n, z / n))
             side = unit(blend(side, 1.0, axis, -dot(side, axis)), preferred)
             u = unit(blend(axis, ac, side, sine), preferred)
         else:
             k = sine / n
-            u = Vec(ax * ac + x * k, ay * ac + y * k, az * ac + z * k)
+            u = new(Vec, (ax * ac + x * k, ay * ac + y * k, az * ac + z * k))
         if _clear(u.x, u.y, u.z, edges):
             best = near
             ray = u
@@ -275,8 +275,8 @@ def by_pairs(cones: tuple[Cone, ...], preferred: Vec) -> Ray:
                 lx, ly, lz = lx / n, ly / n, lz / n
             if _clear(lx + x, ly + y, lz + z, edges):
                 best = level + rise
-                ray = unit(Vec(lx + x, ly + y, lz + z), preferred)
+                ray = unit(new(Vec, (lx + x, ly + y, lz + z)), preferred)
             elif level - rise > best and _clear(lx - x, ly - y, lz - z, edges):
                 best = level - rise
-                ray = unit(Vec(lx - x, ly - y, lz - z), preferred)
-    return Ray(best >= -1.5, ray, best)
+                ray = unit(new(Vec, (lx - x, ly - y, lz - z)), preferred)
+    return new(Ray, (best >= -1.5, ray, best))

@@ -6,6 +6,7 @@ from math import pi
 
 from onboard.core.geometry.cones import NOTHING, Cone, Ray, is_free, pitch_cones, yaw_cones
 from onboard.core.geometry.edges import free_ray
+from onboard.core.math.each import new
 from onboard.core.math.states import VehicleLimits
 from onboard.core.math.vectors import Vec, dot
 
@@ -16,20 +17,20 @@ def free_ray_plane(preferred: Vec, cones: tuple[Cone, ...]) -> Ray:
     The axes of all cones lie in the plane.
     """
     if is_free(preferred, cones):
-        return Ray(True, preferred, 1.0)
+        return new(Ray, (True, preferred, 1.0))
     best = -2.0
     ray = preferred
     for cone in cones:
         if cone.cos < -1.0:
-            return Ray(False, preferred, -2.0)
+            return new(Ray, (False, preferred, -2.0))
         if cone.cos > 1.0:
             continue
         ax = cone.axis.x * cone.cos
         ay = cone.axis.y * cone.cos
         bx = -cone.axis.y * cone.sin
         by = cone.axis.x * cone.sin
-        left = Vec(ax - bx, ay - by, 0.0)
-        right = Vec(ax + bx, ay + by, 0.0)
+        left = new(Vec, (ax - bx, ay - by, 0.0))
+        right = new(Vec, (ax + bx, ay + by, 0.0))
         near = dot(left, preferred)
         if near > best and is_free(left, cones):
             best = near
@@ -38,7 +39,7 @@ def free_ray_plane(preferred: Vec, cones: tuple[Cone, ...]) -> Ray:
         if near > best and is_free(right, cones):
             best = near
             ray = right
-    return Ray(best >= -1.5, ray, best)
+    return new(Ray, (best >= -1.5, ray, best))
 
 
 def free_ray_limited(preferred: Vec, cones: tuple[Cone, ...], limits: VehicleLimits, planar: bool) -> Ray:
@@ -55,7 +56,7 @@ def free_ray_limited(preferred: Vec, cones: tuple[Cone, ...], limits: VehicleLim
             return free_ray(preferred, cones)
         return free_ray(preferred, (*cones, *pitch_cones(limits)))
     if width < 0.0:
-        return Ray(False, preferred, -2.0)
+        return new(Ray, (False, preferred, -2.0))
     if width <= pi:
         return _in_wedge(preferred, cones, limits, limits.yaw_min, limits.yaw_max, planar)
     middle = 0.5 * (limits.yaw_min + limits.yaw_max)

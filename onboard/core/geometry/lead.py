@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import sqrt
 
+from onboard.core.math.each import new
 from onboard.core.math.vectors import Vec, along, dot, sub, unit
 
 
@@ -13,7 +14,7 @@ def lead(place: Vec, speed: float, evader: Vec, velocity: Vec) -> Vec:
     From `place` [m] at `speed` [m/s], of an evader there with that velocity [m/s]. Where the evader crosses
     faster than the pursuer flies, all of the speed goes across.
     """
-    sight = unit(sub(evader, place), unit(velocity, Vec(1.0, 0.0, 0.0)))
+    sight = unit(sub(evader, place), unit(velocity, new(Vec, (1.0, 0.0, 0.0))))
     across = along(velocity, sight, -dot(velocity, sight))
     lateral = dot(across, across)
     if lateral >= speed * speed:

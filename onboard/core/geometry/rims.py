@@ -9,6 +9,7 @@ from math import sqrt
 from typing import NamedTuple
 
 from onboard.core.geometry.cones import EDGE, Cone, perpendicular
+from onboard.core.math.each import new
 from onboard.core.math.vectors import TINY, ZERO, Vec, dot, unit
 
 
@@ -28,7 +29,7 @@ def rim_of(cone: Cone, _index: int, preferred: Vec) -> Rim:
     """The edge of a cone (for `table`)."""
     (x, y, z), c, s = cone
     px, py, pz = preferred
-    return Rim(x, y, z, c, s, c + EDGE * s, px * x + py * y + pz * z)
+    return new(Rim, (x, y, z, c, s, c + EDGE * s, px * x + py * y + pz * z))
 
 
 class Spot(NamedTuple):
@@ -57,13 +58,13 @@ def on_edge(edge: Rim, number: int, preferred: Vec) -> Spot:
     if n < 1e-3:
         # On the axis every point of the edge is as near: take any. Near it, rounding turns the
         # side out of the perpendicular: make it so again.
-        axis = Vec(ax, ay, az)
-        side = perpendicular(axis) if n <= TINY else Vec(x / n, y / n, z / n)
+        axis = new(Vec, (ax, ay, az))
+        side = perpendicular(axis) if n <= TINY else new(Vec, (x / n, y / n, z / n))
         side = unit(blend(side, 1.0, axis, -dot(side, axis)), preferred)
         u = unit(blend(axis, ac, side, sine), preferred)
-        return Spot(u.x, u.y, u.z, near, number, NOBODY)
+        return new(Spot, (u.x, u.y, u.z, near, number, NOBODY))
     k = sine / n
-    return Spot(ax * ac + x * k, ay * ac + y * k, az * ac + z * k, near, number, NOBODY)
+    return new(Spot, (ax * ac + x * k, ay * ac + y * k, az * ac + z * k, near, number, NOBODY))
 
 
 class Crossing(NamedTuple):
@@ -110,9 +111,9 @@ def crossing(one: Rim, two: Rim, preferred: Vec) -> Crossing:
         n = max(n, TINY)
         x, y, z = x / n, y / n, z / n
         lx, ly, lz = lx / n, ly / n, lz / n
-    return Crossing(True, Vec(lx, ly, lz), Vec(x, y, z), level, rise)
+    return new(Crossing, (True, new(Vec, (lx, ly, lz)), new(Vec, (x, y, z)), level, rise))
 
 
 def blend(a: Vec, k: float, b: Vec, m: float) -> Vec:
     """k a + m b."""
-    return Vec(a.x * k + b.x * m, a.y * k + b.y * m, a.z * k + b.z * m)
+    return new(Vec, (a.x * k + b.x * m, a.y * k + b.y * m, a.z * k + b.z * m))

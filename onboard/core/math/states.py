@@ -5,7 +5,8 @@ from __future__ import annotations
 from math import pi
 from typing import NamedTuple
 
-from onboard.core.math.vectors import Vec, along, clamp
+from onboard.core.math.each import new
+from onboard.core.math.vectors import Vec
 
 CARRIED_MAX = 1.0  # a team mate is carried forward for no longer than this [s]
 
@@ -58,5 +59,6 @@ def carried(mate: MateState, now: float) -> Mate:
     differ) counts as now. The strategy and the supervisor are both given this one result.
     """
     age = now - mate.t
-    place = along(mate.position, mate.velocity, clamp(age, 0.0, CARRIED_MAX))
-    return Mate(mate.id, place, mate.velocity, age)
+    ahead = 0.0 if age < 0.0 else (CARRIED_MAX if age > CARRIED_MAX else age)
+    p, v = mate.position, mate.velocity
+    return new(Mate, (mate.id, new(Vec, (p.x + v.x * ahead, p.y + v.y * ahead, p.z + v.z * ahead)), v, age))

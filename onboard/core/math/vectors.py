@@ -6,8 +6,10 @@ source runs interpreted onboard and compiled in simulations.
 
 from __future__ import annotations
 
-from math import atan2, cos, isfinite, sin, sqrt
+from math import atan2, cos, inf, sin, sqrt
 from typing import NamedTuple
+
+from onboard.core.math.each import new
 
 TINY = 1e-12  # lengths [m] and speeds [m/s] below this count as zero
 
@@ -27,22 +29,22 @@ DOWN = Vec(0.0, 0.0, 1.0)
 
 def add(a: Vec, b: Vec) -> Vec:
     """a + b."""
-    return Vec(a.x + b.x, a.y + b.y, a.z + b.z)
+    return new(Vec, (a.x + b.x, a.y + b.y, a.z + b.z))
 
 
 def sub(a: Vec, b: Vec) -> Vec:
     """a − b."""
-    return Vec(a.x - b.x, a.y - b.y, a.z - b.z)
+    return new(Vec, (a.x - b.x, a.y - b.y, a.z - b.z))
 
 
 def scale(a: Vec, k: float) -> Vec:
     """k a."""
-    return Vec(a.x * k, a.y * k, a.z * k)
+    return new(Vec, (a.x * k, a.y * k, a.z * k))
 
 
 def along(a: Vec, u: Vec, k: float) -> Vec:
     """a + k u: the point k ahead of a in the direction u."""
-    return Vec(a.x + u.x * k, a.y + u.y * k, a.z + u.z * k)
+    return new(Vec, (a.x + u.x * k, a.y + u.y * k, a.z + u.z * k))
 
 
 def dot(a: Vec, b: Vec) -> float:
@@ -52,7 +54,7 @@ def dot(a: Vec, b: Vec) -> float:
 
 def cross(a: Vec, b: Vec) -> Vec:
     """a × b (right-handed in north, east, down)."""
-    return Vec(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x)
+    return new(Vec, (a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x))
 
 
 def norm(a: Vec) -> float:
@@ -70,7 +72,7 @@ def distance(a: Vec, b: Vec) -> float:
 
 def is_finite(a: Vec) -> bool:
     """Whether no component of a is NaN or infinite."""
-    return isfinite(a.x) and isfinite(a.y) and isfinite(a.z)
+    return -inf < a.x < inf and -inf < a.y < inf and -inf < a.z < inf
 
 
 def unit(a: Vec, otherwise: Vec) -> Vec:
@@ -79,7 +81,7 @@ def unit(a: Vec, otherwise: Vec) -> Vec:
     if n <= TINY:
         return otherwise
     k = 1.0 / n
-    return Vec(a.x * k, a.y * k, a.z * k)
+    return new(Vec, (a.x * k, a.y * k, a.z * k))
 
 
 def clamp(value: float, low: float, high: float) -> float:
@@ -95,7 +97,7 @@ def angle_between(u: Vec, v: Vec) -> float:
 def direction(pitch: float, yaw: float) -> Vec:
     """Unit vector of pitch θ (up) and yaw ψ (north to east) [rad]; (7)–(8)."""
     c = cos(pitch)
-    return Vec(c * cos(yaw), c * sin(yaw), -sin(pitch))
+    return new(Vec, (c * cos(yaw), c * sin(yaw), -sin(pitch)))
 
 
 def pitch_of(u: Vec) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import sqrt
 from typing import NamedTuple
 
+from onboard.core.math.each import new
 from onboard.core.math.vectors import TINY, clamp
 
 
@@ -24,7 +25,7 @@ def nearest_on(x: float, y: float, ax: float, ay: float, bx: float, by: float) -
     t = clamp(((x - ax) * ux + (y - ay) * uy) / n, 0.0, 1.0) if n > TINY else 0.0
     qx = ax + t * ux
     qy = ay + t * uy
-    return Nearest(sqrt((x - qx) * (x - qx) + (y - qy) * (y - qy)), qx, qy)
+    return new(Nearest, (sqrt((x - qx) * (x - qx) + (y - qy) * (y - qy)), qx, qy))
 
 
 def stopping_speed(distance: float, deceleration: float, reaction: float) -> float:

@@ -12,7 +12,7 @@ from math import atan2, cos, pi, sin, sqrt
 from typing import NamedTuple
 
 from onboard.core.math.angles import wrap
-from onboard.core.math.each import each
+from onboard.core.math.each import each, new
 from onboard.core.math.vectors import TINY, Vec, clamp
 from onboard.core.safety.braking import Nearest, nearest_on, stopping_speed
 from onboard.core.safety.policy import Cause, Envelope, Fence, Policy
@@ -44,7 +44,7 @@ def inside(x: float, y: float, polygon: tuple[tuple[float, float], ...]) -> bool
 def nearest(x: float, y: float, polygon: tuple[tuple[float, float], ...]) -> Nearest:
     """The point of the whole boundary nearest to a place."""
     px, py = polygon[-1]
-    best = Nearest(1e18, x, y)
+    best = new(Nearest, (1e18, x, y))
     for qx, qy in polygon:
         here = nearest_on(x, y, px, py, qx, qy)
         if here.distance < best.distance:
@@ -87,7 +87,7 @@ def keep_height(v: Vec, position: Vec, fence: Fence, margin: float, reaction: fl
         elif climb < least:
             climb = least
             cause = Cause.FLOOR_AHEAD
-    return Fenced(Vec(v.x, v.y, -climb), cause)
+    return new(Fenced, (new(Vec, (v.x, v.y, -climb)), cause))
 
 
 class _Braking(NamedTuple):
@@ -114,7 +114,7 @@ class _Fencing(NamedTuple):
 
 def _walls(fence: Fence, _index: int, braking: _Braking) -> tuple[_Wall, ...]:
     """All walls of a fence (for `each`)."""
-    return each(_wall, fence.polygon, _Fencing(fence, braking))
+    return each(_wall, fence.polygon, new(_Fencing, (fence, braking)))
 
 
 def _wall(corner: tuple[float, float], index: int, fencing: _Fencing) -> _Wall:
@@ -124,7 +124,7 @@ def _wall(corner: tuple[float, float], index: int, fencing: _Fencing) -> _Wall:
     wall = nearest_on(position.x, position.y, px, py, corner[0], corner[1])
     reaction = policy.reaction + policy.coast
     most = stopping_speed(wall.distance - policy.fence_margin, policy.envelope.deceleration, reaction)
-    return _Wall((wall.x - position.x) / wall.distance, (wall.y - position.y) / wall.distance, most)
+    return new(_Wall, ((wall.x - position.x) / wall.distance, (wall.y - position.y) / wall.distance, most))
 
 
 def brake(v: Vec, position: Vec, policy: Policy) -> Fenced:
@@ -134,14 +134,14 @@ def brake(v: Vec, position: Vec, policy: Policy) -> Fenced:
         if not inside(position.x, position.y, fence.polygon):
             home = nearest(position.x, position.y, fence.polygon)
             speed = clamp(0.5 * (home.distance + margin), 0.5, e.speed_max)
-            return Fenced(_towards(position, home, speed, v.z), Cause.OUTSIDE_FENCE)
+            return new(Fenced, (_towards(position, home, speed, v.z), Cause.OUTSIDE_FENCE))
         px, py = fence.polygon[-1]
         for qx, qy in fence.polygon:
             wall = nearest_on(position.x, position.y, px, py, qx, qy)
             px, py = qx, qy
             if wall.distance <= TINY:
-                return Fenced(Vec(0.0, 0.0, v.z), Cause.FENCE_AHEAD)
-    every = each(_walls, fences, _Braking(position, policy))
+                return new(Fenced, (new(Vec, (0.0, 0.0, v.z)), Cause.FENCE_AHEAD))
+    every = each(_walls, fences, new(_Braking, (position, policy)))
     x = v.x
     y = v.y
     changed = False
@@ -159,7 +159,7 @@ def brake(v: Vec, position: Vec, policy: Policy) -> Fenced:
             towards = x * ux + y * uy
             if towards * k > most:
                 k = most / towards
-    return Fenced(Vec(x * k, y * k, v.z), Cause.FENCE_AHEAD if changed else Cause.NONE)
+    return new(Fenced, (new(Vec, (x * k, y * k, v.z)), Cause.FENCE_AHEAD if changed else Cause.NONE))
 
 
 def turn(v: Vec, position: Vec, ground: Vec, wind: float, policy: Policy) -> Fenced:
@@ -169,37 +169,37 @@ def turn(v: Vec, position: Vec, ground: Vec, wind: float, policy: Policy) -> Fen
     """
     fences, margin, reaction, e = policy.fences, policy.fence_margin, policy.reaction, policy.envelope
     if len(fences) == 0 and len(policy.zones.areas) == 0:
-        return Fenced(v, Cause.NONE)
+        return new(Fenced, (v, Cause.NONE))
     level = sqrt(v.x * v.x + v.y * v.y)
     for fence in fences:
         if not inside(position.x, position.y, fence.polygon):
             home = nearest(position.x, position.y, fence.polygon)
-            return Fenced(_towards(position, home, level, v.z), Cause.OUTSIDE_FENCE)
+            return new(Fenced, (_towards(position, home, level, v.z), Cause.OUTSIDE_FENCE))
     out = inside_zone(position, policy)
     if out.x != 0.0 or out.y != 0.0:
-        return Fenced(Vec(out.x * level, out.y * level, v.z), Cause.INSIDE_ZONE)
+        return new(Fenced, (new(Vec, (out.x * level, out.y * level, v.z)), Cause.INSIDE_ZONE))
     radius = turning_radius(e, wind)
     now = sqrt(ground.x * ground.x + ground.y * ground.y)
     pace = max(now, level)
     need = radius + margin
     # No centre of a circle is farther off than this: where that much is left to every wall, any circle fits.
     if _clearance(position.x, position.y, position, policy) >= pace * reaction + radius + need + 1e-3:
-        return Fenced(v, Cause.NONE)
+        return new(Fenced, (v, Cause.NONE))
     course = atan2(ground.y, ground.x) if now > TINY else atan2(v.y, v.x)
     # Where the vehicle is, and how it heads, when an answer to the next decision begins to show.
     rate = pace / radius if radius > TINY else pi
     later = course + clamp(wrap(atan2(v.y, v.x) - course), -rate * reaction, rate * reaction)
     x = position.x + pace * reaction * cos(later)
     y = position.y + pace * reaction * sin(later)
-    there = Vec(x, y, position.z)
+    there = new(Vec, (x, y, position.z))
     if max(_room(there, later, radius, policy), _room(there, later, -radius, policy)) >= need:
-        return Fenced(v, Cause.NONE)
+        return new(Fenced, (v, Cause.NONE))
     right = _room(position, course, radius, policy)
     left = _room(position, course, -radius, policy)
     away = course + (LEAD if right >= left else -LEAD)
     least = beside(x, y, position, policy)
     cause = Cause.ZONE_AHEAD if least < _within(x, y, fences) else Cause.FENCE_AHEAD
-    return Fenced(Vec(level * cos(away), level * sin(away), v.z), cause)
+    return new(Fenced, (new(Vec, (level * cos(away), level * sin(away), v.z)), cause))
 
 
 def turning_radius(e: Envelope, wind: float) -> float:
@@ -250,4 +250,4 @@ def _within(x: float, y: float, fences: tuple[Fence, ...]) -> float:
 
 def _towards(position: Vec, to: Nearest, speed: float, z: float) -> Vec:
     n = max(to.distance, TINY)
-    return Vec((to.x - position.x) / n * speed, (to.y - position.y) / n * speed, z)
+    return new(Vec, ((to.x - position.x) / n * speed, (to.y - position.y) / n * speed, z))

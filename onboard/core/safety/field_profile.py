@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from itertools import pairwise
 
+from onboard.core.math.each import new
 from onboard.core.math.vectors import Vec, clamp
 from onboard.core.safety.policy import Action, Policy
 
@@ -47,4 +48,4 @@ def field_policy(policy: Policy, layer: float) -> Policy:
 def keep_layer(v: Vec, position: Vec, policy: Policy) -> Vec:
     """The velocity with the vertical part that leads to the layer."""
     rise = clamp(0.5 * (policy.layer + position.z), -policy.envelope.sink_max, policy.envelope.climb_max)
-    return Vec(v.x, v.y, -rise)
+    return new(Vec, (v.x, v.y, -rise))

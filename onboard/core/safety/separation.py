@@ -9,6 +9,7 @@ from __future__ import annotations
 from math import sqrt
 from typing import NamedTuple
 
+from onboard.core.math.each import new
 from onboard.core.math.states import Mate
 from onboard.core.math.vectors import TINY, Vec
 from onboard.core.safety.braking import stopping_speed
@@ -35,11 +36,11 @@ def kept_apart(
         return keep_apart(v, position, own_id, mates, policy)
     near = met(position, own_id, mates, policy)
     if not anybody(near):
-        return Separated(v, False)
+        return new(Separated, (v, False))
     moving = velocity if velocity.x * velocity.x + velocity.y * velocity.y > 1.0 else v
-    now = Moved(moving, turning(policy.envelope), policy.reaction)
+    now = new(Moved, (moving, turning(policy.envelope), policy.reaction))
     found = pass_clear(v, now, position, near, policy)
-    return Separated(found, found.x != v.x or found.y != v.y or found.z != v.z)
+    return new(Separated, (found, found.x != v.x or found.y != v.y or found.z != v.z))
 
 
 def keep_apart(v: Vec, position: Vec, own_id: int, mates: tuple[Mate, ...], policy: Policy) -> Separated:
@@ -77,9 +78,9 @@ def keep_apart(v: Vec, position: Vec, own_id: int, mates: tuple[Mate, ...], poli
             continue
         changed = True
         share = excess if quiet else 0.5 * excess
-        v = Vec(v.x - share * ux, v.y - share * uy, v.z - share * uz)
+        v = new(Vec, (v.x - share * ux, v.y - share * uy, v.z - share * uz))
         if d < keep and abs(z) < 0.5 * keep:
             up = z > 0.0 if abs(z) > 0.05 * keep else own_id < mate.id
             rise = e.climb_max if up else -e.sink_max
-            v = Vec(v.x, v.y, -rise)
-    return Separated(v, changed)
+            v = new(Vec, (v.x, v.y, -rise))
+    return new(Separated, (v, changed))

@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from onboard.core.math.constants import NEVER
+from onboard.core.math.each import new
 from onboard.core.math.states import Mate
 from onboard.core.math.vectors import ZERO, Vec, add, along, clamp, is_finite, norm, sub
 from onboard.core.safety.envelope import believable, bounded, slewed
@@ -89,32 +90,33 @@ class Before(NamedTuple):
 def supervise(wanted: Vec, seen: SupervisorInput, policy: Policy, state: SupervisorState) -> SupervisorOutput:
     """One step: the decision's velocity `wanted` [m/s; relative to the air] through all rules."""
     demand = health(seen, policy, _far_outside(seen, policy))
-    allowed = Allowed(ZERO, Cause.NONE)
+    allowed = new(Allowed, (ZERO, Cause.NONE))
     wind = ZERO if policy.envelope.hovers or not believable(ZERO, seen.wind) else seen.wind
     if demand.action < Action.HOLD:
-        if is_finite(wanted):
+        finite = is_finite(wanted)
+        if finite:
             age = clamp(seen.telemetry_age, 0.0, policy.telemetry_age)
-            flying = Flying(seen.now, seen.id, along(seen.position, seen.velocity, age), seen.velocity)
-            before = Before(state.demand, state.stamp)
+            flying = new(Flying, (seen.now, seen.id, along(seen.position, seen.velocity, age), seen.velocity))
+            before = new(Before, (state.demand, state.stamp))
             allowed = allow(wanted, wind, flying, seen.mates, policy, before)
-        if not is_finite(wanted) or not is_finite(allowed.air):
-            demand = HealthAction(Action.HOLD, Cause.NOT_FINITE, False)
+        if not finite or not is_finite(allowed.air):
+            demand = new(HealthAction, (Action.HOLD, Cause.NOT_FINITE, False))
         elif allowed.cause != Cause.NONE:
-            demand = HealthAction(Action.CLIP, allowed.cause, False)
+            demand = new(HealthAction, (Action.CLIP, allowed.cause, False))
     after = advance(state, demand, seen.now, policy.settle)
     changed = after.action != state.action or after.cause != state.cause
     if after.action >= Action.HOLD:
         after = after._replace(demand=ZERO, stamp=NEVER)
         command = commanded(after.action, after.cause, seen.order, policy.envelope.hovers)
-        return SupervisorOutput(
+        return new(SupervisorOutput, (
             after.action, after.cause, command, False, ZERO, ZERO, after, changed, seen.now, wind
-        )
+        ))
     after = SupervisorState(*after[:-2], allowed.air, seen.now)
     ground = add(allowed.air, wind)
     command = Command.STREAM
-    return SupervisorOutput(
+    return new(SupervisorOutput, (
         after.action, after.cause, command, True, ground, allowed.air, after, changed, seen.now, wind
-    )
+    ))
 
 
 def reachable(wanted: Vec, seen: SupervisorInput, policy: Policy, state: SupervisorState) -> Vec:
@@ -199,9 +201,9 @@ def advance(state: SupervisorState, demand: HealthAction, now: float, settle: fl
         cause = state.cause  # one event for a clip of many reasons, not one a step
         named = state.named
     since = state.since if action == state.action and cause == state.cause else now
-    return SupervisorState(
+    return new(SupervisorState, (
         action, cause, since, urged, named, floor, floor_cause, state.demand, state.stamp
-    )
+    ))
 
 
 def allow(
@@ -240,21 +242,24 @@ def allow(
         if height.cause != Cause.NONE:
             cause = height.cause
     ground = add(bounded(sub(ground, wind), before, e).velocity, wind)
-    clear = kept_clear(Asked(ground, position, policy))
+    clear = kept_clear(new(Asked, (ground, position, policy)))
     ground = clear.velocity
     if clear.cause != Cause.NONE:
         cause = clear.cause
     if e.hovers:
         walls = brake(ground, position, policy)
-        walls = Fenced(slowed_before(Asked(walls.velocity, position, policy)), walls.cause)
+        walls = new(Fenced, (slowed_before(new(Asked, (walls.velocity, position, policy))), walls.cause))
     else:
         walls = turn(ground, position, flying.velocity, norm(wind), policy)
     if walls.cause != Cause.NONE:
         cause = walls.cause
-    return Allowed(bounded(sub(walls.velocity, wind), before, e).velocity, cause)
+    return new(Allowed, (bounded(sub(walls.velocity, wind), before, e).velocity, cause))
 
 
 def _far_outside(seen: SupervisorInput, policy: Policy) -> bool:
     if not believable(seen.position, seen.velocity):
         return False
-    return any(outside_by(seen.position, fence) > policy.fence_far for fence in policy.fences)
+    for fence in policy.fences:  # noqa: SIM110 - a generator costs a call for each
+        if outside_by(seen.position, fence) > policy.fence_far:
+            return True
+    return False

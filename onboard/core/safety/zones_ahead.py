@@ -11,7 +11,7 @@ from math import sqrt
 from typing import NamedTuple
 
 from onboard.core.geometry.zones import Area, after, clearance, way_out_of
-from onboard.core.math.each import each, some_or_none
+from onboard.core.math.each import each, new, some_or_none
 from onboard.core.math.vectors import TINY, ZERO, Vec, clamp, norm
 from onboard.core.safety.braking import nearest_on, stopping_speed
 from onboard.core.safety.policy import Cause, Policy
@@ -48,7 +48,7 @@ def _kept_clear(_areas: tuple[Area, ...], asked: Asked) -> Held:
 
 
 def _as_it_is(_areas: tuple[Area, ...], asked: Asked) -> Held:
-    return Held(asked.velocity, Cause.NONE)
+    return new(Held, (asked.velocity, Cause.NONE))
 
 
 def slowed_before(asked: Asked) -> Vec:
@@ -63,7 +63,8 @@ def _not_slowed(_areas: tuple[Area, ...], asked: Asked) -> Vec:
 
 def beside(x: float, y: float, position: Vec, policy: Policy) -> float:
     """How far a level place lies outside the zones at a vehicle's height [m]; 1e18 where there are none."""
-    return some_or_none(_beside, _far, policy.zones.areas, Asked(Vec(x, y, 0.0), position, policy))
+    place = new(Vec, (x, y, 0.0))
+    return some_or_none(_beside, _far, policy.zones.areas, new(Asked, (place, position, policy)))
 
 
 def _far(_areas: tuple[Area, ...], _asked: Asked) -> float:
@@ -72,11 +73,11 @@ def _far(_areas: tuple[Area, ...], _asked: Asked) -> float:
 
 def inside_zone(position: Vec, policy: Policy) -> Vec:
     """The level way out of the zone that a vehicle is in (unit); ZERO where it is in none."""
-    return some_or_none(_inside, _in_none, policy.zones.areas, Asked(ZERO, position, policy))
+    return some_or_none(_inside, _in_none, policy.zones.areas, new(Asked, (ZERO, position, policy)))
 
 
 def _in_none(_areas: tuple[Area, ...], _asked: Asked) -> Vec:
-    return Vec(0.0, 0.0, 0.0)
+    return new(Vec, (0.0, 0.0, 0.0))
 
 
 class Ahead(NamedTuple):
@@ -93,13 +94,13 @@ def ahead(area: Area, _index: int, asked: Asked) -> Ahead:
     zones, e = policy.zones, policy.envelope
     answers = policy.reaction + policy.coast
     out = way_out_of(zones, area, position, False)
-    away = Vec(-out.outward.x, -out.outward.y, -out.outward.z)
+    away = new(Vec, (-out.outward.x, -out.outward.y, -out.outward.z))
     if out.clearance < 0.0:
-        return Ahead(out.clearance, away, 0.0)
+        return new(Ahead, (out.clearance, away, 0.0))
     # It is at least that far: where any speed stops in time, no nearer look is needed.
     room = out.clearance - max(policy.fence_margin, policy.height_margin)
     if stopping_speed(room, SINKING * e.deceleration, answers) >= PLENTY * e.speed_max:
-        return Ahead(out.clearance, away, FAST)
+        return new(Ahead, (out.clearance, away, FAST))
     x, y = position.x, position.y
     near = 1e300
     if clearance(zones, area, position, True) > 0.0:
@@ -110,27 +111,27 @@ def ahead(area: Area, _index: int, asked: Asked) -> Ahead:
                 near = found.distance
                 x, y = found.x, found.y
     z = -clamp(-position.z, area.low, area.high)
-    line = Vec(x - position.x, y - position.y, z - position.z)
+    line = new(Vec, (x - position.x, y - position.y, z - position.z))
     far = norm(line)
     if far <= TINY:
-        return Ahead(0.0, away, 0.0)
-    towards = Vec(line.x / far, line.y / far, line.z / far)
+        return new(Ahead, (0.0, away, 0.0))
+    towards = new(Vec, (line.x / far, line.y / far, line.z / far))
     level = sqrt(line.x * line.x + line.y * line.y) / far
     margin = policy.fence_margin * level + policy.height_margin * (1.0 - level)
     slow = e.deceleration * (SINKING + (1.0 - SINKING) * level)
-    return Ahead(far, towards, stopping_speed(far - margin, slow, answers))
+    return new(Ahead, (far, towards, stopping_speed(far - margin, slow, answers)))
 
 
 def held_off(v: Vec, position: Vec, policy: Policy) -> Held:
     """A multicopter's velocity, slowed towards every zone it could not stop before; inside, the way out."""
-    every = each(ahead, policy.zones.areas, Asked(v, position, policy))
+    every = each(ahead, policy.zones.areas, new(Asked, (v, position, policy)))
     for near in every:
         if near.distance < 0.0:
             speed = clamp(0.5 * (policy.fence_margin - near.distance), 0.5, policy.envelope.speed_max)
-            out = Vec(-near.towards.x * speed, -near.towards.y * speed, -near.towards.z * speed)
+            out = new(Vec, (-near.towards.x * speed, -near.towards.y * speed, -near.towards.z * speed))
             if out.z == 0.0:
-                out = Vec(out.x, out.y, v.z)
-            return Held(out, Cause.INSIDE_ZONE)
+                out = new(Vec, (out.x, out.y, v.z))
+            return new(Held, (out, Cause.INSIDE_ZONE))
     x, y, z = v
     changed = False
     for _ in range(PASSES):
@@ -141,7 +142,7 @@ def held_off(v: Vec, position: Vec, policy: Policy) -> Held:
                 y -= excess * near.towards.y
                 z -= excess * near.towards.z
                 changed = changed or excess > 1e-6
-    return Held(slower(Vec(x, y, z), every), Cause.ZONE_AHEAD if changed else Cause.NONE)
+    return new(Held, (slower(new(Vec, (x, y, z)), every), Cause.ZONE_AHEAD if changed else Cause.NONE))
 
 
 def slower(v: Vec, every: tuple[Ahead, ...]) -> Vec:
@@ -151,7 +152,7 @@ def slower(v: Vec, every: tuple[Ahead, ...]) -> Vec:
         towards = v.x * near.towards.x + v.y * near.towards.y + v.z * near.towards.z
         if near.distance >= 0.0 and towards * k > near.most:
             k = near.most / towards
-    return Vec(v.x * k, v.y * k, v.z * k)
+    return new(Vec, (v.x * k, v.y * k, v.z * k))
 
 
 def _slowed(areas: tuple[Area, ...], asked: Asked) -> Vec:
@@ -179,7 +180,7 @@ def levelled(v: Vec, position: Vec, policy: Policy) -> Held:
             if climb > most:
                 climb = most
                 cause = Cause.ZONE_AHEAD
-    return Held(Vec(v.x, v.y, -climb), cause)
+    return new(Held, (new(Vec, (v.x, v.y, -climb)), cause))
 
 
 def _beside(areas: tuple[Area, ...], asked: Asked) -> float:
@@ -195,7 +196,7 @@ def _beside(areas: tuple[Area, ...], asked: Asked) -> float:
 def _inside(areas: tuple[Area, ...], asked: Asked) -> Vec:
     _velocity, position, policy = asked
     deepest = 0.0
-    out = Vec(0.0, 0.0, 0.0)
+    out = new(Vec, (0.0, 0.0, 0.0))
     for area in areas:
         if clearance(policy.zones, area, position, False) < 0.0:
             found = way_out_of(policy.zones, area, position, True)

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from onboard.core.game.views import Held, PursuerView
 from onboard.core.geometry.apollonius import closest_approach, intercept
+from onboard.core.math.each import new
 from onboard.core.math.vectors import Vec, along, distance, norm
 from onboard.core.strategy.knowledge import Decision, Module, Rule, RuleId, fold, silent
 from onboard.core.strategy.pursuit import PURSUER, heading_for
@@ -27,7 +28,7 @@ def held_after(rule: int, aim: Vec, time: float, since: float, wind: Vec) -> Hel
     `time` [s]; the `wind` [m/s] has carried that point on."""
     corrected = rule == RuleId.POINT_BY_POINT
     exists = corrected or rule == RuleId.INTERCEPT or rule == RuleId.CLOSEST_APPROACH
-    return Held(exists, corrected, along(aim, wind, since), time - since)
+    return new(Held, (exists, corrected, along(aim, wind, since), time - since))
 
 
 def point_by_point(view: PursuerView) -> Decision:

@@ -11,6 +11,7 @@ from math import sqrt
 from onboard.core.game.views import EvaderView, heading_at
 from onboard.core.geometry.cones import Ray
 from onboard.core.geometry.free_ray import free_ray_limited, within
+from onboard.core.math.each import new
 from onboard.core.math.vectors import NORTH, TINY, Vec, along, distance, sub, unit
 from onboard.core.strategy.knowledge import Decision, Module, Rule, RuleId, fold, silent
 
@@ -41,7 +42,7 @@ def resultant_force(view: EvaderView) -> Vec:
             x += weight * gx
             y += weight * gy
             z += weight * gz
-    return Vec(x, y, z)
+    return new(Vec, (x, y, z))
 
 
 def target_direction(view: EvaderView) -> Vec:
@@ -53,7 +54,7 @@ def _along_ray(view: EvaderView, ray: Ray, rule: RuleId, length: float) -> Decis
     aim = along(view.own.position, ray.direction, length)
     speed = view.own.speed
     time = length / speed if speed > TINY else 0.0
-    return Decision(True, ray.direction, speed, rule, aim, time, 0.0)
+    return new(Decision, (True, ray.direction, speed, rule, aim, time, 0.0))
 
 
 def free_ray_to_target(view: EvaderView) -> Decision:
@@ -82,7 +83,7 @@ def free_ray_from_pursuers(view: EvaderView) -> Decision:
 def resultant(view: EvaderView) -> Decision:
     """Rule 3 of 3.4.1: no free ray, so along F_res of (21), or (22) with a target."""
     force = unit(resultant_force(view), heading_at(view.own))
-    ray = Ray(True, within(force, view.limits, view.rules.planar), 1.0)
+    ray = new(Ray, (True, within(force, view.limits, view.rules.planar), 1.0))
     if view.target.exists:
         return _along_ray(view, ray, RuleId.RESULTANT_FORCE_TO_TARGET, view.own.speed)
     return _along_ray(view, ray, RuleId.RESULTANT_FORCE, view.own.speed)
@@ -92,13 +93,13 @@ def straight_to_target(view: EvaderView) -> Decision:
     """For comparison: straight at the target, whoever is in the way."""
     if not view.target.exists:
         return silent(heading_at(view.own), view.target.position)
-    ray = Ray(True, within(target_direction(view), view.limits, view.rules.planar), 1.0)
+    ray = new(Ray, (True, within(target_direction(view), view.limits, view.rules.planar), 1.0))
     return _along_ray(view, ray, RuleId.STRAIGHT_TO_TARGET, distance(view.own.position, view.target.position))
 
 
 def straight_on(view: EvaderView) -> Decision:
     """For comparison: straight on."""
-    ray = Ray(True, within(heading_at(view.own), view.limits, view.rules.planar), 1.0)
+    ray = new(Ray, (True, within(heading_at(view.own), view.limits, view.rules.planar), 1.0))
     return _along_ray(view, ray, RuleId.STRAIGHT_ON, view.own.speed)
 
 

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from enum import IntEnum
 from typing import Generic, NamedTuple, TypeVar
 
+from onboard.core.math.each import new
 from onboard.core.math.vectors import Vec
 
 View = TypeVar("View", contravariant=True)
@@ -125,4 +126,4 @@ def fold(table: tuple[Rule[View], ...]) -> Callable[[View], Decision]:
 
 def silent(direction: Vec, aim: Vec) -> Decision:
     """What a rule answers that does not fire."""
-    return Decision(False, direction, 0.0, RuleId.NONE, aim, 0.0, 0.0)
+    return new(Decision, (False, direction, 0.0, RuleId.NONE, aim, 0.0, 0.0))

@@ -12,6 +12,7 @@ from onboard.core.geometry.apollonius import closest_approach, intercept
 from onboard.core.geometry.free_ray import within
 from onboard.core.geometry.lead import lead
 from onboard.core.math.angles import wrap
+from onboard.core.math.each import new
 from onboard.core.math.vectors import TINY, Vec, add, along, cross, distance, dot, scale, sub, unit
 from onboard.core.strategy.denial import hold_line, keep_goal
 from onboard.core.strategy.knowledge import Decision, Module, Rule, RuleId, fold, silent
@@ -28,8 +29,8 @@ def heading_for(view: PursuerView, aim: Vec, rule: RuleId, time: float, miss: fl
     z = aim.z - z
     far = sqrt(x * x + y * y + z * z)
     k = 1.0 / far if far > TINY else 0.0
-    ahead = view.heading if far <= TINY else Vec(x * k, y * k, z * k)
-    return Decision(True, within(ahead, view.limits, view.rules.planar), speed, rule, aim, time, miss)
+    ahead = view.heading if far <= TINY else new(Vec, (x * k, y * k, z * k))
+    return new(Decision, (True, within(ahead, view.limits, view.rules.planar), speed, rule, aim, time, miss))
 
 
 def keep_off_mate(view: PursuerView) -> Decision:
@@ -45,7 +46,7 @@ def keep_off_mate(view: PursuerView) -> Decision:
     past = along(wanted, out, -dot(wanted, out))
     ahead = within(unit(add(out, past), out), view.limits, view.rules.planar)
     aim = along(own.position, ahead, view.rules.separation)
-    return Decision(True, ahead, own.speed, RuleId.KEEP_OFF_MATE, aim, 0.0, 0.0)
+    return new(Decision, (True, ahead, own.speed, RuleId.KEEP_OFF_MATE, aim, 0.0, 0.0))
 
 
 def exact_intercept(view: PursuerView) -> Decision:
@@ -74,7 +75,7 @@ def parallel(view: PursuerView) -> Decision:
     ahead = within(view.heading, view.limits, view.rules.planar)
     aim = along(own.position, ahead, own.speed)
     left = distance(own.position, view.evader.position)
-    return Decision(True, ahead, own.speed, RuleId.PARALLEL, aim, 1.0, left)
+    return new(Decision, (True, ahead, own.speed, RuleId.PARALLEL, aim, 1.0, left))
 
 
 def predicted_place(view: PursuerView) -> Decision:
@@ -112,7 +113,7 @@ def parallel_pursuit(view: PursuerView) -> Decision:
     far = distance(e.position, own.position)
     time = far / rate if rate > TINY else 0.0
     aim = along(own.position, ahead, own.speed * time)
-    return Decision(True, ahead, own.speed, RuleId.PARALLEL_PURSUIT, aim, time, 0.0)
+    return new(Decision, (True, ahead, own.speed, RuleId.PARALLEL_PURSUIT, aim, time, 0.0))
 
 
 def turned(velocity: Vec, ahead: Vec, most: float) -> Vec:
@@ -128,7 +129,7 @@ def turned(velocity: Vec, ahead: Vec, most: float) -> Vec:
     if abs(turn) <= most:
         return ahead
     course += most if turn > 0.0 else -most
-    return Vec(level * cos(course), level * sin(course), ahead.z)
+    return new(Vec, (level * cos(course), level * sin(course), ahead.z))
 
 
 def proportional_navigation(view: PursuerView) -> Decision:
@@ -145,7 +146,7 @@ def proportional_navigation(view: PursuerView) -> Decision:
         ahead = unit(add(ahead, cross(turn, ahead)), ahead)
     ahead = within(ahead, view.limits, view.rules.planar)
     aim = along(own.position, ahead, own.speed)
-    return Decision(True, ahead, own.speed, RuleId.PROPORTIONAL_NAVIGATION, aim, 1.0, 0.0)
+    return new(Decision, (True, ahead, own.speed, RuleId.PROPORTIONAL_NAVIGATION, aim, 1.0, 0.0))
 
 
 _KEEP_OFF: Rule[PursuerView] = Rule(

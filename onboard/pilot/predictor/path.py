@@ -6,6 +6,7 @@ from itertools import pairwise
 from math import hypot, isfinite, isnan
 from typing import NamedTuple
 
+from onboard.core.math.each import new
 from onboard.core.math.vectors import Vec, along
 from onboard.pilot.predictor.forecast import Answer
 from onboard.pilot.predictor.prediction import Prediction, PredictorKind
@@ -32,11 +33,6 @@ class Path(NamedTuple):
     sigma: float  # error of the start [m]
     knots: tuple[Knot, ...]  # the first at time 0
 
-    @property
-    def longest(self) -> float:
-        """The longest horizon [s]."""
-        return self.knots[-1].time
-
 
 def path(start: Estimate, said: Answer, horizons: tuple[int, ...], step: float) -> Path:
     """The path of a forecast, from a track's estimate; horizons are counted in steps of `step` [s]."""
@@ -47,10 +43,10 @@ def path(start: Estimate, said: Answer, horizons: tuple[int, ...], step: float) 
     kinds = (said.kinds[0], *said.kinds)
     errors = (0.0, *said.sigma)
     knots = [
-        Knot(h * step, Vec(*move), Vec(x / step, y / step, z / step), error, kind)
+        new(Knot, (h * step, Vec(*move), new(Vec, (x / step, y / step, z / step)), error, kind))
         for h, move, (x, y, z), error, kind in zip((0, *horizons), moves, slopes, errors, kinds, strict=True)
     ]
-    return Path(t, position, sigma, tuple(knots))
+    return new(Path, (t, position, sigma, tuple(knots)))
 
 
 def sound(line: Path, speed: float) -> bool:
@@ -68,7 +64,7 @@ def at(line: Path, t: float, steady_sigma: float) -> Prediction:
     which stands in where no error was held out."""
     ahead = t - line.t
     knots = line.knots
-    if ahead > line.longest:
+    if ahead > knots[-1].time:
         return _beyond(line, ahead, steady_sigma)
     index = 1
     while knots[index].time < ahead:
@@ -82,19 +78,19 @@ def at(line: Path, t: float, steady_sigma: float) -> Prediction:
     (x, y, z), (ax, ay, az), (bx, by, bz) = line.position, a.move, b.move
     (avx, avy, avz), (bvx, bvy, bvz) = a.velocity, b.velocity
     rx, ry, rz = bx - ax, by - ay, bz - az
-    place = Vec(
+    place = new(Vec, (
         x + ax + rx * h + avx * near + bvx * far,
         y + ay + ry * h + avy * near + bvy * far,
         z + az + rz * h + avz * near + bvz * far,
-    )
-    speed = Vec(
+    ))
+    speed = new(Vec, (
         rx * dh + avx * dnear + bvx * dfar,
         ry * dh + avy * dnear + bvy * dfar,
         rz * dh + avz * dnear + bvz * dfar,
-    )
+    ))
     grown = a.sigma * (1.0 - u) + b.sigma * u
     sigma = steady_sigma if isnan(grown) else (line.sigma * line.sigma + grown * grown) ** 0.5
-    return Prediction(place, speed, sigma, b.kind, True)
+    return new(Prediction, (place, speed, sigma, b.kind, True))
 
 
 def _beyond(line: Path, ahead: float, steady_sigma: float) -> Prediction:
@@ -103,7 +99,7 @@ def _beyond(line: Path, ahead: float, steady_sigma: float) -> Prediction:
     known = (line.sigma * line.sigma + end.sigma * end.sigma) ** 0.5 * (ahead / end.time) ** 1.5
     sigma = steady_sigma if isnan(known) else known
     place = along(along(line.position, end.move, 1.0), end.velocity, ahead - end.time)
-    return Prediction(place, end.velocity, sigma, PredictorKind.CONSTANT_VELOCITY, True)
+    return new(Prediction, (place, end.velocity, sigma, PredictorKind.CONSTANT_VELOCITY, True))
 
 
 def _slopes(ahead: tuple[int, ...], moves: list[Row], first: Row) -> list[Row]:

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any, Generic, NamedTuple, TypeVar
 
+from onboard.core.math.each import new
 from onboard.wire.bus.codec import Codec, M
 from onboard.wire.bus.knowledge_messages import Knowledge
 from onboard.wire.bus.messages import (
@@ -203,7 +204,7 @@ class Table:
         message = told(place, payload, drops)
         if message is None:
             return None
-        heard: Heard = tuple.__new__(Heard, (place.topic, place.id, message))  # twice as fast as `Heard(…)`
+        heard = new(Heard, (place.topic, place.id, message))
         return heard
 
     def _parse(self, key: str) -> Place | None:

@@ -11,6 +11,7 @@ from math import cos, isfinite, pi, radians, sin
 from struct import Struct, error
 from typing import Any
 
+from onboard.core.math.each import new
 from onboard.core.math.vectors import Vec
 from onboard.wire.mavlink.dialect import Layout, MavMessage, dialect, layout_of
 from onboard.wire.mavlink.modes import kind_of, mode_name
@@ -71,11 +72,7 @@ def _on_earth(latitude_e7: int, longitude_e7: int) -> bool:
 
 
 # ---------------------------------------------------------------------- what comes often: `v` are the values
-# of the wire, in its order. A sum of numbers of 32 bits is finite where all of them are. What streams is made
-# by `tuple.__new__`, which takes half the time of a call of the class.
-
-_new = tuple.__new__
-
+# of the wire, in its order. A sum of numbers of 32 bits is finite where all of them are.
 
 def _heartbeat(v: tuple[Any, ...]) -> Heartbeat:
     custom_mode, type, autopilot, base_mode, system_status, _version = v
@@ -88,9 +85,9 @@ def _global_position(v: tuple[Any, ...]) -> GlobalPosition | None:
     boot_ms, lat, lon, alt, relative_alt, vx, vy, vz, _heading = v
     if not _on_earth(lat, lon):
         return None
-    velocity = _new(Vec, (vx * 0.01, vy * 0.01, vz * 0.01))
+    velocity = new(Vec, (vx * 0.01, vy * 0.01, vz * 0.01))
     place = (lat * 1e-7, lon * 1e-7, alt * 1e-3, relative_alt * 1e-3)
-    return _new(GlobalPosition, (boot_ms * 1e-3, *place, velocity))
+    return new(GlobalPosition, (boot_ms * 1e-3, *place, velocity))
 
 
 def _attitude(v: tuple[Any, ...]) -> Attitude | None:
@@ -99,14 +96,14 @@ def _attitude(v: tuple[Any, ...]) -> Attitude | None:
         return None
     if abs(roll) > 2 * pi or abs(pitch) > 2 * pi or abs(yaw) > 4 * pi:
         return None
-    return _new(Attitude, (boot_ms * 1e-3, roll, pitch, yaw, _new(Vec, v[4:])))
+    return new(Attitude, (boot_ms * 1e-3, roll, pitch, yaw, new(Vec, (rollspeed, pitchspeed, yawspeed))))
 
 
 def _air_data(v: tuple[Any, ...]) -> AirData | None:
     airspeed, groundspeed, alt, climb, _heading, throttle = v
     if not isfinite(airspeed + groundspeed + climb + alt):
         return None
-    return _new(AirData, (airspeed, groundspeed, climb, throttle * 0.01, alt))
+    return new(AirData, (airspeed, groundspeed, climb, throttle * 0.01, alt))
 
 
 def _wind(v: tuple[Any, ...]) -> Wind | None:

@@ -6,6 +6,7 @@ from math import asin, cos, inf, sin, tan
 
 from onboard.core.math.angles import wrap
 from onboard.core.math.constants import STANDARD_GRAVITY
+from onboard.core.math.each import new
 from onboard.core.math.states import VehicleLimits
 from onboard.core.math.vectors import ZERO, Vec, clamp, norm, yaw_of
 from sim_bridge.vehicle.flight.aircraft import named, within
@@ -24,8 +25,6 @@ from sim_bridge.vehicle.flight.plane import (
     true_airspeed,
 )
 from sim_bridge.vehicle.motion import Air, Demand, Lateral, Motion
-
-_new = tuple.__new__  # twice as fast as a call of the class
 
 
 def course_through_air(course: float, speed: float, air: Vec) -> float:
@@ -107,14 +106,14 @@ class Plane:
         left = self._due
         if left > 1e-9:
             (x, y, z), (vx, vy, vz) = position, state.velocity
-            position = _new(Vec, (x + left * vx, y + left * vy, z + left * vz))
+            position = new(Vec, (x + left * vx, y + left * vy, z + left * vz))
         turning = state.yaw.rate
         if model.path == PathModel.COORDINATED:
             turning += STANDARD_GRAVITY * tan(state.bank) / max(state.speed, SLOW)
-        rates = _new(Vec, (state.bank_rate, state.pitch.rate, turning))
+        rates = new(Vec, (state.bank_rate, state.pitch.rate, turning))
         airspeed, yaw = true_airspeed(state, air.wind, air.gust), wrap(nose_yaw(state, model))
         moved = (position, state.velocity, airspeed, state.bank, state.pitch.angle, yaw, rates)
-        motion: Motion = _new(Motion, moved)
+        motion = new(Motion, moved)
         return motion
 
 

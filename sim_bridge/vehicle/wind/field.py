@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from onboard.core.math.each import new
 from onboard.core.math.vectors import ZERO, Vec, unit
 from onboard.game.scenario import WindSpec
 from sim_bridge.draws import Purpose, Stream, key_of
@@ -32,7 +33,6 @@ from sim_bridge.vehicle.wind.recorded import RecordedWind, read
 from sim_bridge.vehicle.wind.shear import ROUGHNESS, mean_wind
 
 TICK = 0.02  # [s] of the gusts' grid
-_new = tuple.__new__  # twice as fast as a call of the class
 REMIX = 25  # ticks after which the correlation is computed anew from the distances
 
 
@@ -79,8 +79,8 @@ class WindField:
             return CALM if wind == ZERO else Air(wind, ZERO)
         self._places[vehicle] = position
         self._advance(vehicle, int(time / TICK + 1e-6), motion.airspeed)
-        axes: GustAxes = _new(GustAxes, (*self._axis, motion.yaw, motion.pitch, height))
-        air: Air = _new(Air, (wind, gust_of(self._states[vehicle], self._sigma, axes)))
+        axes = new(GustAxes, (*self._axis, motion.yaw, motion.pitch, height))
+        air = new(Air, (wind, gust_of(self._states[vehicle], self._sigma, axes)))
         return air
 
     def _advance(self, vehicle: int, tick: int, airspeed: float) -> None:

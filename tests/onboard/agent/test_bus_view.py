@@ -75,3 +75,21 @@ def test_tracks_of_itself_and_of_mates_say_nothing_those_of_others_do() -> None:
     assert {id: told(id) for id in (1, 2, 3, 4)} == {1: True, 2: False, 3: True, 4: False}
     assert view.take(TRACK.key("g", 1), b"\x00", now) is None
     assert view.drops.total() == 1
+
+
+def test_tracks_are_asked_for_one_by_one_once_the_opponents_are_known() -> None:
+    view, out = opened()
+    all_there_are = TRACK.key("g")
+    assert all_there_are in set(view.keys())
+    out.take()
+    view.watch((1, 7))
+    one, seven, eight = (TRACK.key("g", id) for id in (1, 7, 8))
+    assert out.take() == [Unsubscribe(all_there_are), Subscribe(one), Subscribe(seven)]
+    view.watch((7, 8))  # of the next game
+    assert out.take() == [Unsubscribe(one), Subscribe(eight)]
+    assert {seven, eight} <= set(view.keys())
+    assert {one, all_there_are}.isdisjoint(view.keys())
+    view.watch(tuple(range(10, 30)))  # so many keys would cost more than what comes beside them
+    assert out.take() == [Unsubscribe(seven), Unsubscribe(eight), Subscribe(all_there_are)]
+    view.watch(())
+    assert out.take() == [Unsubscribe(all_there_are)]

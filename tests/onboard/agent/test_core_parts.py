@@ -15,10 +15,10 @@ from onboard.agent.core.journal import BURST, Journal
 from onboard.agent.core.masters import WORDS_KEPT, Hearing, Masters, Words
 from onboard.agent.core.participation import Participation
 from onboard.agent.core.policy_from_config import contradiction, envelope_of, game_setup, policy_of
+from onboard.agent.core.rate import RATE_WINDOW_S, Rate
 from onboard.agent.core.schedule import Grid
 from onboard.agent.core.telemetry_requests import baud_of
 from onboard.agent.core.to_place import own_state
-from onboard.agent.core.vehicle_link import RATE_WINDOW_S, Rate
 from onboard.autopilot.base import Note, Telemetry
 from onboard.autopilot.flight_limits import FlightLimits
 from onboard.core.math.vectors import ZERO, Vec
