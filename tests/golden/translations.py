@@ -22,29 +22,8 @@ class Translation(NamedTuple):
     was: str = r"\g<0>"  # the topic's recorded name, as in re.sub
 
 
-def shorter(fields: int) -> Callable[[Any], Any]:
-    """A `back` for messages that have grown: cuts fields beyond the recorded ones, where they say nothing."""
-
-    def back(message: Any) -> Any:
-        match message:
-            case [schema, [*body]] if not any(body[fields:]):
-                return [schema, body[:fields]]
-        return message
-
-    return back
-
-
-SEVERAL = "fields for games of several evaders, empty in games of one"
-
 # Topics as in `bus` (without the game's name), in `viewers`, and "summary" for a game's summary.json.
-TRANSLATIONS: tuple[Translation, ...] = (
-    Translation(r"game/setup", shorter(13), f"{SEVERAL}; zones, empty where there are none"),
-    Translation(r"game/phase", shorter(8), SEVERAL),
-    Translation(r"game/outcome", shorter(6), SEVERAL),
-    Translation(r"roles/evader/brief", shorter(2), SEVERAL),
-    Translation(r"vehicles/[0-9]+/decision", shorter(18), SEVERAL),
-    Translation(r"vehicles/[0-9]+/plan", shorter(11), SEVERAL),
-)
+TRANSLATIONS: tuple[Translation, ...] = ()
 
 
 def without_version(message: Any) -> Any:
