@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 from onboard.agent.adapter_child import AdapterChild
 from onboard.agent.config import AgentConfig
+from onboard.agent.core.ahead import SHARE
 from onboard.agent.core.events import (
     ANY_PEER,
     Announce,
@@ -61,6 +62,7 @@ from onboard.wire.mavlink.signing import Signing
 from onboard.wire.mavlink.telemetry import FLIGHT
 
 IDLE = Idle()
+READY_S = 0.008  # before the strategy is asked again: what has come on the bus is taken in then
 PEERS_MAX = 64  # of one link that are numbered; who was heard longest ago is forgotten
 
 
@@ -159,6 +161,8 @@ class Agent:
         self._waiting: deque[tuple[AnyEvent, Instant]] = deque()
         self._busy = False
         self._last, self._last_ns = Instant(0.0, 0), -1
+        share = SHARE if config.decide_ahead else 1.0  # of a period, until the strategy is asked again
+        self._next_thought = max(0.0, share / config.control_rate_hz - READY_S)
         self._arrived_ns = 0  # when the datagram arrived that is being handled; 0 = none is
         self._timer: asyncio.TimerHandle | None = None
         self._timer_at = inf
@@ -293,8 +297,8 @@ class Agent:
             return
         self._arrived_ns = now_ns
         self.feed(LinkBytes(index, port.number(peer), data))
-        if self._arrived_ns == 0:  # a control step is done: until the next one nothing is more urgent
-            self.bus.look()
+        if self._arrived_ns == 0:  # a control step is done: what has come is wanted shortly before the next
+            self.bus.wanted_in(self._next_thought)
         self._arrived_ns = 0
 
     def _admits(self, index: int, data: bytes, autopilot: bool, now: float) -> bool:

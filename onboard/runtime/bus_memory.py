@@ -175,7 +175,7 @@ class MemoryBus:
 
         return _Undo(undo)
 
-    def look(self) -> None:
+    def wanted_in(self, wait: float) -> None:
         """Nothing waits here: what is published is on its way."""
 
     def serve(self, key: str, handler: Callable[[bytes], bytes]) -> _Undo:

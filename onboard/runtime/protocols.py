@@ -80,8 +80,10 @@ class Bus(Protocol):
         LATEST key; with `every` it gets all of them, for who records."""
         ...
 
-    def look(self) -> None:
-        """The loop is awake anyway: take next what has come. It is taken in time without this, too."""
+    def wanted_in(self, wait: float) -> None:
+        """What has come by `wait` [s] from now is wanted then, and not before: say so once a control step.
+
+        Without this what comes is taken in time, too."""
         ...
 
     def serve(self, key: str, handler: Callable[[bytes], bytes]) -> Subscription:

@@ -198,9 +198,9 @@ class ZenohBus:
 
         return self._declare(declare, partial(self._streams.detach, stream))
 
-    def look(self) -> None:
-        """The loop is awake anyway: it takes next what has come."""
-        self._streams.soon()
+    def wanted_in(self, wait: float) -> None:
+        """What has come by `wait` [s] from now is wanted then, and not before."""
+        self._streams.look_in(wait)
 
     def serve(self, key: str, handler: Callable[[bytes], bytes]) -> Subscription:
         """Answer requests on `key`; the handler runs on the loop."""

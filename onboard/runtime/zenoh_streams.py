@@ -1,8 +1,8 @@
 """What subscriptions over Zenoh bring: it waits in a channel of Zenoh's until the event loop takes it.
 
 No thread of Zenoh's enters Python for a message, and none wakes the loop for one: on a small computer either
-costs more than most messages. The loop looks every `LOOK_S`, or when it is told that it is awake anyway, and
-takes all that has come.
+costs more than most messages. The loop looks every `LOOK_S`, or once when it has said that it will want what
+has come, and takes all of it.
 """
 
 from __future__ import annotations
@@ -18,7 +18,8 @@ from onboard.runtime.protocols import Sample
 from onboard.runtime.rate_limit import LATER_S, PAYLOAD_MAX, BusLimit
 from onboard.wire.bus.topics import TOPICS, Delivery
 
-LOOK_S = 0.03  # a message waits so long at most for a loop that is not late
+LOOK_S = 0.03  # a message waits so long at most for a loop that is not late …
+PUT_OFF_S = 0.05  # … and at most so much longer for one that has said when it wants what has come
 # Messages that wait in a channel; beyond them the oldest are lost, and that is counted. In time a stream
 # fills each of these places with 250 bytes, waiting or not.
 EVERY_MAX = 8192  # where each message counts: a station hears a thousand vehicles
@@ -52,7 +53,7 @@ class Streams:
         self._limit = limit
         self._open: list[Stream] = []
         self._timer: asyncio.TimerHandle | None = None
-        self._soon = False  # the loop is about to look, awake as it is
+        self._asked = -1  # how often it had looked when it last said when it wants to
 
     def attach(self, stream: Stream, take: Callable[[], Any]) -> None:
         """A session has declared it: from now on the loop looks into its channel."""
@@ -71,16 +72,15 @@ class Streams:
             self._timer.cancel()
             self._timer = None
 
-    def soon(self) -> None:
-        """Look as soon as the loop has done what it is at, and not again within `LOOK_S`."""
-        if self._timer is not None and not self._soon:
-            self._soon = True
+    def look_in(self, wait: float) -> None:
+        """Look in `wait` [s], and not before; where it has not looked since it was last asked to, at once."""
+        if self._timer is not None:
+            late, self._asked = self._asked == self.looks, self.looks
             self._timer.cancel()
-            self._timer = self._loop.call_later(0.0, self._look)
+            self._timer = self._loop.call_later(0.0 if late else min(wait, PUT_OFF_S), self._look)
 
     def _look(self) -> None:
         self._timer = self._loop.call_later(LOOK_S, self._look)
-        self._soon = False
         self.looks += 1
         for stream in tuple(self._open):
             for sample in self._heard(stream):

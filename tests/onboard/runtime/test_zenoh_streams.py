@@ -21,7 +21,7 @@ from onboard.runtime.bus_zenoh import ZenohBus, open_zenoh
 from onboard.runtime.loop import run_virtual
 from onboard.runtime.protocols import Sample
 from onboard.runtime.rate_limit import LATER_S, BusLimit
-from onboard.runtime.zenoh_streams import LOOK_S, Stream, Streams
+from onboard.runtime.zenoh_streams import LOOK_S, PUT_OFF_S, Stream, Streams
 from onboard.wire.bus.topics import COMMAND, EVENTS, STATE, TRACK, Delivery
 from tests.support.bus_stages import Heard, free_port
 from tests.support.real_time import until
@@ -81,26 +81,44 @@ def test_a_message_waits_for_the_next_look_and_no_longer() -> None:
     run_virtual(play())
 
 
-def test_a_loop_that_is_awake_looks_next_and_then_not_for_a_while() -> None:
+def test_a_loop_that_says_when_it_wants_what_has_come_looks_then_and_only_then() -> None:
     async def play() -> None:
         played = Played()
         begun = played.loop.time()
-        for number in range(100):  # a control step every 20 ms, as a position comes
+        for number in range(100):  # a control step every 50 ms, as a position comes
             played.channel.append(put(STATE.key(GAME, 1 + number), b"x"))
-            played.streams.soon()
-            played.streams.soon()
-            assert len(played.heard) == number  # what the loop is at comes first
-            await asyncio.sleep(0.02)
-            assert [at - begun for at, _ in played.heard[number:]] == [pytest.approx(0.02 * number)]
-        assert played.streams.looks == 100  # no look between two steps
+            played.streams.look_in(0.042)
+            await asyncio.sleep(0.05)
+            assert [at - begun for at, _ in played.heard[number:]] == [pytest.approx(0.05 * number + 0.042)]
+        assert played.streams.looks == 100  # one look a step
         await asyncio.sleep(1.0)
         assert played.streams.looks == pytest.approx(100 + 1.0 / LOOK_S, abs=2)
         played.streams.detach(played.stream)
-        played.streams.soon()
+        played.streams.look_in(0.042)
         await asyncio.sleep(0.1)
         assert played.streams.looks <= 102 + 1.0 / LOOK_S
 
     run_virtual(play())
+
+
+@pytest.mark.parametrize("every", [1, 2, 5, 11, 50, 10_000])
+@pytest.mark.parametrize("wait", [0.0, 0.022, 0.042, 0.492, 5.0])
+def test_whenever_steps_come_and_whatever_they_say_what_comes_is_heard_soon(every: int, wait: float) -> None:
+    async def play() -> None:
+        played, left = Played(), list[float]()
+        for number in range(500):  # a moment each 10 ms, a control step at `every` one of them
+            if number % 7 == 0:
+                left.append(played.loop.time())
+                played.channel.append(put(STATE.key(GAME, 1 + number), b"x"))
+            if number % every == 0:
+                played.streams.look_in(wait)
+            await asyncio.sleep(0.01)
+        await asyncio.sleep(1.0)
+        waited = [at - since for since, (at, _) in zip(left, played.heard, strict=True)]
+        assert max(waited) <= LOOK_S + min(wait, PUT_OFF_S) + 1e-9
+
+    run_virtual(play())
+
 
 
 def test_the_newest_of_a_key_is_heard_and_the_rest_is_counted_but_who_records_hears_all() -> None:
