@@ -52,7 +52,7 @@ def main() -> None:
     lines = [
         f"Medians of {rounds} runs in turn (all in brackets); CPU of whole processes, with Zenoh's threads.",
         f"Before is {BEFORE}: a thread of Zenoh's entered Python and woke the loop for each message. Now",
-        "messages wait in Zenoh's channels, the loop looks every 30 ms, agents after a control step besides;",
+        "messages wait in Zenoh's channels; a station looks every 30 ms, an agent once a control period;",
         "requests are answered at once in both.",
         "",
         "| what | before | now | ratio |",
