@@ -53,6 +53,7 @@ WRONG = {
     'new(Vec, (v.x, v.y, "z"))': "field 3 is Literal['z']?, expected float",
     "new(Vec, several)": "how many fields it gives is not known",
     "new(float, (v.x,))": "the first argument is no NamedTuple",
+    "new(Vec)": "Too few arguments",
     "new(Mate, (1, v, v, 0.0)).speed": 'has no attribute "speed"',
 }
 RIGHT = ("new(Vec, (v.x, 1, 2.0))", "new(Vec, three)", "new(Mate, (1, v, v, 0.0)).age")

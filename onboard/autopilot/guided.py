@@ -161,9 +161,7 @@ class GuidedAdapter:
         """Return mode commands that are due, and the setpoint's messages where setpoints count."""
         self._see(now, telemetry)
         asked = self._machine.step(now, telemetry, ready=self._encoder.ready(now))
-        messages = self._mode_messages(asked) if asked.mode or asked.prove else []
-        if asked.arm_tries:
-            messages += self._arming(asked)
+        messages = [*self._mode_messages(asked), *self._arming(asked)]
         notes = [*asked.notes, *self._notes]
         self._notes = []
         sound = self._sound(setpoint, notes)

@@ -182,7 +182,7 @@ class ZenohBus:
         stream = Stream(receiver, pattern, every=every, kept=kept)
 
         def declare(session: Any) -> Any:
-            channel: Any = handlers.RingChannel(stream.size)
+            channel, take = self._streams.channel(stream)
             if not kept:
                 entity = session.declare_subscriber(pattern, channel)
             else:
@@ -193,7 +193,7 @@ class ZenohBus:
                     history=ext.HistoryConfig(detect_late_publishers=True),
                     recovery=ext.RecoveryConfig(heartbeat=True, periodic_queries=None),
                 )
-            self._streams.attach(stream, entity.handler.try_recv)
+            self._streams.attach(stream, take or entity.handler.try_recv)
             return entity
 
         return self._declare(declare, partial(self._streams.detach, stream))

@@ -2,21 +2,24 @@
 
 No thread of Zenoh's enters Python for a message, and none wakes the loop for one: on a small computer either
 costs more than most messages. The loop looks every `LOOK_S`, or once when it has said that it will want what
-has come, and takes all of it.
+has come, and takes all of it. The master's beat alone wakes it: how long that waited would count as an offset
+of the clocks.
 """
 
 from __future__ import annotations
 
 import asyncio
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from typing import Any
 
 import zenoh
+from zenoh import handlers
 
 from onboard.runtime.protocols import Sample
 from onboard.runtime.rate_limit import LATER_S, PAYLOAD_MAX, BusLimit
-from onboard.wire.bus.topics import TOPICS, Delivery
+from onboard.wire.bus.topics import MASTER, TOPICS, Delivery
 
 LOOK_S = 0.03  # a message waits so long at most for a loop that is not late …
 PUT_OFF_S = 0.05  # … and at most so much longer for one that has said when it wants what has come
@@ -39,6 +42,9 @@ class Stream:
         self.every = every
         self.size = EVERY_MAX if every else MANY_MAX if kept or "*" in pattern else ONE_MAX  # of its channel
         self.take: Callable[[], Any] | None = None  # the channel's next message, or None
+        place = TOPICS.find(pattern)
+        self.prompt = place is not None and place.topic is MASTER  # it wakes the loop
+        self.told, self.heard_at = False, float("-inf")  # that it is to be heard, and when it last was [s]
         self.over: dict[str, Sample] = {}  # over their bounds, the newest of each key
         self.over_at = float("-inf")  # when such were heard last [s]
 
@@ -54,6 +60,30 @@ class Streams:
         self._open: list[Stream] = []
         self._timer: asyncio.TimerHandle | None = None
         self._asked = -1  # how often it had looked when it last said when it wants to
+
+    def channel(self, stream: Stream) -> tuple[Any, Callable[[], Any] | None]:
+        """Where Zenoh puts what comes, and how it is taken from there; None: as from any channel."""
+        if not stream.prompt:
+            return handlers.RingChannel(stream.size), None
+        waiting: deque[Any] = deque(maxlen=stream.size)
+
+        def arrived(sample: Any) -> None:  # on a thread of Zenoh's
+            waiting.append(sample)
+            if not stream.told:
+                stream.told = True
+                with suppress(RuntimeError):  # the loop is closed: nobody is left to hear
+                    self._loop.call_soon_threadsafe(self._prompted, stream)
+
+        return handlers.Callback(arrived, indirect=False), lambda: waiting.popleft() if waiting else None
+
+    def _prompted(self, stream: Stream) -> None:
+        """Hear one that woke the loop, in a flood no more often than others."""
+        wait = stream.heard_at + LOOK_S - self._loop.time()
+        if wait > 0.0:
+            self._loop.call_later(wait, self._prompted, stream)
+            return
+        stream.told, stream.heard_at = False, self._loop.time()
+        self._hear(stream)
 
     def attach(self, stream: Stream, take: Callable[[], Any]) -> None:
         """A session has declared it: from now on the loop looks into its channel."""
@@ -83,15 +113,18 @@ class Streams:
         self._timer = self._loop.call_later(LOOK_S, self._look)
         self.looks += 1
         for stream in tuple(self._open):
-            for sample in self._heard(stream):
-                if stream.take is None:
-                    break
-                self._counts["received"] += 1
-                try:
-                    stream.receiver(sample)
-                except Exception as error:
-                    said = {"message": "a receiver failed", "exception": error}
-                    self._loop.call_exception_handler(said)
+            self._hear(stream)
+
+    def _hear(self, stream: Stream) -> None:
+        for sample in self._heard(stream):
+            if stream.take is None:
+                break
+            self._counts["received"] += 1
+            try:
+                stream.receiver(sample)
+            except Exception as error:
+                said = {"message": "a receiver failed", "exception": error}
+                self._loop.call_exception_handler(said)
 
     def _heard(self, stream: Stream) -> Iterator[Sample]:
         """What has come and is within its bounds; of a LATEST key the newest, unless every one is wanted."""

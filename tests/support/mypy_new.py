@@ -14,6 +14,8 @@ NEW = "onboard.core.math.each.New.__call__"
 
 def _checked(context: MethodContext) -> Type:
     """The type of a call of `new`; what is wrong with it is said."""
+    if not all(context.arg_types):
+        return context.default_return_type  # too few arguments: mypy has said so
     kind, fields = (get_proper_type(one[0]) for one in context.arg_types)
     made = get_proper_type(kind.ret_type) if isinstance(kind, CallableType) else None
     if not isinstance(made, TupleType) or not isinstance(made.partial_fallback, Instance):

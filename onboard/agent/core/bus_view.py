@@ -155,7 +155,7 @@ class BusView:
         self._unheeded = frozenset(topics.TRACK.key(self._game, id) for id in known)
 
     def watch(self, opponents: tuple[int, ...]) -> None:
-        """Listen to the tracks of these vehicles, and to no others; before that, to all there are."""
+        """Listen to the tracks of these vehicles alone; before that, and of many, to all there are."""
         before, each = self._tracks, len(opponents) <= WATCHED_MAX
         key, game = topics.TRACK.key, self._game
         self._tracks = tuple(key(game, id) for id in opponents) if each else (key(game),)

@@ -212,7 +212,6 @@ class Flight:
         self, now: float, t: Telemetry, wind: Vec = ZERO, age: float = 0.0, sigma: float = 0.0
     ) -> SupervisorInput:
         """What the supervisor looks at; wind, age and error of the track [m] belong to a decision."""
-        taken = self.vehicle.stage is Stage.TAKEN
         return SupervisorInput(
             now=now,
             id=self.config.id,
@@ -226,8 +225,8 @@ class Flight:
             battery=t.battery,
             ekf_ok=t.ekf_ok or t.ekf_at == NEVER,
             gps_fix=t.gps_fix if t.gps_at != NEVER else 3,
-            pilot=taken and not self.hands.given(now),
-            failsafe=taken and self.vehicle.by_failsafe,
+            pilot=self.vehicle.stage is Stage.TAKEN and not self.hands.given(now),
+            failsafe=self.vehicle.by_failsafe,
             order=max(self._orders.order, Action.HOLD) if self.ending else self._orders.order,
             wind=wind,
             strategy_age=age,

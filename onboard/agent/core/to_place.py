@@ -6,7 +6,7 @@ from math import cos, sin
 
 from onboard.autopilot.base import Telemetry
 from onboard.core.math.each import new
-from onboard.core.math.vectors import ZERO, Vec, along, direction, sub
+from onboard.core.math.vectors import ZERO, Vec, along, clamp, direction, sub
 from onboard.core.safety.envelope import bounded
 from onboard.core.safety.policy import Envelope, Policy
 from onboard.pilot.approach import LEAD, WIDER, Approach, Place
@@ -22,8 +22,7 @@ CARRIED_S = 0.5  # a position is carried forward by its velocity for no longer
 def own_state(now: float, t: Telemetry, *, hovers: bool) -> Own:
     """The own state at `now` [s, monotonic]: its last position carried forward, and for planes the wind."""
     wind = ZERO if hovers or now - t.wind_at >= WIND_FRESH_S else t.wind
-    age = now - t.position_at
-    position = along(t.position, t.velocity, 0.0 if age < 0.0 else (CARRIED_S if age > CARRIED_S else age))
+    position = along(t.position, t.velocity, clamp(now - t.position_at, 0.0, CARRIED_S))
     nose = ZERO
     if not hovers and now - t.attitude_at < NOSE_FRESH_S:
         nose = direction(t.pitch, t.yaw)

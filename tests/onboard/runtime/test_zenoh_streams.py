@@ -22,7 +22,7 @@ from onboard.runtime.loop import run_virtual
 from onboard.runtime.protocols import Sample
 from onboard.runtime.rate_limit import LATER_S, BusLimit
 from onboard.runtime.zenoh_streams import LOOK_S, PUT_OFF_S, Stream, Streams
-from onboard.wire.bus.topics import COMMAND, EVENTS, STATE, TRACK, Delivery
+from onboard.wire.bus.topics import COMMAND, EVENTS, MASTER, STATE, TRACK, Delivery
 from tests.support.bus_stages import Heard, free_port
 from tests.support.real_time import until
 
@@ -262,6 +262,18 @@ async def test_an_order_is_heard_at_once_whenever_the_loop_looks_next(monkeypatc
         assert await station.request(COMMAND.key(GAME, 1), b"abort", 20.0) == [b"done"]
         assert order == [b"abort"]
         assert not heard.samples
+
+
+@pytest.mark.real
+async def test_the_masters_beat_waits_for_no_look_which_would_count_as_an_offset(monkeypatch: Any) -> None:
+    monkeypatch.setattr(zenoh_streams, "LOOK_S", 1e3)
+    async with sessions() as (agent, master):
+        heard, state = Heard(agent, MASTER.key(GAME)), Heard(agent, STATE.key(GAME, 2))
+        await until(master.connected)
+        master.publish(STATE.key(GAME, 2), b"state", Delivery.LATEST)
+        await until(lambda: master.publish(MASTER.key(GAME), b"beat", Delivery.LATEST) or heard.samples)
+        assert heard.samples[0].payload == b"beat"
+        assert not state.samples
 
 
 async def grown() -> int:
