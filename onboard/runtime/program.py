@@ -12,6 +12,7 @@ import errno
 import os
 import sys
 import threading
+import warnings
 from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple, NoReturn, TextIO
 
@@ -60,6 +61,8 @@ def _run(app: Callable[..., Any], name: str) -> NoReturn:
             raise  # a fault of the program keeps its traceback
         if end.code in (NOT_WRITTEN, READER_LEFT):
             _discard(sys.stdout)
+        if end.code == INTERRUPTED:  # of a coroutine that had not begun nobody need be warned
+            warnings.simplefilter("ignore", RuntimeWarning)
         _end(name, end.words, end.code)
     finally:
         early.leave()

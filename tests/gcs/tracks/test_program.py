@@ -9,7 +9,7 @@ import pty
 import socket
 import sys
 import tty
-from contextlib import asynccontextmanager
+from contextlib import asynccontextmanager, suppress
 from pathlib import Path
 
 import pytest
@@ -167,4 +167,8 @@ async def test_a_receiver_on_a_serial_port_brings_its_frames_in_pieces_of_any_si
 def _opened(pid: int, terminal: int) -> bool:
     """Whether a process has a terminal open."""
     name = os.ttyname(terminal)
-    return any(os.readlink(fd) == name for fd in Path(f"/proc/{pid}/fd").iterdir() if fd.is_symlink())
+    for fd in Path(f"/proc/{pid}/fd").iterdir():
+        with suppress(FileNotFoundError):  # closed meanwhile
+            if os.readlink(fd) == name:
+                return True
+    return False

@@ -223,6 +223,24 @@ def test_ctrl_c_ends_with_one_line() -> None:
     assert (child.returncode, err) == (130, b"prog: interrupted\n")
 
 
+@BOTH
+def test_ctrl_c_before_the_loop_stands_says_nothing_of_what_had_not_begun(imports: str, app: str) -> None:
+    body = """
+import asyncio
+
+async def work(): ...
+
+def no_loop():
+    raise KeyboardInterrupt
+
+asyncio.new_event_loop = no_loop
+asyncio.events.new_event_loop = no_loop
+asyncio.run(work())
+"""
+    assert ended(script(body, imports, app)) == (130, "", "prog: interrupted\n")
+
+
+
 @pytest.mark.parametrize("program", ["onboard.cli", "gcs.cli", "sim_bridge.cli"])
 def test_the_three_programs_have_this_host(program: str) -> None:
     command = [sys.executable, "-m", program]
