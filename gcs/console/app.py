@@ -139,6 +139,8 @@ class Console(App[int]):
 
     def refresh_picture(self) -> None:
         """Take the picture and show it."""
+        if not self.is_running:  # closing: a timer may still call, and the screens are gone
+            return
         self.picture = self.source.picture()
         if self.questions.lapsed(self.picture.now_ns):
             self.say("not done")
@@ -146,6 +148,8 @@ class Console(App[int]):
 
     def show(self) -> None:
         """Show the picture as it is, by the present settings."""
+        if not self.is_running:
+            return
         picture = self.picture
         if self.selected is None and picture.vehicles:
             self.selected = picture.vehicles[0].id
@@ -185,6 +189,8 @@ class Console(App[int]):
 
     def say(self, text: str, style: str = "") -> None:
         """Tell the user something in the prompt line; after a while its hint comes back."""
+        if not self.is_running:
+            return
         prompt = self.screen_stack[0].query_one(Prompt)
         prompt.say(text, style)
         if self._forget is not None:

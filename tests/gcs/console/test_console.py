@@ -340,6 +340,33 @@ async def test_leaving_asks_once():
     assert app.return_code == 0
 
 
+class BusyTimers(Console):
+    """A console whose timers run at each step of its closing, as they may."""
+
+    async def _prune(self, *nodes, **options):
+        self._timers_run()
+        await super()._prune(*nodes, **options)
+        self._timers_run()
+
+    async def _close_all(self):
+        await super()._close_all()
+        self._timers_run()
+
+    def _timers_run(self):
+        self.refresh_picture()
+        self.show()
+        self._hint_again()
+
+
+@pytest.mark.parametrize("keys", [(), ("q", "q"), ("b",), ("question_mark",), ("colon", "h")])
+async def test_timers_that_still_run_while_it_closes_do_no_harm(keys):
+    source = desk()
+    app = BusyTimers(source)
+    async with app.run_test(size=(80, 24)) as pilot:
+        await pilot.press(*keys)
+        source.tower.wait(CONFIRM_S + 1.0)  # a question has lapsed by then
+
+
 async def test_a_source_brings_keys_of_its_own():
     source = desk()
     source.keys = (Key("space", "pause", "pause and go on"), Key("plus", "faster", "play faster"))
