@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import time
 from pathlib import Path
-from tempfile import TemporaryDirectory
+from tempfile import TemporaryDirectory, mkdtemp
 from typing import NamedTuple
 
 import numpy as np
@@ -82,7 +82,10 @@ LOADS = (Load(10, True), Load(50, True), Load(10, False), Load(200, False))
 
 @pytest.mark.parametrize("load", LOADS, ids=Load.name)
 def test_picture_and_recorder_leave_most_of_a_core_free(load: Load, tmp_path: Path) -> None:
-    cost = measure(load, tmp_path)
+    runs = [measure(load, Path(mkdtemp(dir=tmp_path))) for _ in range(yardstick.MEASURED)]
+    cost = runs[0]._replace(
+        picture=min(run.picture for run in runs), recorder=min(run.recorder for run in runs)
+    )
     print(
         f"{load.name()}: {cost.messages / SECONDS:.0f} messages/s, picture {cost.picture:.1%}, "
         f"recorder {cost.recorder:.1%} of a core, {cost.megabytes:.0f} MB/h, "

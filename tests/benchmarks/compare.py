@@ -1,5 +1,10 @@
 """What got slower: the costs of the last `make bench` beside the committed ones, in rounds of a yardstick.
 
+A plain loop does not feel a machine's memory as whole programs do: beside another machine's, all costs of a
+yard move together (by 10 to 20 % between two days). So each is judged beside the median of its yard, and a
+median that is slower than the tolerance allows is told as such: then the machine is another, or everything
+got slower.
+
 `python -m tests.benchmarks.compare [--tolerance 0.25] [--accept]`. Ends with 0 where nothing is slower than
 the tolerance allows, with 1 where something is, with 2 where there is nothing to compare. `--accept` makes
 what was measured the committed costs; what was not measured stays.
@@ -10,10 +15,22 @@ from __future__ import annotations
 import argparse
 import sys
 from pathlib import Path
+from statistics import median
 
-from tests.benchmarks.yardstick import COSTS, LATEST, Cost, read, words, write
+from tests.benchmarks.yardstick import COSTS, LATEST, Cost, Yard, read, words, write
 
 TOLERANCE = 0.25  # of a cost: two runs of one state on a busy machine differ by up to some 20 %
+ENOUGH = 8  # costs of a yard, for their median to say how they moved together
+
+
+def moved(before: dict[str, Cost], now: dict[str, Cost]) -> dict[Yard, float]:
+    """How many times the costs of each yard are what they were, by their median; 1 for ratios and for few."""
+    times: dict[Yard, list[float]] = {yard: [] for yard in Yard}
+    for name in before.keys() & now.keys():
+        old, new = before[name], now[name]
+        if old.yard == new.yard != Yard.NONE:
+            times[new.yard].append(new.value / old.value)
+    return {yard: median(found) if len(found) >= ENOUGH else 1.0 for yard, found in times.items()}
 
 
 def changes(before: dict[str, Cost], now: dict[str, Cost], tolerance: float) -> tuple[list[str], list[str]]:
@@ -21,6 +38,12 @@ def changes(before: dict[str, Cost], now: dict[str, Cost], tolerance: float) -> 
 
     A cost that changed its yard is new: it cannot be compared."""
     lines, slower = [], []
+    together = moved(before, now)
+    for yard, times in together.items():
+        if times != 1.0:
+            lines.append(f"{'together':9} {times:8.2f} x all in {yard.value}, their median")
+        if times > 1.0 + tolerance:
+            slower.append(f"all in {yard.value}")
     for name in sorted(before.keys() | now.keys()):
         old, new = before.get(name), now.get(name)
         if new is None:
@@ -28,7 +51,7 @@ def changes(before: dict[str, Cost], now: dict[str, Cost], tolerance: float) -> 
         elif old is None or old.yard != new.yard:
             lines.append(f"new       {new.value:10.4g} {name}")
         else:
-            times = new.value / old.value
+            times = new.value / old.value / together[new.yard]
             word = "faster" if times < 1.0 / (1.0 + tolerance) else "as before"
             if times > 1.0 + tolerance:
                 word = "SLOWER"

@@ -69,6 +69,26 @@ def test_what_got_slower_is_named_and_is_the_exit_code(
     assert yardstick.read(committed).keys() == {*before, *now}
 
 
+def test_another_machine_is_no_reason_and_what_stands_out_there_is_one(
+    files: tuple[Path, Path], capsys: pytest.CaptureFixture[str]
+) -> None:
+    committed, latest = files
+    names = [*"abcdefghi"]
+    before = {name: Cost(100.0, Yard.PYTHON) for name in names}
+    yardstick.write(committed, before | {"r": Cost(2.0, Yard.NONE)})
+
+    def compared(machine: float, **odd: float) -> tuple[int, str]:
+        now = {name: Cost(100.0 * machine * odd.get(name, 1.0), Yard.PYTHON) for name in names}
+        yardstick.write(latest, now | {"r": Cost(2.0 * odd.get("r", 1.0), Yard.NONE)})
+        return compare.main([], committed, latest), capsys.readouterr().out.splitlines()[-1]
+
+    for machine in (0.8, 1.0, 1.24):
+        assert compared(machine) == (0, "slower by more than 25%: nothing")
+        assert compared(machine, d=1.3, e=0.5) == (1, "slower by more than 25%: d")
+        assert compared(machine, r=1.3) == (1, "slower by more than 25%: r")
+    assert compared(1.3) == (1, "slower by more than 25%: all in rounds of the Python loop")
+
+
 def test_nothing_to_compare_is_no_success(
     files: tuple[Path, Path], capsys: pytest.CaptureFixture[str]
 ) -> None:
