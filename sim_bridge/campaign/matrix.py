@@ -72,6 +72,7 @@ def _player(
     planner = only_planner(pursuers)
     plan_by: Any = no_plan_made if planner is None else planning_by(planner)
     team = tuple(range(1, count + 1))
+    anyone = pursuers[0]  # a field has one for all; who is asked here is told by number
 
     def play(starts: Starts, conditions: Conditions, ends: Ends, meeting: Meeting) -> None:
         every = steps_between(conditions.control.dt)
@@ -88,7 +89,7 @@ def _player(
                 own = evader_keeps_out(view, evade(view, meeting.evader))
                 turned = Vehicle(game.evader.position, scale(own.direction, own.speed), game.evader.speed)
                 seen = sighted(turned, own.direction, mine.control.lookahead)
-                field = Field(game, seen, mine, pursuers[0], plan.assignments)
+                field = Field(game, seen, mine, anyone, plan.assignments)
                 views = each(view_of_one, game.pursuers, field)
                 decided = Decisions(own, each(asked_of, views, Asked(pursue, meeting.pursuers)))
                 now = moved_on(game, mine, decided)

@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from functools import lru_cache
+from multiprocessing import resource_tracker
 from multiprocessing.connection import wait as wait_for
 from typing import Any
 
@@ -78,6 +79,7 @@ def play_in_processes(plan: Plan, shards: list[Shard], workers: int) -> Played:
 
 
 def _pool(workers: int) -> ProcessPoolExecutor:
+    resource_tracker.ensure_running()  # as it starts it would let interrupts in again
     return ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), initializer=_begin)
 
 
@@ -102,7 +104,7 @@ def _through(pool: ProcessPoolExecutor, plan: Plan, shards: list[Shard], workers
     queue = iter(list(shards))
     while True:
         for shard in queue:
-            with _deaf_to_interrupts():  # what starts a worker: it shall not hear ctrl-C either
+            with _interrupts_held_back():  # what starts a worker: it shall not hear ctrl-C either
                 running[pool.submit(shard_bytes, told, shard.number)] = shard
             if len(running) >= AHEAD * workers:
                 break
@@ -114,15 +116,13 @@ def _through(pool: ProcessPoolExecutor, plan: Plan, shards: list[Shard], workers
 
 
 @contextlib.contextmanager
-def _deaf_to_interrupts() -> Iterator[None]:
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+def _interrupts_held_back() -> Iterator[None]:
+    """Ctrl-C waits until it is over; a process that is started meanwhile does not hear it at all."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT,))
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _end(pool: ProcessPoolExecutor) -> None:

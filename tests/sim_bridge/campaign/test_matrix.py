@@ -53,6 +53,17 @@ def test_interpreted_every_pair_plays_its_own_game() -> None:
     assert len({tuple(one) for one in found}) >= 6  # they do differ
 
 
+def test_compiled_it_plays_as_interpreted() -> None:
+    starts, conditions = games(10.0, range(1, 3))
+    pursuers = "pure-pursuit", "parallel-pursuit"
+    sides = (EVADERS["straight"].decide,), tuple(PURSUERS[p].decide for p in pursuers)
+    compiled, interpreted = matrix(*sides, 5), matrix(*sides, 5, compiled=False)
+    ends = [compiled(starts, conditions, 0, p) for p in (0, 1)]
+    for p in (0, 1):
+        alike(ends[p], interpreted(starts, conditions, 0, p))
+    assert ends[0].smallest.tolist() != ends[1].smallest.tolist()
+
+
 @pytest.mark.long
 @pytest.mark.timeout(1200)
 def test_compiled_every_pair_plays_its_own_game() -> None:

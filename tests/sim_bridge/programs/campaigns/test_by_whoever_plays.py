@@ -12,7 +12,9 @@ import signal
 import subprocess
 import sys
 import time
+from concurrent.futures import Future
 from pathlib import Path
+from typing import Any
 
 import psutil
 import pytest
@@ -25,6 +27,7 @@ from sim_bridge.plane_game.program import play
 from sim_bridge.programs.campaigns import shards
 from sim_bridge.programs.campaigns.command import Options, all_of, plan_of
 from sim_bridge.programs.campaigns.play import drawn, rows
+from sim_bridge.programs.campaigns.pool import _through
 from tests.support.campaign_runs import begin, contents, duel, environment, ran, wait_for_shard
 from tests.support.dask_cluster import cluster
 from tests.support.real_time import patience
@@ -126,6 +129,28 @@ def test_ctrl_c_leaves_whole_shards_and_says_how_it_goes_on(
     assert f"shards are whole in {folder}; the same command goes on" in lines[0]
     assert all(path.suffix in (".parquet", ".json") for path in folder.iterdir())
     assert wanted.items() - contents(folder).items() or len(contents(folder)) > 2
+
+
+class Interrupted:
+    """A pool in which ctrl-C comes while a shard is handed out."""
+
+    def submit(self, *_given: object) -> Future[bytes]:
+        os.kill(os.getpid(), signal.SIGINT)
+        self.handed_out = Future[bytes]()
+        self.handed_out.set_result(b"")
+        return self.handed_out
+
+
+def test_ctrl_c_while_a_shard_is_handed_out_is_not_lost(tmp_path: Path) -> None:
+    plan = plan_of(Options((duel(tmp_path),), games=4), until=False)
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    pool: Any = Interrupted()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            list(_through(pool, plan, plan.shards(), 1))
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert pool.handed_out.done()
 
 
 @pytest.mark.long
