@@ -12,11 +12,10 @@ from sim_bridge.campaign import encircled
 from sim_bridge.campaign.compiled import Ends, campaign, starts_of
 
 
-@pytest.mark.long
 @pytest.mark.parametrize(
     ("evader", "pursuers", "closed", "otherwise"),
     [
-        ("evasive", "paper", True, ("paper", "paper")),
+        pytest.param("evasive", "paper", True, ("paper", "paper"), marks=pytest.mark.long),
         ("straight", "abreast", False, ("straight", "parallel-pursuit")),
     ],
 )

@@ -193,7 +193,6 @@ def test_what_is_wrong_is_refused_by_name() -> None:
             make_task(Wish(**{key: value}))  # type: ignore[arg-type]
 
 
-@pytest.mark.long
 def test_compiled_games_are_the_interpreted_ones() -> None:
     task = make_task(Wish(scenario="one-on-one", evader="straight", spread=10.0))
     rng = np.random.default_rng(1)
