@@ -18,7 +18,10 @@ os.environ.pop("PYTHONUNBUFFERED", None)  # few users have it: programs must do 
 import pytest  # noqa: E402  (threads are set before NumPy is imported)
 from hypothesis import settings  # noqa: E402
 
+from tests.support.interrupts import hear_interrupts  # noqa: E402
 from tests.support.real_time import slowness  # noqa: E402
+
+hear_interrupts()
 
 settings.register_profile("ci", derandomize=True, deadline=None, print_blob=True)
 settings.register_profile("long", deadline=None, print_blob=True)

@@ -20,6 +20,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
+from tests.support.interrupts import hear_interrupts
 from tests.support.real_time import patience
 
 ROOT = Path(__file__).parent.parent.parent
@@ -158,12 +159,10 @@ def surroundings(**more: str) -> dict[str, str]:
 def run(command: Command, folder: Path, *, out: int | None = None, ctrl_c_s: float | None = None,
         **environment: str) -> Ended:  # fmt: skip
     """Run a command to its end; a service, and whoever is to, gets ctrl-C after some time."""
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # a background job's children ignore it
     child = subprocess.Popen(
         module(*command.words), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE if out is None else out,
         stderr=subprocess.PIPE, cwd=folder, env=surroundings(**environment), start_new_session=True,
     )  # fmt: skip
-    signal.signal(signal.SIGINT, before)
     wait_s = ctrl_c_s if ctrl_c_s is not None else patience(0.4) if command.stays else patience(PROMISED_S)
     try:
         try:
@@ -250,6 +249,7 @@ def _words(ended: Ended) -> str:
 
 def main(words: list[str]) -> int:
     """Run the matrix and print what is wrong; the number of faults is the exit code, at most 1."""
+    hear_interrupts()
     wrong = 0
     with tempfile.TemporaryDirectory() as name:
         chosen = [c for c in commands(Path(name)) if not words or any(word in c.line for word in words)]
