@@ -16,6 +16,7 @@ from concurrent.futures.process import BrokenProcessPool
 from functools import lru_cache
 from multiprocessing import resource_tracker
 from multiprocessing.connection import wait as wait_for
+from types import FrameType
 from typing import Any
 
 from onboard.config.strict import ConfigError
@@ -117,12 +118,23 @@ def _through(pool: ProcessPoolExecutor, plan: Plan, shards: list[Shard], workers
 
 @contextlib.contextmanager
 def _interrupts_held_back() -> Iterator[None]:
-    """Ctrl-C waits until it is over; a process that is started meanwhile does not hear it at all."""
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT,))
+    """Ctrl-C waits until it is over; a process that is started meanwhile does not hear it at all.
+
+    The mask is for the process that is started: of this one another thread may take the signal.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    came: list[tuple[int, FrameType | None]] = []
+    heard = signal.signal(signal.SIGINT, lambda number, frame: came.append((number, frame)))
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT,))
     try:
         yield
     finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+        signal.signal(signal.SIGINT, heard)
+    if came and callable(heard):
+        heard(*came[0])
 
 
 def _end(pool: ProcessPoolExecutor) -> None:

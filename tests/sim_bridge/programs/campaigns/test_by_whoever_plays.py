@@ -11,6 +11,7 @@ import re
 import signal
 import subprocess
 import sys
+import threading
 import time
 from concurrent.futures import Future
 from pathlib import Path
@@ -134,19 +135,34 @@ def test_ctrl_c_leaves_whole_shards_and_says_how_it_goes_on(
 class Interrupted:
     """A pool in which ctrl-C comes while a shard is handed out."""
 
+    def __init__(self, by_a_thread: bool) -> None:
+        self._by_a_thread = by_a_thread
+
     def submit(self, *_given: object) -> Future[bytes]:
-        os.kill(os.getpid(), signal.SIGINT)
+        if self._by_a_thread:  # the system gives it to any thread that takes it
+            taker = threading.Thread(target=self._take)
+            taker.start()
+            taker.join()
+        else:
+            signal.raise_signal(signal.SIGINT)
         self.handed_out = Future[bytes]()
         self.handed_out.set_result(b"")
         return self.handed_out
 
+    def _take(self) -> None:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGINT,))  # as of a thread from before
+        signal.raise_signal(signal.SIGINT)
 
-def test_ctrl_c_while_a_shard_is_handed_out_is_not_lost(tmp_path: Path) -> None:
+
+@pytest.mark.parametrize("by_a_thread", [False, True])
+def test_ctrl_c_while_a_shard_is_handed_out_is_not_lost(by_a_thread: bool, tmp_path: Path) -> None:
     plan = plan_of(Options((duel(tmp_path),), games=4), until=False)
-    pool: Any = Interrupted()
+    pool: Any = Interrupted(by_a_thread)
     with pytest.raises(KeyboardInterrupt):
         list(_through(pool, plan, plan.shards(), 1))
-    assert pool.handed_out.done()
+    assert pool.handed_out.done()  # nothing was broken off
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ())
 
 
 @pytest.mark.long
