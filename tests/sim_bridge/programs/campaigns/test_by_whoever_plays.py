@@ -158,10 +158,14 @@ class Interrupted:
 def test_ctrl_c_while_a_shard_is_handed_out_is_not_lost(by_a_thread: bool, tmp_path: Path) -> None:
     plan = plan_of(Options((duel(tmp_path),), games=4), until=False)
     pool: Any = Interrupted(by_a_thread)
-    with pytest.raises(KeyboardInterrupt):
-        list(_through(pool, plan, plan.shards(), 1))
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # a program run in here leaves another
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            list(_through(pool, plan, plan.shards(), 1))
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    finally:
+        signal.signal(signal.SIGINT, before)
     assert pool.handed_out.done()  # nothing was broken off
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
     assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ())
 
 
