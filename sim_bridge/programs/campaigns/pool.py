@@ -133,8 +133,8 @@ def _interrupts_held_back() -> Iterator[None]:
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, mask)
         signal.signal(signal.SIGINT, heard)
-    if came and callable(heard):
-        heard(*came[0])
+        if came and callable(heard):
+            heard(*came[0])  # whatever else went wrong
 
 
 def _end(pool: ProcessPoolExecutor) -> None:

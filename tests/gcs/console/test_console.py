@@ -343,6 +343,8 @@ async def test_leaving_asks_once():
 class BusyTimers(Console):
     """A console whose timers run at each step of its closing, as they may."""
 
+    ran = 0
+
     async def _prune(self, *nodes, **options):
         self._timers_run()
         await super()._prune(*nodes, **options)
@@ -356,6 +358,7 @@ class BusyTimers(Console):
         self.refresh_picture()
         self.show()
         self._hint_again()
+        self.ran += 1
 
 
 @pytest.mark.parametrize("keys", [(), ("q", "q"), ("b",), ("question_mark",), ("colon", "h")])
@@ -365,6 +368,7 @@ async def test_timers_that_still_run_while_it_closes_do_no_harm(keys):
     async with app.run_test(size=(80, 24)) as pilot:
         await pilot.press(*keys)
         source.tower.wait(CONFIRM_S + 1.0)  # a question has lapsed by then
+    assert app.ran >= 3  # before and after a screen goes, and when all are gone
 
 
 async def test_a_source_brings_keys_of_its_own():
