@@ -1,7 +1,7 @@
 """What got slower: the costs of the last `make bench` beside the committed ones, in rounds of a yardstick.
 
 A plain loop does not feel a machine's memory as whole programs do: beside another machine's, all costs of a
-yard move together (by 12 % between two machines of one kind). So each is judged beside the median of its yard, and a
+yard move together (by 12 % between two of one kind). So each is judged beside the median of its yard, and a
 median that is slower than the tolerance allows is told as such: then the machine is another, or everything
 got slower.
 

@@ -219,7 +219,8 @@ def ctrl_c_faults(command: Command, folder: Path, plain: Ended, after: tuple[flo
         last = ended.err.rstrip().rpartition("\n")[2]
         # One line: that it was interrupted, or how it ended where that was told already. A command that has
         # told all, and whose interpreter is taking itself down, ends without a word.
-        whole = ended.out == plain.out if ended.out else bool(ended.err)
+        lines = ended.out.count("\n")  # of the same number: names of folders differ
+        whole = lines == plain.out.count("\n") if lines else bool(ended.err)
         told = whole and ended.err in ("", plain.err)
         stopped = ended.code == 130 and (last.count("interrupted") == 1 or told)
         # The interpreter itself was starting: nothing of the program's runs yet.
